@@ -1,0 +1,410 @@
+// The command taut as a user meets it: the built program is run, its output and exit code read.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "taut/io/read_mesh.h"
+#include "temporary_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using taut_test::content;
+using taut_test::TemporaryFolder;
+
+/// What one run of the command gave.
+struct Result {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+/// Runs taut in a folder of the test's own.
+class Cli : public TemporaryFolder {
+ protected:
+  /// `arguments` as a shell reads them; `before` stands before the command.
+  Result run(const std::string& arguments, const std::string& before = "") const {
+    const fs::path errors = fs::path(folder_.string() + ".stderr");
+    const std::string line = "cd '" + folder_.string() + "' && " + before +
+                             " '" TAUT_EXECUTABLE "' " + arguments + " 2>'" + errors.string() + "'";
+    Result result;
+    std::FILE* pipe = popen(line.c_str(), "r");
+    if (pipe == nullptr) return result;
+    std::array<char, 4096> buffer;
+    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+      result.out.append(buffer.data(), count);
+    }
+    const int status = pclose(pipe);
+    if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
+    result.err = content(errors);
+    fs::remove(errors);
+    return result;
+  }
+
+  /// Expects a failure: the exit code, one line on stderr, and nothing on stdout.
+  void expect_failure(const std::string& arguments, int exit_code, const std::string& words) const {
+    const Result result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_TRUE(result.err.starts_with("taut: ")) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << arguments << "\n" << result.err;
+    EXPECT_NE(result.err.find(words), std::string::npos) << arguments << "\n" << result.err;
+  }
+
+  /// Writes a file and returns its name.
+  std::string plant(const std::string& name, const std::string& text) const {
+    return file(name, text).filename().string();
+  }
+
+  const std::string teapot_ = TAUT_DATA "/teapot.bpt";
+};
+
+/// A polygon mesh as an OFF file.
+std::string off_text(const taut::PolygonMesh& mesh) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "OFF\n" << mesh.points.size() << " " << mesh.polygons.size() << " 0\n";
+  for (const taut::dvec3& p : mesh.points) text << p.x << " " << p.y << " " << p.z << "\n";
+  for (const std::vector<int>& polygon : mesh.polygons) {
+    text << polygon.size();
+    for (const int v : polygon) text << " " << v;
+    text << "\n";
+  }
+  return text.str();
+}
+
+const std::vector<std::string> commands = {"hull", "info", "support", "verify", "plugins"};
+
+TEST_F(Cli, HelpBeginsWithExamples) {
+  EXPECT_EQ(run("--help").exit_code, 0);
+  EXPECT_EQ(run("--version").out.rfind("taut 0.", 0), 0U);
+  for (const std::string& command : commands) {
+    const Result result = run(command + " --help");
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "");
+    EXPECT_LT(result.out.find("Examples:\n  "), result.out.find("Usage:")) << command;
+    for (const char* option : {"--json", "--quiet", "--threads", "--progress", "--version"}) {
+      EXPECT_NE(result.out.find(option), std::string::npos) << command << " " << option;
+    }
+    EXPECT_EQ(run(command + " --version").out, run("--version").out);
+  }
+  EXPECT_NE(run("hull --help").out.find("sampled (default)"), std::string::npos);
+}
+
+TEST_F(Cli, HullWritesAllOutputsAndReport) {
+  const Result result =
+      run("hull " + teapot_ + " -o a.ply -o b.stl -o c.off --relative 1e-3 --report r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  for (const char* name : {"a.ply", "b.stl", "c.off", "r.json"}) {
+    EXPECT_NE(result.out.find(name), std::string::npos) << result.out;
+    EXPECT_TRUE(fs::exists(path(name))) << name;
+  }
+  EXPECT_EQ(file_count(), 4U);
+  EXPECT_GT(taut::read_mesh(path("a.ply")).points.size(), 100U);
+  // Without positions rounded to float.
+  EXPECT_EQ(run("verify a.ply " + teapot_ + " --relative 1e-3").exit_code, 0);
+  EXPECT_EQ(run("verify c.off " + teapot_ + " --relative 1e-3").exit_code, 0);
+}
+
+TEST_F(Cli, HullReportHasTheNamesOfTheContract) {
+  const Result result = run("hull " + teapot_ + " --json --report r.json --tolerance 0.01");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, content(path("r.json")));
+  const Json report = Json::parse(result.out);
+  for (const char* key :
+       {"/taut",           "/input/files/0",       "/input/faces",     "/input/edges",
+        "/input/vertices", "/input/patches",       "/input/diagonal",  "/input/box/1/2",
+        "/method",         "/dimension",           "/hull/gap_bound",  "/mesh/vertices",
+        "/mesh/edges",     "/mesh/faces",          "/mesh/volume",     "/mesh/area",
+        "/mesh/tolerance", "/mesh/distance_bound", "/queries/support", "/queries/newton_iterations",
+        "/seconds/read",   "/seconds/build",       "/seconds/sample",  "/seconds/mesh",
+        "/seconds/write",  "/seconds/total",       "/peak_bytes",      "/warnings"}) {
+    EXPECT_TRUE(report.contains(Json::json_pointer(key))) << key;
+  }
+  EXPECT_EQ(report["input"]["patches"], 32);
+  EXPECT_EQ(report["method"], "sampled");
+  EXPECT_EQ(report["dimension"], 3);
+  EXPECT_EQ(report["mesh"]["tolerance"], 0.01);
+  EXPECT_GT(report["mesh"]["distance_bound"], 0);
+  EXPECT_LE(report["mesh"]["distance_bound"], 0.01);
+  const long v = report["mesh"]["vertices"], e = report["mesh"]["edges"];
+  const long f = report["mesh"]["faces"];
+  EXPECT_EQ(v - e + f, 2);
+  EXPECT_GT(report["mesh"]["volume"], 10);
+  EXPECT_GT(report["peak_bytes"], 1000000);
+}
+
+TEST_F(Cli, QuietHullSaysNothing) {
+  const Result result = run("hull " + teapot_ + " -o a.ply --relative 1e-2 --quiet");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+  EXPECT_TRUE(fs::exists(path("a.ply")));
+}
+
+TEST_F(Cli, PlainProgressGoesToStderr) {
+  const Result result = run("hull " + teapot_ + " -o a.ply --relative 1e-3 --progress plain");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find(" %\n"), std::string::npos) << result.err;
+  EXPECT_EQ(run("hull " + teapot_ + " -o b.ply --relative 1e-3 --progress never").err, "");
+}
+
+TEST_F(Cli, SameBytesForAnyNumberOfThreads) {
+  const std::string hull = "hull " + teapot_ + " --relative 1e-4 ";
+  ASSERT_EQ(run(hull + "-o one.ply --threads 1").exit_code, 0);
+  ASSERT_EQ(run(hull + "-o four.ply --threads 4").exit_code, 0);
+  EXPECT_EQ(content(path("one.ply")), content(path("four.ply")));
+}
+
+TEST_F(Cli, WrongUsageIsRefusedBeforeAnyWork) {
+  // The model is not there: what complains about the command line did not look for it.
+  const std::string hull = "hull nowhere.bpt ";
+  expect_failure("", 2, "no command");
+  expect_failure("stretch", 2, "no command 'stretch'");
+  expect_failure("hull", 2, "INPUT");
+  expect_failure(hull, 2, "-o FILE");
+  expect_failure(hull + "-o a.ply --relative 1e-3 --tolerance 1", 2, "--relative");
+  expect_failure(hull + "-o a.ply --relative 0", 2, "--relative");
+  expect_failure(hull + "-o a.ply --relative 1e-3x", 2, "--relative");
+  expect_failure(hull + "-o a.ply --tolerance -1", 2, "--tolerance");
+  expect_failure(hull + "-o a.ply --tolerance nan", 2, "--tolerance");
+  expect_failure(hull + "-o a.ply --tolerance inf", 2, "--tolerance");
+  expect_failure(hull + "-o a.ply --method precise", 2, "not available yet");
+  expect_failure(hull + "-o a.ply --method envelope", 2, "not available yet");
+  expect_failure(hull + "-o a.ply --method guess", 2, "--method");
+  expect_failure(hull + "-o a.ply --threads -1", 2, "--threads");
+  expect_failure(hull + "-o a.ply --progress loud", 2, "--progress");
+  expect_failure(hull + "-o a.ply --frob", 2, "--frob");
+  expect_failure(hull + "-o a.xyz", 2, ".xyz");
+  expect_failure(hull + "-o a.ply -o b", 2, "no extension");
+  expect_failure(hull + "-o a.bpt", 2, ".bpt");
+  expect_failure(hull + "-o a.ply -o ./a.ply", 2, "twice");
+  expect_failure("hull a.obj -o " + plant("a.obj", "") + "", 2, "input");
+  expect_failure("support nowhere.bpt", 2, "--directions");
+  expect_failure("verify a.ply", 2, "INPUT");
+  EXPECT_EQ(file_count(), 1U);
+}
+
+TEST_F(Cli, PlacesThatCannotBeWrittenAreRefusedBeforeAnyWork) {
+  fs::create_directory(path("folder.ply"));
+  plant("file", "");
+  expect_failure("hull nowhere.bpt -o missing/a.ply", 3, "missing/a.ply: ");
+  expect_failure("hull nowhere.bpt -o file/a.ply", 3, "file/a.ply: ");
+  expect_failure("hull nowhere.bpt -o folder.ply", 3, "folder.ply: ");
+  expect_failure("hull nowhere.bpt -o a.ply --report missing/r.json", 3, "missing/r.json: ");
+}
+
+TEST_F(Cli, FilesThatCannotBeReadAreNamed) {
+  expect_failure("hull nowhere.bpt -o a.ply", 3, "nowhere.bpt: ");
+  expect_failure("info nowhere.bpt", 3, "nowhere.bpt: ");
+  expect_failure("verify nowhere.ply " + teapot_, 3, "nowhere.ply: ");
+  expect_failure("support " + teapot_ + " --directions nowhere", 3, "nowhere: ");
+  expect_failure("info " + plant("a.weird", "1"), 3, ".weird");
+  expect_failure("info " + plant("words.bpt", "patches\n"), 3, "words.bpt:1: ");
+}
+
+TEST_F(Cli, NumbersThatAreNoGeometryAreRefused) {
+  expect_failure("info " + plant("nan.bpt", "1\n1 1\n0 0 0\n1 0 0\n0 nan 0\n1 1 0\n"), 4,
+                 "nan.bpt:5: ");
+}
+
+TEST_F(Cli, ToleranceOutOfReachExitsWithFiveAndTheBestResult) {
+  const Result result =
+      run("hull " + teapot_ + " --max-vertices 500 -o a.ply -o b.stl --report r.json");
+  EXPECT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_TRUE(result.err.starts_with("taut: ")) << result.err;
+  EXPECT_NE(result.err.find("the hull written is within"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::exists(path("a.ply")) && fs::exists(path("b.stl")));
+  const Json report = Json::parse(content(path("r.json")));
+  EXPECT_GT(report["mesh"]["distance_bound"], report["mesh"]["tolerance"]);
+  EXPECT_EQ(report["warnings"][0]["code"], "not-converged");
+  const double reached = report["mesh"]["distance_bound"];
+  std::ostringstream relative;
+  relative << 1.01 * reached / report["input"]["diagonal"].get<double>();
+  EXPECT_EQ(run("verify a.ply " + teapot_ + " --relative " + relative.str()).exit_code, 0);
+  EXPECT_EQ(run("verify a.ply " + teapot_).exit_code, 1);
+}
+
+TEST_F(Cli, MemoryLimitExitsWithSix) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs more address space";
+#endif
+  {
+    std::ofstream directions(path("many"), std::ios::binary);
+    for (int i = 0; i < 4'000'000; ++i) directions << "0 0 1\n";
+  }
+  const Result result = run("support " + teapot_ + " --directions many", "ulimit -v 131072 &&");
+  EXPECT_EQ(result.exit_code, 6);
+  EXPECT_EQ(result.err, "taut: out of memory\n");
+  EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Cli, InfoCounts) {
+  const Result text = run("info " + teapot_);
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_NE(text.out.find("3x3: 32"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("rational  no"), std::string::npos) << text.out;
+  const Json info = Json::parse(run("info --json " + teapot_ + " " + teapot_).out);
+  ASSERT_EQ(info["files"].size(), 2U);
+  EXPECT_EQ(info["files"][0]["faces"], 32);
+  EXPECT_EQ(info["files"][0]["degrees"], Json::parse(R"([{"degree": [3, 3], "patches": 32}])"));
+  EXPECT_EQ(info["files"][0]["rational"], false);
+  EXPECT_EQ(info["input"]["faces"], 64);
+  EXPECT_EQ(info["input"]["box"], info["files"][0]["box"]);
+}
+
+TEST_F(Cli, SupportAnswersEachDirection) {
+  plant("directions", "# up, down\n0 0 2\n\n  0 0 -1e-3  # down\r\n+1 1e0 1");
+  const Result result = run("support " + teapot_ + " --directions directions");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::istringstream lines(result.out);
+  std::vector<std::array<std::string, 7>> answers;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::array<std::string, 7> fields;
+    for (std::string& field : fields) words >> field;
+    std::string more;
+    EXPECT_FALSE(words >> more) << line;
+    answers.push_back(fields);
+  }
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[0][0], "3.1499999999999999");  // of 17 digits
+  EXPECT_EQ(std::stod(answers[1][0]), 0);
+  const double h =
+      (std::stod(answers[2][1]) + std::stod(answers[2][2]) + std::stod(answers[2][3])) /
+      std::sqrt(3.0);
+  EXPECT_NEAR(std::stod(answers[2][0]), h, 1e-14);
+
+  EXPECT_EQ(run("support " + teapot_ + " --directions -", "cat directions |").out, result.out);
+  const Json json = Json::parse(run("support --json " + teapot_ + " --directions directions").out);
+  ASSERT_EQ(json["support"].size(), 3U);
+  EXPECT_EQ(json["support"][0]["h"], 3.15);
+  EXPECT_GE(json["queries"]["support"], 3);
+  EXPECT_TRUE(json["seconds"].contains("support"));
+}
+
+TEST_F(Cli, DirectionsErrorsNameTheLine) {
+  const std::string support = "support " + teapot_ + " --directions ";
+  expect_failure(support + plant("a", "1 0 0\n1 0\n"), 3, "a:2: ");
+  expect_failure(support + plant("b", "# x\n\n1 0 0 0\n"), 3, "b:3: ");
+  expect_failure(support + plant("c", "1 0 zero\n"), 3, "c:1: ");
+  expect_failure(support + plant("d", "1 0 0\n0 0 -0\n"), 4, "d:2: ");
+  expect_failure(support + plant("e", "1 nan 0"), 4, "e:1: ");
+  expect_failure(support + plant("f", "1 0 0\r\n1e999 0 0\r\n"), 4, "f:2: ");
+  expect_failure(support + plant("g", std::string(100000, ' ')), 3, "g:1: ");
+  expect_failure(support + folder_.string(), 3, folder_.string() + ": ");
+}
+
+TEST_F(Cli, VerifyFindsDamage) {
+  ASSERT_EQ(run("hull " + teapot_ + " -o hull.ply -q").exit_code, 0);
+  const Result good = run("verify hull.ply " + teapot_);
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_EQ(good.out.find(" no"), std::string::npos) << good.out;
+  const Json report = Json::parse(run("verify --json hull.ply " + teapot_).out);
+  for (const char* key : {"is_hull", "closed", "manifold", "oriented", "convex", "no_zero_area"}) {
+    EXPECT_EQ(report[key], true) << key;
+  }
+  EXPECT_LE(report["model_outside"], 1e-4);
+
+  const taut::PolygonMesh hull = taut::read_mesh(path("hull.ply"));
+  const auto verify_damaged = [&](const taut::PolygonMesh& mesh) {
+    plant("damaged.off", off_text(mesh));
+    const Result result = run("verify --json damaged.off " + teapot_);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_NE(result.err.find("taut: damaged.off: "), std::string::npos) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json["is_hull"], false);
+    return json;
+  };
+  taut::PolygonMesh flipped = hull;
+  std::reverse(flipped.polygons[7].begin(), flipped.polygons[7].end());
+  EXPECT_EQ(verify_damaged(flipped)["oriented"], false);
+  taut::PolygonMesh dented = hull;
+  dented.points[20] += 1e-3 * 8.2 * glm::normalize(taut::dvec3(0.2, 0, 1.5) - dented.points[20]);
+  EXPECT_EQ(verify_damaged(dented)["convex"], false);
+  taut::PolygonMesh open = hull;
+  open.polygons.pop_back();
+  EXPECT_EQ(verify_damaged(open)["closed"], false);
+  // A smaller copy is convex and lacks nothing but size.
+  taut::PolygonMesh small = hull;
+  for (taut::dvec3& p : small.points) p *= 0.5;
+  const Json json = verify_damaged(small);
+  EXPECT_EQ(json["convex"], true);
+  EXPECT_EQ(json["contains_model"], false);
+  EXPECT_GT(json["model_outside"], 0.1);
+}
+
+TEST_F(Cli, PluginsListsFormats) {
+  const Result text = run("plugins");
+  EXPECT_EQ(text.exit_code, 0);
+  const Json json = Json::parse(run("plugins --json").out);
+  for (const Json& format : json["formats"]) {
+    EXPECT_NE(text.out.find(format["extension"].get<std::string>()), std::string::npos);
+  }
+  EXPECT_GE(json["formats"].size(), 5U);
+}
+
+TEST_F(Cli, FullDeviceIsAnError) {
+  EXPECT_EQ(run("info " + teapot_ + " >/dev/full").exit_code, 3);
+  EXPECT_EQ(run("hull " + teapot_ + " --relative 1e-2 --report /dev/full").exit_code, 3);
+}
+
+/// Starts a hull that would take long, sends the signal once the sampling has begun, and returns
+/// the exit code.
+int exit_code_after_signal(int signal, const std::string& model, const std::string& output) {
+  std::array<int, 2> ends;
+  if (pipe(ends.data()) != 0) return -1;
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[0]);
+    execl(TAUT_EXECUTABLE, TAUT_EXECUTABLE, "hull", model.c_str(), "-o", output.c_str(),
+          "--relative", "1e-6", "--progress", "plain", nullptr);
+    _exit(127);
+  }
+  close(ends[1]);
+  std::string seen;
+  std::array<char, 256> buffer;
+  bool sent = false;
+  for (ssize_t count = 0; (count = read(ends[0], buffer.data(), buffer.size())) > 0;) {
+    seen.append(buffer.data(), static_cast<std::size_t>(count));
+    if (!sent && seen.find("sampl") != std::string::npos) sent = kill(child, signal) == 0;
+  }
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(sent) << seen;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(Cli, InterruptLeavesNothing) {
+  EXPECT_EQ(exit_code_after_signal(SIGINT, teapot_, path("a.ply").string()), 130);
+  EXPECT_EQ(exit_code_after_signal(SIGTERM, teapot_, path("a.ply").string()), 143);
+  EXPECT_EQ(file_count(), 0U);
+}
+
+TEST_F(Cli, InterruptEndsWaitingForInput) {
+  // The shell writes nothing for ten seconds and then is gone with taut.
+  const Result result = run("support " + teapot_ +
+                                " --directions - & pid=$!; sleep 0.5; "
+                                "kill -INT $pid; wait $pid; echo code $?; true",
+                            "sleep 10 |");
+  EXPECT_NE(result.out.find("code 130"), std::string::npos) << result.out;
+}
+
+}  // namespace

@@ -1,0 +1,323 @@
+#include "taut/bounds/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "taut/bounds/scene_content.h"
+#include "taut/bounds/support_query.h"
+#include "taut/core/error.h"
+#include "taut/core/parallel.h"
+
+namespace taut {
+namespace {
+
+/// Splits item ranges at the median of the longest axis; ties are ordered by item.
+class BoxTreeBuilder {
+ public:
+  BoxTreeBuilder(const std::vector<Box>& boxes, std::vector<BoxTree::Node>& nodes)
+      : boxes_(boxes), nodes_(nodes), items_(boxes.size()) {
+    std::iota(items_.begin(), items_.end(), 0);
+  }
+
+  void build() {
+    nodes_.reserve(2 * items_.size());
+    nodes_.resize(1);
+    fill(0, 0, items_.size());
+  }
+
+ private:
+  const Box& box(int item) const { return boxes_[std::size_t(item)]; }
+
+  void fill(std::size_t node, std::size_t begin, std::size_t end) {
+    Box bounds, centers;
+    for (std::size_t k = begin; k < end; ++k) {
+      bounds.include(box(items_[k]));
+      centers.include(box(items_[k]).center());
+    }
+    // The half-widths grow by the rounding of centre and half themselves.
+    const dvec3 half = 0.5 * (bounds.upper - bounds.lower) +
+                       4 * rounding_unit * (glm::abs(bounds.lower) + glm::abs(bounds.upper));
+    nodes_[node].center = bounds.center();
+    nodes_[node].half = half;
+    if (end - begin == 1) {
+      nodes_[node].first = -1 - items_[begin];
+      return;
+    }
+    const dvec3 extent = centers.upper - centers.lower;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto position = [&](int item) { return box(item).center()[axis]; };
+    std::nth_element(items_.begin() + std::ptrdiff_t(begin), items_.begin() + std::ptrdiff_t(middle),
+                     items_.begin() + std::ptrdiff_t(end), [&](int a, int b) {
+                       return std::pair(position(a), a) < std::pair(position(b), b);
+                     });
+    const std::size_t child = nodes_.size();
+    nodes_[node].first = std::int32_t(child);
+    nodes_.resize(child + 2);
+    fill(child, begin, middle);
+    fill(child + 1, middle, end);
+  }
+
+  const std::vector<Box>& boxes_;
+  std::vector<BoxTree::Node>& nodes_;
+  std::vector<int> items_;
+};
+
+
+SceneNet make_net(const BezierPatch& patch, bool rational) {
+  SceneNet net;
+  for (const dvec4& p : patch.points) {
+    const dvec3 x = rational ? dvec3(p) : euclidean(p);
+    net.x.push_back(x.x);
+    net.y.push_back(x.y);
+    net.z.push_back(x.z);
+    net.w.push_back(rational ? p.w : 1.0);
+  }
+  return net;
+}
+
+SceneElement make_element(SourceKind kind, int index, const BezierPatch& patch) {
+  const bool rational = !is_polynomial(patch.points);
+  double min_weight = rational ? patch.points.front().w : 1;
+  for (const dvec4& p : patch.points) {
+    if (rational) min_weight = std::min(min_weight, p.w);
+  }
+  return {kind,
+          index,
+          {patch.degree_u, patch.degree_v},
+          rational,
+          min_weight,
+          make_net(patch, rational),
+          CoonsBvh(patch, coons_tolerance)};
+}
+
+/// The cells of the element's CBVH at which searches start, with the boxes of their control points.
+void add_cells(const SceneElement& element, int index, const BezierPatch& patch,
+               const CoonsCell& cell, std::vector<SceneCell>& cells, std::vector<Box>& boxes) {
+  const bool flat = element.bvh.deviation(cell) <= cell_deviation;
+  if (!flat && cell.level < cell_level_limit && !element.bvh.is_leaf(cell)) {
+    for (const CoonsCell& child : element.bvh.children(cell)) {
+      add_cells(element, index, patch, child, cells, boxes);
+    }
+    return;
+  }
+  const BezierPatch part = restricted(patch, cell.u(), cell.v());
+  cells.push_back({index, cell, make_net(part, element.rational)});
+  Box box;
+  for (const dvec4& p : part.points) box.include(euclidean(p));
+  boxes.push_back(box);
+}
+
+/// What of a part is queried: its patches, the pieces of free curves and the free points. Borders
+/// and their ends lie in the closed patches already.
+struct Candidates {
+  std::vector<std::pair<SourceKind, int>> elements;
+  std::vector<BezierPatch> patches;
+};
+
+Candidates candidates(const Part& part) {
+  Candidates result;
+  for (std::size_t i = 0; i < part.patches().size(); ++i) {
+    result.elements.emplace_back(SourceKind::face, int(i));
+    result.patches.push_back(part.patches()[i].bezier);
+  }
+  for (std::size_t i = 0; i < part.pieces().size(); ++i) {
+    const EdgePiece& piece = part.pieces()[i];
+    if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
+    result.elements.emplace_back(SourceKind::edge, int(i));
+    result.patches.push_back({piece.bezier.degree(), 0, piece.bezier.points});
+  }
+  for (std::size_t i = 0; i < part.vertices().size(); ++i) {
+    if (!part.vertices()[i].free) continue;
+    result.elements.emplace_back(SourceKind::vertex, int(i));
+    result.patches.push_back({0, 0, {homogeneous(part.vertices()[i].point)}});
+  }
+  return result;
+}
+
+ScenePart make_part(const Part& part, double scale, int threads) {
+  Candidates found = candidates(part);
+  ScenePart result;
+  result.center = part.control_box().empty() ? dvec3(0.0) : part.control_box().center();
+  std::vector<std::optional<SceneElement>> built(found.elements.size());
+  parallel_for(built.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      for (dvec4& p : found.patches[k].points) {
+        p = homogeneous((euclidean(p) - result.center) * scale, p.w);
+      }
+      built[k] = make_element(found.elements[k].first, found.elements[k].second, found.patches[k]);
+    }
+  });
+  result.element_of_patch.assign(part.patches().size(), -1);
+  result.element_of_piece.assign(part.pieces().size(), -1);
+  result.element_of_vertex.assign(part.vertices().size(), -1);
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k < built.size(); ++k) {
+    const auto [kind, index] = found.elements[k];
+    auto& table = kind == SourceKind::face   ? result.element_of_patch
+                  : kind == SourceKind::edge ? result.element_of_piece
+                                             : result.element_of_vertex;
+    table[std::size_t(index)] = int(k);
+    add_cells(*built[k], int(k), found.patches[k], built[k]->bvh.root(), result.cells, boxes);
+    result.elements.push_back(std::move(*built[k]));
+  }
+  result.tree = BoxTree(boxes);
+  return result;
+}
+
+/// Box of the part's control box under a rigid motion.
+Box moved(const Box& box, const RigidMotion& pose) {
+  Box result;
+  for (int k = 0; k < 8; ++k) {
+    result.include(pose({k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y,
+                         k & 4 ? box.upper.z : box.lower.z}));
+  }
+  return result;
+}
+
+SceneFrame frame_of(const Box& box) {
+  const dvec3 half = 0.5 * box.upper - 0.5 * box.lower;
+  const double size = std::max({half.x, half.y, half.z});
+  int exponent = 0;
+  std::frexp(size, &exponent);
+  if (size == 0) exponent = 0;
+  // 2^1023 is the largest power of two: below 2^-1023 the frame stays smaller than one.
+  return {box.center(), std::ldexp(1.0, std::min(-exponent, 1023))};
+}
+
+}  // namespace
+
+BoxTree::BoxTree(const std::vector<Box>& boxes) {
+  if (!boxes.empty()) BoxTreeBuilder(boxes, nodes).build();
+}
+
+int Scene::Content::element(const Contact& contact) const {
+  const ScenePart& part = part_of(contact.instance);
+  const auto& table = contact.kind == SourceKind::face   ? part.element_of_patch
+                      : contact.kind == SourceKind::edge ? part.element_of_piece
+                                                         : part.element_of_vertex;
+  return table[std::size_t(contact.element)];
+}
+
+dvec3 Scene::Content::frame_point(const Contact& contact) const {
+  const SceneInstance& instance = instances[std::size_t(contact.instance)];
+  const SceneElement& element =
+      parts[std::size_t(instance.part)].elements[std::size_t(this->element(contact))];
+  const SceneNet& b = element.net;
+  const dvec3 local = with_scalar_net(element.shape, [&](const auto& net) {
+    const auto value = [&](const std::vector<double>& c) {
+      return net.value(c.data(), contact.u, contact.v);
+    };
+    return dvec3(value(b.x), value(b.y), value(b.z)) / (element.rational ? value(b.w) : 1.0);
+  });
+  return (instance.rotated ? instance.rotation * local : local) + instance.translation;
+}
+
+Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_unique<Content>()) {
+  Content& c = *content_;
+  c.model = std::move(model);
+  Box control;
+  std::vector<Box> boxes;
+  for (const Instance& instance : c.model.instances()) {
+    const Part& part = c.model.parts()[std::size_t(instance.part)];
+    if (part.control_box().empty()) throw InvalidInput("part \"" + part.name + "\" is empty");
+    boxes.push_back(moved(part.control_box(), instance.pose));
+    control.include(boxes.back());
+  }
+  if (control.empty()) throw InvalidInput("the model holds no geometry");
+  c.frame = frame_of(control);
+  for (const Part& part : c.model.parts()) {
+    options.progress.check();
+    c.parts.push_back(make_part(part, c.frame.scale, options.threads));
+  }
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const Instance& instance = c.model.instances()[k];
+    const dvec3& center = c.parts[std::size_t(instance.part)].center;
+    c.instances.push_back({instance.part, instance.pose.rotation != dmat3(1.0),
+                           instance.pose.rotation,
+                           c.frame.to_frame(instance.pose(center))});
+    Box& box = boxes[k];
+    box = {c.frame.to_frame(box.lower), c.frame.to_frame(box.upper)};
+  }
+  c.tree = BoxTree(boxes);
+
+  SupportQuery query(*this);
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    dvec3 n(0.0);
+    n[axis] = 1;
+    box.upper[axis] = query(n).h;
+    box.lower[axis] = -query(-n).h;
+  }
+  c.box = {c.frame.to_model(box.lower), c.frame.to_model(box.upper)};
+  c.diagonal = c.frame.length_to_model(taut::diagonal(box));
+}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+const Model& Scene::model() const { return content_->model; }
+const SceneFrame& Scene::frame() const { return content_->frame; }
+const Box& Scene::box() const { return content_->box; }
+double Scene::diagonal() const { return content_->diagonal; }
+
+dvec3 Scene::point(const Contact& contact) const {
+  return content_->frame.to_model(content_->frame_point(contact));
+}
+
+SourceContact Scene::source(const Contact& contact) const {
+  const Model& model = content_->model;
+  const Instance& instance = model.instances()[std::size_t(contact.instance)];
+  const Part& part = model.parts()[std::size_t(instance.part)];
+  const auto made = [&](SourceKind kind, int index, double u, double v) {
+    return SourceContact{model.source_id({kind, contact.instance, index}), kind, u, v};
+  };
+  const auto on_piece = [&](int index, double t) {
+    const EdgePiece& piece = part.pieces()[std::size_t(index)];
+    return made(SourceKind::edge, piece.edge, piece.t.at(t), 0);
+  };
+  if (contact.kind == SourceKind::vertex) return made(SourceKind::vertex, contact.element, 0, 0);
+  if (contact.kind == SourceKind::edge) return on_piece(contact.element, contact.u);
+
+  const Patch& patch = part.patches()[std::size_t(contact.element)];
+  const double u = contact.u;
+  const double v = contact.v;
+  const bool at[4] = {u == 0, u == 1, v == 0, v == 1};
+  for (const Side side : all_sides) {
+    const Border& border = patch.borders[std::size_t(side)];
+    if (at[std::size_t(side)] && border.kind == BorderKind::collapsed && border.vertex >= 0) {
+      return made(SourceKind::vertex, border.vertex, 0, 0);
+    }
+  }
+  if ((at[0] || at[1]) && (at[2] || at[3])) {
+    const int vertex = patch.corner_vertex[std::size_t(2 * int(at[1]) + int(at[3]))];
+    if (vertex >= 0) return made(SourceKind::vertex, vertex, 0, 0);
+  }
+  for (const Side side : all_sides) {
+    const Border& border = patch.borders[std::size_t(side)];
+    if (!at[std::size_t(side)] || border.kind != BorderKind::edge || border.piece < 0) continue;
+    const double t = side == Side::u0 || side == Side::u1 ? v : u;
+    return on_piece(border.piece, border.piece_reversed ? 1 - t : t);
+  }
+  return made(SourceKind::face, patch.face, patch.u.at(u), patch.v.at(v));
+}
+
+std::size_t Scene::memory() const {
+  std::size_t bytes = content_->tree.nodes.size() * sizeof(BoxTree::Node);
+  for (const ScenePart& part : content_->parts) {
+    bytes += part.tree.nodes.size() * sizeof(BoxTree::Node);
+    for (const SceneElement& element : part.elements) {
+      bytes += sizeof(element) - sizeof(CoonsBvh) + element.bvh.memory() +
+               4 * element.net.x.size() * sizeof(double);
+    }
+    for (const SceneCell& cell : part.cells) {
+      bytes += sizeof(cell) + 4 * cell.net.x.size() * sizeof(double);
+    }
+  }
+  return bytes;
+}
+
+}  // namespace taut

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/bounds/coons_bvh.h"
+#include "taut/bounds/scalar_net.h"
+#include "taut/bounds/scene.h"
+
+namespace taut {
+
+/// A binary hierarchy of axis-parallel boxes over numbered items.
+struct BoxTree {
+  struct Node {
+    dvec3 center;
+    dvec3 half;
+    std::int32_t first;  ///< inner: the first of two consecutive children; leaf: -1 - item
+    bool is_leaf() const { return first < 0; }
+    int item() const { return -1 - first; }
+    /// Upper bound of x . n over the box, up to rounding.
+    double upper_bound(const dvec3& n, const dvec3& abs_n) const {
+      return glm::dot(center, n) + glm::dot(half, abs_n);
+    }
+  };
+  std::vector<Node> nodes;  ///< the root first; empty without items
+
+  explicit BoxTree(const std::vector<Box>& boxes = {});
+};
+
+/// Homogeneous control points in the scene's units about the part's centre, coordinate by
+/// coordinate; weights of polynomial nets are one.
+struct SceneNet {
+  std::vector<double> x, y, z, w;
+};
+
+/// What queries run over: a patch of a face, a piece of a free curve (degrees (p, 0)) or a free
+/// point (degrees (0, 0)).
+struct SceneElement {
+  SourceKind kind;
+  int index;  ///< into the part's patches, pieces or vertices
+  NetShape shape;
+  bool rational;
+  double min_weight;
+  SceneNet net;
+  CoonsBvh bvh;
+};
+
+/// A cell of an element's CBVH at which searches start: flat enough that its net bounds it well.
+struct SceneCell {
+  int element;
+  CoonsCell coons;
+  SceneNet net;
+};
+
+/// A part in the scene's units, about a centre of its own.
+struct ScenePart {
+  dvec3 center;
+  std::vector<SceneElement> elements;
+  std::vector<SceneCell> cells;
+  std::vector<int> element_of_patch, element_of_piece, element_of_vertex;  ///< -1: not queried
+  BoxTree tree;  ///< over the cells
+};
+
+struct SceneInstance {
+  int part;
+  bool rotated;
+  dmat3 rotation;
+  dvec3 translation;  ///< of the part's centre, in the scene's frame
+};
+
+struct Scene::Content {
+  Model model;
+  SceneFrame frame;
+  std::vector<ScenePart> parts;
+  std::vector<SceneInstance> instances;
+  BoxTree tree;  ///< over the instances
+  Box box;
+  double diagonal = 0;
+
+  const ScenePart& part_of(int instance) const {
+    return parts[std::size_t(instances[std::size_t(instance)].part)];
+  }
+  int element(const Contact& contact) const;
+  /// The contact's point in the scene's frame.
+  dvec3 frame_point(const Contact& contact) const;
+};
+
+/// The CBVHs' tolerance in the scene's frame: a leaf's Coons patch is closer to the surface than
+/// this. Where nets finish the proof, a finer one only costs memory (see the benchmark).
+inline constexpr double coons_tolerance = 1e-3;
+
+/// Searches start at the CBVH cells that deviate from their corners by less than this, in the
+/// scene's frame: coarser ones cost splits at every query, finer ones memory and boxes to test.
+inline constexpr double cell_deviation = 0.1;
+
+/// Levels of the CBVH above those cells, at most.
+inline constexpr int cell_level_limit = 4;
+
+}  // namespace taut

@@ -1,0 +1,557 @@
+#include "taut/bounds/support_query.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "taut/bounds/scene_content.h"
+#include "taut/core/error.h"
+
+namespace taut {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Cells that one query may look at before it settles for a weaker, still proven, bound. Ordinary
+/// queries need about ten, contact along a whole curve in general position some ten thousand.
+constexpr int cell_limit = 400'000;
+
+/// Newton steps within one cell; convergence is quadratic, more would mean a bad start.
+constexpr int newton_limit = 12;
+
+/// Parameter step after which a further one is below rounding: Newton's method squares the error.
+constexpr double newton_step_end = 1e-9;
+
+/// A rise of the best value, in the scene's frame, that is more than rounding.
+constexpr double gain_worth_taking = 16 * rounding_unit;
+
+/// max over d in [lower, upper] of slope d + curvature d^2 / 2.
+double quadratic_max(double slope, double curvature, double lower, double upper) {
+  const auto value = [&](double d) { return d * (slope + 0.5 * curvature * d); };
+  if (curvature < 0) return value(std::clamp(-slope / curvature, lower, upper));
+  return std::max(value(lower), value(upper));
+}
+
+/// What a second-order bound says about a cell: no value exceeds `bound`; `along_u` and `along_v`
+/// are the two directions' shares.
+struct SecondOrderBound {
+  double bound;
+  double along_u;
+  double along_v;
+};
+
+/// Taylor's bound about (u, v) over the unit square:
+///     g(x) <= g + gu du + gv dv + (uu_max du^2 + 2 uv_abs |du dv| + vv_max dv^2) / 2,
+/// with the mixed term shared out by 2 |du dv| <= r du^2 + dv^2 / r, so that the two directions
+/// separate and each is maximised exactly. Where both curvatures are negative, r = sqrt(uu_max /
+/// vv_max) keeps them so exactly if uv_abs^2 < uu_max vv_max; where one is, the largest r that keeps
+/// it so leaves the other the least.
+SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, double u, double v) {
+  double r = 1;
+  if (c.uv_abs > 0) {
+    if (c.uu_max < 0 && c.vv_max < 0) {
+      r = std::sqrt(c.uu_max / c.vv_max);
+    } else if (c.uu_max < 0) {
+      r = -c.uu_max / c.uv_abs;
+    } else if (c.vv_max < 0) {
+      r = -c.uv_abs / c.vv_max;
+    }
+  }
+  const double along_u = quadratic_max(jet.gu, c.uu_max + c.uv_abs * r, -u, 1 - u);
+  const double along_v = quadratic_max(jet.gv, c.vv_max + c.uv_abs / r, -v, 1 - v);
+  return {jet.g + along_u + along_v, along_u, along_v};
+}
+
+/// Newton's step for the maximum of g over the unit square, with coordinates that press against a
+/// side kept there. Returns the predicted gain, or -1 where g is not concave in the free
+/// directions.
+double newton_step(const NetJet& j, double& u, double& v) {
+  const auto pressed = [](double x, double slope) {
+    return (x <= 0 && slope <= 0) || (x >= 1 && slope >= 0);
+  };
+  const auto along = [](double x, double slope, double curvature) {
+    return std::clamp(x - slope / curvature, 0.0, 1.0) - x;
+  };
+  double du = 0;
+  double dv = 0;
+  const bool free_u = !pressed(u, j.gu);
+  const bool free_v = !pressed(v, j.gv);
+  if (free_u && free_v) {
+    const double det = j.guu * j.gvv - j.guv * j.guv;
+    if (!(j.guu < 0 && det > 0)) return -1;
+    du = (j.guv * j.gv - j.gvv * j.gu) / det;
+    dv = (j.guv * j.gu - j.guu * j.gv) / det;
+    if (u + du < 0 || u + du > 1) {
+      du = std::clamp(u + du, 0.0, 1.0) - u;
+      dv = along(v, j.gv + j.guv * du, j.gvv);
+    } else if (v + dv < 0 || v + dv > 1) {
+      dv = std::clamp(v + dv, 0.0, 1.0) - v;
+      du = along(u, j.gu + j.guv * dv, j.guu);
+    }
+  } else if (free_u) {
+    if (!(j.guu < 0)) return -1;
+    du = along(u, j.gu, j.guu);
+  } else if (free_v) {
+    if (!(j.gvv < 0)) return -1;
+    dv = along(v, j.gv, j.gvv);
+  }
+  u = std::clamp(u + du, 0.0, 1.0);
+  v = std::clamp(v + dv, 0.0, 1.0);
+  return j.gu * du + j.gv * dv + 0.5 * (j.guu * du * du + 2 * j.guv * du * dv + j.gvv * dv * dv);
+}
+
+}  // namespace
+
+/// Depth-first search, the higher bound first: with the good first value that a hint or the first
+/// descent gives, it visits hardly more than a best-first search and needs no heap. With f = N / W the support value on an element and h the best value so far,
+/// everything is asked of the polynomial g = N - h W: where g <= 0, f <= h. Raising h to f at the
+/// maximum of g is Dinkelbach's iteration, so rational elements need no quotient rule.
+class SupportQuery::Search {
+ public:
+  Search(const Scene::Content& scene, SupportBounds bounds)
+      : scene_(scene), bounds_(bounds), directions_(scene.instances.size()) {
+    for (const ScenePart& part : scene.parts) {
+      for (const SceneElement& e : part.elements) {
+        double reach = 0;
+        for (std::size_t k = 0; k < e.net.x.size(); ++k) {
+          reach = std::max(reach,
+                           std::abs(e.net.x[k]) + std::abs(e.net.y[k]) + std::abs(e.net.z[k]));
+        }
+        rounding_ = std::max(rounding_, 16.0 * (e.shape.p + e.shape.q + 2) * rounding_unit *
+                                            (1 + reach / e.min_weight));
+      }
+    }
+  }
+
+  Support run(const dvec3& n, const Contact& hint);
+
+  long queries = 0;
+  long newton_iterations = 0;
+  long cells = 0;
+
+ private:
+  enum class Kind : std::int32_t { instance_node, part_node, coons_cell, net_cell };
+  struct Entry {
+    double bound;
+    Kind kind;
+    std::int32_t instance;
+    std::int32_t index;  // node, coons cell or net cell
+  };
+  /// A sub-rectangle of an element with its nets: N, and W where rational, at `slot`.
+  struct NetCell {
+    std::int32_t instance;
+    std::int32_t element;
+    double u, v, size_u, size_v;
+    std::size_t slot;
+  };
+  struct CoonsEntry {
+    std::int32_t element;
+    CoonsCell cell;
+  };
+  /// The direction in an instance's own frame, and what its translation adds to every value.
+  struct LocalDirection {
+    long query = -1;
+    dvec3 n;
+    dvec3 abs_n;
+    double offset;
+  };
+
+  const LocalDirection& local(int instance) {
+    LocalDirection& d = directions_[std::size_t(instance)];
+    if (d.query != queries) {
+      const SceneInstance& i = scene_.instances[std::size_t(instance)];
+      d.query = queries;
+      d.n = i.rotated ? n_ * i.rotation : n_;
+      d.abs_n = glm::abs(d.n);
+      d.offset = glm::dot(i.translation, n_);
+    }
+    return d;
+  }
+  const SceneElement& element(int instance, int index) const {
+    return scene_.part_of(instance).elements[std::size_t(index)];
+  }
+  /// Nothing at or below this can change the answer.
+  double threshold() const { return best_h_ + support_slack; }
+
+  void push(double bound, Kind kind, int instance, int index) {
+    if (bound > threshold()) stack_.push_back({bound, kind, instance, index});
+  }
+  /// Puts the last two entries in ascending order, if there are two since `size`.
+  void order_last(std::size_t size) {
+    if (stack_.size() == size + 2 && stack_[size].bound > stack_[size + 1].bound) {
+      std::swap(stack_[size], stack_[size + 1]);
+    }
+  }
+  void open_node(const Entry& entry);
+  void open_cell(int instance, int index);
+  void open_coons(const Entry& entry);
+  void push_coons(int instance, const CoonsEntry& entry, const SceneElement& e);
+  void push_net(const NetCell& cell, const SceneElement& e);
+  NetCell net_cell(int instance, int element, const CoonsCell& place, const SceneNet& net,
+                   const SceneElement& e);
+  void improve(const NetCell& cell, double u, double v, double h);
+
+  template <class Net>
+  bool settle(const Net& net, const SceneElement& e, const NetCell& cell, bool& split_u);
+  template <class Net>
+  void split(const Net& net, const SceneElement& e, NetCell cell, bool along_u);
+  template <class Net>
+  void polish(const Net& net, const SceneElement& e, const NetCell& cell);
+  void open_net(const Entry& entry);
+  void polish_from(const Contact& contact);
+
+  const Scene::Content& scene_;
+  SupportBounds bounds_;
+  double rounding_ = 0;
+  dvec3 n_ = dvec3(0.0);
+  dvec3 abs_n_ = dvec3(0.0);
+  std::vector<LocalDirection> directions_;
+
+  double best_h_ = -infinity;
+  Contact best_;
+  int best_element_ = -1;
+  bool converged_ = false;  ///< Newton's method has ended at the best contact
+
+  std::vector<Entry> stack_;
+  std::vector<NetCell> net_cells_;
+  std::vector<CoonsEntry> coons_cells_;
+  std::vector<double> nets_;
+  std::vector<double> g_;
+};
+
+void SupportQuery::Search::open_node(const Entry& entry) {
+  const bool top = entry.kind == Kind::instance_node;
+  const BoxTree& tree = top ? scene_.tree : scene_.part_of(entry.instance).tree;
+  const BoxTree::Node& node = tree.nodes[std::size_t(entry.index)];
+  if (node.is_leaf()) {
+    if (top) {
+      push(entry.bound, Kind::part_node, node.item(), 0);
+    } else {
+      open_cell(entry.instance, node.item());
+    }
+    return;
+  }
+  const dvec3& n = top ? n_ : local(entry.instance).n;
+  const dvec3& abs_n = top ? abs_n_ : local(entry.instance).abs_n;
+  const double offset = (top ? 0 : local(entry.instance).offset) + rounding_;
+  const std::size_t size = stack_.size();
+  for (const int child : {node.first, node.first + 1}) {
+    push(tree.nodes[std::size_t(child)].upper_bound(n, abs_n) + offset, entry.kind, entry.instance,
+         child);
+  }
+  order_last(size);
+}
+
+void SupportQuery::Search::open_cell(int instance, int index) {
+  const SceneCell& cell = scene_.part_of(instance).cells[std::size_t(index)];
+  const SceneElement& e = element(instance, cell.element);
+  if (bounds_ == SupportBounds::coons) {
+    push_coons(instance, {cell.element, cell.coons}, e);
+  } else {
+    push_net(net_cell(instance, cell.element, cell.coons, cell.net, e), e);
+  }
+}
+
+void SupportQuery::Search::push_coons(int instance, const CoonsEntry& entry,
+                                      const SceneElement& e) {
+  const LocalDirection& d = local(instance);
+  const auto corners = e.bvh.corners(entry.cell);
+  double highest = -infinity;
+  for (const dvec3& corner : corners) highest = std::max(highest, glm::dot(corner, d.n));
+  const double bound = highest + e.bvh.deviation(entry.cell) + d.offset + rounding_;
+  if (!(bound > threshold())) return;
+  coons_cells_.push_back(entry);
+  push(bound, Kind::coons_cell, instance, int(coons_cells_.size()) - 1);
+}
+
+void SupportQuery::Search::open_coons(const Entry& entry) {
+  const CoonsEntry coons = coons_cells_[std::size_t(entry.index)];
+  const SceneElement& e = element(entry.instance, coons.element);
+  // Below a leaf the bound cannot fall under the distance from the Coons patch.
+  if (!e.bvh.is_leaf(coons.cell)) {
+    for (const CoonsCell& child : e.bvh.children(coons.cell)) {
+      push_coons(entry.instance, {coons.element, child}, e);
+    }
+    return;
+  }
+  const NetCell cell = net_cell(entry.instance, coons.element, coons.cell, e.net, e);
+  const Interval u = coons.cell.u();
+  const Interval v = coons.cell.v();
+  const ScalarNet<-1, -1> net(e.shape);
+  for (int k = 0; k < (e.rational ? 2 : 1); ++k) {
+    net.restrict(nets_.data() + cell.slot + std::size_t(k * net.size()), u.lower, u.upper, v.lower,
+                 v.upper);
+  }
+  push_net(cell, e);
+}
+
+/// A cell with the values of the control points in the query's direction.
+SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int element,
+                                                             const CoonsCell& place,
+                                                             const SceneNet& net,
+                                                             const SceneElement& e) {
+  const std::size_t slot = nets_.size();
+  const std::size_t size = net.x.size();
+  nets_.resize(slot + size * (e.rational ? 2 : 1));
+  const dvec3 n = local(instance).n;
+  double* b = nets_.data() + slot;
+  for (std::size_t k = 0; k < size; ++k) {
+    b[k] = net.x[k] * n.x + net.y[k] * n.y + net.z[k] * n.z;
+  }
+  if (e.rational) std::copy(net.w.begin(), net.w.end(), b + size);
+  const Interval u = place.u();
+  const Interval v = place.v();
+  return {instance, element, u.lower, v.lower, u.upper - u.lower, v.upper - v.lower, slot};
+}
+
+/// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
+void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
+  const int size = e.shape.size();
+  const double* b = nets_.data() + cell.slot;
+  double highest = -infinity;
+  if (e.rational) {
+    for (int k = 0; k < size; ++k) highest = std::max(highest, b[k] / b[size + k]);
+  } else {
+    for (int k = 0; k < size; ++k) highest = std::max(highest, b[k]);
+  }
+  const double bound = highest + local(cell.instance).offset;
+  if (!(bound > threshold())) return;
+  net_cells_.push_back(cell);
+  push(bound, Kind::net_cell, cell.instance, int(net_cells_.size()) - 1);
+}
+
+void SupportQuery::Search::improve(const NetCell& cell, double u, double v, double h) {
+  const SceneElement& e = element(cell.instance, cell.element);
+  best_h_ = h;
+  best_ = {cell.instance, e.kind, e.index, cell.u + u * cell.size_u, cell.v + v * cell.size_v};
+  best_element_ = cell.element;
+  converged_ = false;
+}
+
+/// Seeks the cell's maximum by Newton's method, raising the best value on the way. True if the
+/// second-order bound then proves that the cell holds nothing higher.
+template <class Net>
+bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const NetCell& cell,
+                                  bool& split_u) {
+  const int size = net.size();
+  const double* N = nets_.data() + cell.slot;
+  const double* W = N + size;
+  const double offset = local(cell.instance).offset;
+  ++cells;
+
+  const bool same = best_element_ == cell.element && best_.instance == cell.instance;
+  const double best_u = (best_.u - cell.u) / cell.size_u;
+  const double best_v = (best_.v - cell.v) / cell.size_v;
+  const bool inside = same && best_u >= 0 && best_u <= 1 && best_v >= 0 && best_v <= 1;
+  const auto choose_split = [&](const SecondOrderBound& b) {
+    // Where the bound loses most, but keep cells compact: curvature bounds loosen with both sizes.
+    split_u = cell.size_u > 2 * cell.size_v ||
+              (cell.size_v <= 2 * cell.size_u &&
+               (b.along_u != b.along_v ? b.along_u > b.along_v : cell.size_u >= cell.size_v));
+  };
+
+  // Start at the best contact if it is on this element, else at the largest coefficient.
+  double u = std::clamp(best_u, 0.0, 1.0);
+  double v = std::clamp(best_v, 0.0, 1.0);
+  if (!same) {
+    int top = 0;
+    for (int k = 1; k < size; ++k) {
+      if (e.rational ? N[k] * W[top] > N[top] * W[k] : N[k] > N[top]) top = k;
+    }
+    const int row = top / (net.q() + 1);
+    const int column = top % (net.q() + 1);
+    u = net.p() > 0 ? double(row) / net.p() : 0;
+    v = net.q() > 0 ? double(column) / net.q() : 0;
+  }
+
+  double h = best_h_ - offset;
+  if (best_element_ < 0) {
+    h = e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
+    improve(cell, u, v, h + offset);
+  }
+  const double* g = N;
+  const auto refer_to = [&] {  // the net of g, of which polynomial cells share N and shift values
+    if (!e.rational) return;
+    g_.resize(std::size_t(size));
+    for (int k = 0; k < size; ++k) g_[std::size_t(k)] = N[k] - h * W[k];
+    g = g_.data();
+  };
+  refer_to();
+  NetCurvature curvature = net.curvature(g);
+  // Not concave where Newton's method has already been: no bound about that point can succeed.
+  const bool concave = curvature.uu_max < 0 && curvature.vv_max < 0 &&
+                       curvature.uv_abs * curvature.uv_abs < curvature.uu_max * curvature.vv_max;
+  if (inside && converged_ && !concave) {
+    const SecondOrderBound b = second_order_bound({}, curvature, u, v);
+    choose_split(b);
+    if (b.bound > 0.01) return false;
+  }
+  for (int step = 0; step < newton_limit; ++step) {
+    NetJet jet = net.jet(g, u, v);
+    if (!e.rational) jet.g -= h;
+    if (jet.g > gain_worth_taking * e.min_weight) {
+      const double gain = e.rational ? jet.g / net.value(W, u, v) : jet.g;
+      h += gain;
+      improve(cell, u, v, h + offset);
+      refer_to();
+      if (e.rational) {
+        curvature = net.curvature(g);
+        jet = net.jet(g, u, v);
+      } else {
+        jet.g -= gain;
+      }
+    }
+    const SecondOrderBound b = second_order_bound(jet, curvature, u, v);
+    if (b.bound <= support_slack * e.min_weight) return true;
+    choose_split(b);
+    if (inside && converged_) return false;
+    const double u_before = u;
+    const double v_before = v;
+    ++newton_iterations;
+    // Worth a step only where it may beat the best value, or where the bound about the cell's own
+    // maximum may succeed.
+    const double gain = newton_step(jet, u, v);
+    if (gain < 0 || (jet.g + gain < 0 && !concave)) return false;
+    if (std::abs(u - u_before) + std::abs(v - v_before) < newton_step_end) return false;
+  }
+  return false;
+}
+
+template <class Net>
+void SupportQuery::Search::split(const Net& net, const SceneElement& e, NetCell cell,
+                                 bool along_u) {
+  if (net.p() == 0) along_u = false;
+  if (net.q() == 0) along_u = true;
+  const std::size_t size = std::size_t(net.size());
+  const std::size_t slots = e.rational ? 2 * size : size;
+  NetCell upper = cell;
+  upper.slot = nets_.size();
+  nets_.resize(upper.slot + slots);
+  for (std::size_t k = 0; k < slots; k += size) {
+    double* b = nets_.data() + cell.slot + k;
+    double* c = nets_.data() + upper.slot + k;
+    along_u ? net.split_u(b, c) : net.split_v(b, c);
+  }
+  if (along_u) {
+    upper.size_u = cell.size_u *= 0.5;
+    upper.u += cell.size_u;
+  } else {
+    upper.size_v = cell.size_v *= 0.5;
+    upper.v += cell.size_v;
+  }
+  const std::size_t entries = stack_.size();
+  push_net(cell, e);
+  push_net(upper, e);
+  order_last(entries);
+}
+
+void SupportQuery::Search::open_net(const Entry& entry) {
+  const NetCell cell = net_cells_[std::size_t(entry.index)];
+  const SceneElement& e = element(cell.instance, cell.element);
+  with_scalar_net(e.shape, [&](const auto& net) {
+    bool split_u = true;
+    if (!settle(net, e, cell, split_u)) split(net, e, cell, split_u);
+  });
+}
+
+/// Newton's method on the whole element, whose net has lost nothing to subdivision.
+template <class Net>
+void SupportQuery::Search::polish(const Net& net, const SceneElement& e, const NetCell& cell) {
+  const std::size_t size = std::size_t(net.size());
+  const double* N = nets_.data() + cell.slot;
+  const double* W = N + size;
+  double u = best_.u;
+  double v = best_.v;
+  double h = e.rational ? net.value(N, u, v) / net.value(W, u, v) : 0;
+  for (int step = 0; step < newton_limit; ++step) {
+    const double* g = N;
+    if (e.rational) {
+      g_.resize(size);
+      for (std::size_t k = 0; k < size; ++k) g_[k] = N[k] - h * W[k];
+      g = g_.data();
+    }
+    const NetJet jet = net.jet(g, u, v);
+    if (!e.rational) h = jet.g;
+    ++newton_iterations;
+    double next_u = u;
+    double next_v = v;
+    if (newton_step(jet, next_u, next_v) < 0) break;
+    const double size_of_step = std::abs(next_u - u) + std::abs(next_v - v);
+    u = next_u;
+    v = next_v;
+    // Its effect on h is of second order in the step.
+    if (size_of_step < newton_step_end) break;
+    if (e.rational) h = net.value(N, u, v) / net.value(W, u, v);
+  }
+  improve(cell, u, v, h + local(cell.instance).offset);
+  converged_ = true;
+}
+
+void SupportQuery::Search::polish_from(const Contact& contact) {
+  best_ = contact;
+  const int index = scene_.element(contact);
+  const SceneElement& e = element(contact.instance, index);
+  const NetCell cell = net_cell(contact.instance, index, e.bvh.root(), e.net, e);
+  with_scalar_net(e.shape, [&](const auto& net) { polish(net, e, cell); });
+}
+
+Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
+  n_ = n;
+  abs_n_ = glm::abs(n);
+  ++queries;
+  best_h_ = -infinity;
+  best_element_ = -1;
+  converged_ = false;
+  stack_.clear();
+  net_cells_.clear();
+  coons_cells_.clear();
+  nets_.clear();
+  if (hint.instance >= 0) polish_from(hint);
+  const double hinted = best_h_;
+
+  stack_.push_back({infinity, Kind::instance_node, -1, 0});
+  for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
+    const Entry entry = stack_.back();
+    stack_.pop_back();
+    if (!(entry.bound > threshold())) continue;
+    switch (entry.kind) {
+      case Kind::net_cell: open_net(entry); break;
+      case Kind::coons_cell: open_coons(entry); break;
+      default: open_node(entry);
+    }
+  }
+  double left = -infinity;  // what the limit left open
+  for (const Entry& entry : stack_) left = std::max(left, entry.bound);
+  const double proven = std::max(best_h_ + support_slack, left);
+  if (best_h_ != hinted) polish_from(best_);
+  return {best_h_, std::max(proven, best_h_) + rounding_, best_, scene_.frame_point(best_)};
+}
+
+SupportQuery::SupportQuery(const Scene& scene, SupportBounds bounds)
+    : search_(std::make_unique<Search>(scene.content(), bounds)) {}
+SupportQuery::~SupportQuery() = default;
+SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;
+
+Support SupportQuery::operator()(const dvec3& n, const Contact& hint) {
+  return search_->run(n, hint);
+}
+
+long SupportQuery::queries() const { return search_->queries; }
+long SupportQuery::newton_iterations() const { return search_->newton_iterations; }
+long SupportQuery::cells() const { return search_->cells; }
+
+ModelSupport support(SupportQuery& query, const Scene& scene, const dvec3& direction) {
+  const dvec3 n = unit(direction);
+  if (!(std::abs(glm::length(n) - 1) < 0.5)) {
+    throw InvalidInput("a direction must be finite and not zero");
+  }
+  const Support s = query(n);
+  const SceneFrame& frame = scene.frame();
+  // h = h_frame / scale + center . n: three products and sums of the centre's size.
+  const double shift = glm::dot(frame.center, n);
+  const double rounding = 8 * rounding_unit * glm::length(frame.center);
+  return {frame.length_to_model(s.h) + shift, frame.length_to_model(s.h_bound) + shift + rounding,
+          frame.to_model(s.point), scene.source(s.contact)};
+}
+
+}  // namespace taut

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+
+#include "taut/bounds/scene.h"
+
+namespace taut {
+
+/// The support function's value at a direction, with the place where it is attained and a proof.
+/// Lengths and points are in the scene's frame (Scene::frame).
+struct Support {
+  /// x(n) . n of the contact found, to within a few rounding units of the scene's size.
+  double h = 0;
+  /// Proven upper bound of max over the model of x . n, rounding included.
+  double h_bound = 0;
+  Contact contact;
+  /// The contact's point.
+  dvec3 point = dvec3(0.0);
+};
+
+/// Which bounds prune the search; all give the same answers.
+enum class SupportBounds {
+  bezier_nets,  ///< Bernstein coefficients of x . n, subdivided on the fly
+  coons,        ///< corners and deviations of the CBVH, Bernstein coefficients below its leaves
+};
+
+/// Answers support queries on one scene: best-first branch and bound down to where a second-order
+/// bound on the Bernstein coefficients proves the point that Newton's method found.
+///
+/// Holds scratch memory, so use one object a thread; the scene must outlive it.
+class SupportQuery {
+ public:
+  explicit SupportQuery(const Scene& scene, SupportBounds bounds = SupportBounds::bezier_nets);
+  ~SupportQuery();
+  SupportQuery(SupportQuery&&) noexcept;
+
+  /// The support in direction n. h_bound - h is at most about 2^-43 of the scene's size, unless
+  /// the search met its limit of cells (then it is larger, and still proven).
+  ///
+  /// `hint`: a contact near the answer, usually that of a nearby direction; makes the query faster,
+  /// never different in h beyond h_bound - h.
+  /// @pre |n| = 1 within rounding
+  Support operator()(const dvec3& n, const Contact& hint = {});
+
+  /// Since construction.
+  long queries() const;
+  long newton_iterations() const;
+  /// Cells split and cells certified by the second-order bound.
+  long cells() const;
+
+ private:
+  class Search;
+  std::unique_ptr<Search> search_;
+};
+
+/// Support value in model coordinates, with the contact in the model's terms.
+struct ModelSupport {
+  double h = 0;
+  double h_bound = 0;
+  dvec3 point = dvec3(0.0);
+  SourceContact contact;
+};
+
+/// max x . n over the model for the unit vector along `direction`, in model coordinates.
+/// @throws InvalidInput if the direction is zero or not finite
+ModelSupport support(SupportQuery& query, const Scene& scene, const dvec3& direction);
+
+}  // namespace taut

@@ -1,0 +1,36 @@
+#include "taut/core/geometry.h"
+
+#include <cmath>
+
+namespace taut {
+namespace {
+
+/// Power of two that brings the largest component of v into [1/2, 1), so that squares neither
+/// over- nor underflow; scaling by it is exact up to subnormal results.
+int binary_exponent(const dvec3& v) {
+  int exponent = 0;
+  std::frexp(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}), &exponent);
+  return exponent;
+}
+
+dvec3 scaled(const dvec3& v, int exponent) {
+  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+}
+
+}  // namespace
+
+double diagonal(const Box& box) {
+  if (box.empty()) return 0;
+  // Halves first: the difference of two huge coordinates must not overflow.
+  const dvec3 half = 0.5 * box.upper - 0.5 * box.lower;
+  const int exponent = binary_exponent(half);
+  return std::ldexp(glm::length(scaled(half, -exponent)), exponent + 1);
+}
+
+dvec3 unit(const dvec3& v) {
+  if (v == dvec3(0.0)) return v;
+  const dvec3 s = scaled(v, -binary_exponent(v));
+  return s / glm::length(s);
+}
+
+}  // namespace taut

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <glm/glm.hpp>
+#include <limits>
+
+namespace taut {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+using glm::dvec4;
+
+/// A closed parameter interval, lower <= upper.
+struct Interval {
+  double lower = 0;
+  double upper = 1;
+
+  /// Affine map of [0, 1] onto the interval; the ends are met exactly.
+  double at(double s) const {
+    return s <= 0 ? lower : s >= 1 ? upper : (1 - s) * lower + s * upper;
+  }
+};
+
+/// Axis-parallel closed box. A default-constructed box is empty and contains nothing.
+struct Box {
+  dvec3 lower = dvec3(std::numeric_limits<double>::infinity());
+  dvec3 upper = dvec3(-std::numeric_limits<double>::infinity());
+
+  bool empty() const { return lower.x > upper.x; }
+  void include(const dvec3& p) {
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
+  }
+  void include(const Box& other) {
+    lower = glm::min(lower, other.lower);
+    upper = glm::max(upper, other.upper);
+  }
+  /// Midpoint, computed without overflow. @pre not empty
+  dvec3 center() const { return 0.5 * lower + 0.5 * upper; }
+};
+
+/// Length of the box's diagonal, correct also where its square would over- or underflow.
+/// Zero for an empty box.
+double diagonal(const Box& box);
+
+/// The vector scaled to length one, correct also where its square would over- or underflow.
+/// The zero vector stays zero.
+dvec3 unit(const dvec3& v);
+
+/// A rigid motion x -> rotation * x + translation. @pre rotation is orthogonal with determinant 1.
+struct RigidMotion {
+  dmat3 rotation = dmat3(1.0);
+  dvec3 translation = dvec3(0.0);
+
+  dvec3 operator()(const dvec3& x) const { return rotation * x + translation; }
+};
+
+}  // namespace taut

@@ -1,0 +1,23 @@
+#include "taut/core/parallel.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace taut {
+
+void parallel_for(std::size_t count, std::size_t grain, int threads,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body) {
+  grain = std::max<std::size_t>(grain, 1);
+  const std::size_t ranges = (count + grain - 1) / grain;
+  const auto run = [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); };
+  if (threads == 1 || ranges <= 1) {
+    for (std::size_t r = 0; r < ranges; ++r) run(r);
+    return;
+  }
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, ranges, run); });
+}
+
+}  // namespace taut

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string_view>
+
+#include "taut/core/error.h"
+
+namespace taut {
+
+/// How a long operation tells where it stands and learns that it should stop.
+///
+/// The default does nothing and never stops. The callbacks are called from the thread that called
+/// the operation only.
+struct Progress {
+  /// Called now and then with the step's name and the share done, in [0, 1].
+  std::function<void(std::string_view step, double share)> report;
+  /// Called with a warning: a code fit for scripts ("open-border") and a sentence for a person.
+  std::function<void(std::string_view code, std::string_view text)> warn;
+  /// Stopping is asked for through the token's source, from any thread or a signal handler's helper.
+  std::stop_token stop;
+
+  void update(std::string_view step, double share) const {
+    check();
+    if (report) report(step, share);
+  }
+  void warning(std::string_view code, std::string_view text) const {
+    if (warn) warn(code, text);
+  }
+  /// @throws Cancelled if stopping was asked for
+  void check() const {
+    if (stop.stop_requested()) throw Cancelled();
+  }
+};
+
+}  // namespace taut

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <limits>
+
+namespace taut {
+
+/// Largest relative error of one rounded operation on doubles, 2^-53.
+inline constexpr double rounding_unit = std::numeric_limits<double>::epsilon() / 2;
+
+/// Two surfaces that meet along a common border are joined smoothly (G1) if their tangent planes
+/// differ by at most this angle everywhere along it, in radians (0.057 degrees).
+///
+/// CAD kernels write borders that agree to about 1e-6 of the model and tangents to 1e-4 .. 1e-3
+/// radians; a crease that a designer means is a hundred times larger. An error in this choice
+/// costs accuracy nowhere: it decides only whether a border is listed as an edge.
+inline constexpr double smooth_join_angle = 1e-3;
+
+/// Two border points are the same if they differ by at most this fraction of their part's
+/// diagonal: a tenth of the 1e-6 to which exchanged borders agree would miss real joins, ten times
+/// more would join the two sides of thin sheets.
+inline constexpr double join_distance = 1e-6;
+
+/// A support query stops when nothing can exceed the value found by more than this fraction of the
+/// scene's size (2^-43, about 1.1e-13).
+///
+/// It must exceed the rounding of the nets that carry the proof, at most
+/// (8 + degree * depth) * rounding_unit of the largest coefficient: 2^-43 is 1024 rounding units,
+/// enough for degree 31 at 32 levels of subdivision. A smaller value would buy no accuracy, since
+/// the value itself is polished by Newton steps to the last bits.
+inline constexpr double support_slack = 1024 * rounding_unit;
+
+/// Highest degree of a curve or surface in either direction. Exchange formats in use stop at 25.
+inline constexpr int max_degree = 31;
+
+}  // namespace taut

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/Mesh/Traits.hh>
+
+#include "taut/core/geometry.h"
+#include "taut/surface/polygon_mesh.h"
+
+namespace taut {
+
+/// What part of a convex hull's boundary a mesh face belongs to.
+enum class FaceKind : unsigned char {
+  patch = 0,   ///< on the model's surface
+  scroll = 1,  ///< spans between two contacts
+  facet = 2,   ///< lies flat on three or more contacts
+};
+
+/// Traits of HullMesh: double coordinates, and the origin of every vertex and face.
+struct HullMeshTraits : public OpenMesh::DefaultTraitsDouble {
+  VertexAttributes(OpenMesh::Attributes::Normal);
+
+  VertexTraits {
+   public:
+    /// Source of the contact (Model::source), -1 if unknown.
+    int source = -1;
+    /// Parameters on the source: (u, v) of a face, (t, 0) of an edge, (0, 0) of a vertex.
+    double u = 0;
+    double v = 0;
+    /// Proven upper bound of the distance of the true hull from the mesh about this vertex.
+    float quality = 0;
+  };
+
+  FaceTraits {
+   public:
+    FaceKind kind = FaceKind::facet;
+    /// Source that the face lies on, -1 where it spans between several.
+    int source = -1;
+    /// The face of the hull that this mesh face is part of; numbered from 0.
+    int hull_face = -1;
+  };
+
+  EdgeTraits {
+   public:
+    /// The edge separates two hull faces.
+    bool feature = false;
+  };
+};
+
+/// A convex hull as a half-edge mesh: closed, outward, vertices numbered from 0 without gaps.
+/// Coplanar facets are polygons.
+using HullMesh = OpenMesh::PolyMesh_ArrayKernelT<HullMeshTraits>;
+
+inline dvec3 position(const HullMesh& mesh, OpenMesh::VertexHandle v) {
+  const auto& p = mesh.point(v);
+  return {p[0], p[1], p[2]};
+}
+
+/// The bare polygons.
+PolygonMesh polygons(const HullMesh& mesh);
+
+}  // namespace taut

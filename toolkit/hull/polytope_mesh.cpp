@@ -1,0 +1,236 @@
+#include "taut/hull/polytope_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "taut/core/error.h"
+
+namespace taut {
+namespace {
+
+/// Steps of the projection of an edge's middle onto the surface; chords are short against the
+/// curvature, so few are enough, and a miss only makes an edge bridging.
+constexpr int projection_steps = 3;
+
+/// An edge runs along the surface if the surface comes nearer to its middle than the polytope is to
+/// the hull, and than this share of its length. Where the surface is part of the hull, the distance
+/// is the sagitta; across a gap the nearest points are the edge's ends, at half its length, or a
+/// surface that the hull has left.
+constexpr double along_share = 0.25;
+
+/// Follows the scene's surfaces from contacts; in model coordinates.
+class SurfaceWalk {
+ public:
+  SurfaceWalk(const Scene& scene, const std::vector<Sample>& samples, const PointHull& hull,
+              double distance_bound)
+      : model_(scene.model()), samples_(samples), hull_(hull), distance_bound_(distance_bound) {}
+
+  bool runs_along_surface(int a, int b) const {
+    const dvec3 middle = 0.5 * (hull_.point(a) + hull_.point(b));
+    const double reach =
+        std::min(along_share * glm::distance(hull_.point(a), hull_.point(b)), distance_bound_);
+    const Contact& ca = samples_[std::size_t(a)].contact;
+    const Contact& cb = samples_[std::size_t(b)].contact;
+    if (ca.instance == cb.instance && ca.kind == cb.kind && ca.element == cb.element) {
+      const dvec3 x = point_at(ca, 0.5 * (ca.u + cb.u), 0.5 * (ca.v + cb.v));
+      if (glm::distance(x, middle) < reach) return true;
+    }
+    return reaches(ca, middle, reach) || reaches(cb, middle, reach);
+  }
+
+  /// The face that the contact's patch belongs to, -1 for curves and points.
+  int face_source(const Contact& c) const {
+    if (c.kind != SourceKind::face) return -1;
+    const int face = part(c).patches()[std::size_t(c.element)].face;
+    return model_.source_id({SourceKind::face, c.instance, face});
+  }
+
+ private:
+  const Instance& instance(const Contact& c) const {
+    return model_.instances()[std::size_t(c.instance)];
+  }
+  const Part& part(const Contact& c) const {
+    return model_.parts()[std::size_t(instance(c).part)];
+  }
+
+  dvec3 point_at(const Contact& c, double u, double v) const {
+    switch (c.kind) {
+      case SourceKind::face:
+        return instance(c).pose(point(part(c).patches()[std::size_t(c.element)].bezier, u, v));
+      case SourceKind::edge:
+        return instance(c).pose(point(part(c).pieces()[std::size_t(c.element)].bezier, u));
+      default:
+        return instance(c).pose(part(c).vertices()[std::size_t(c.element)].point);
+    }
+  }
+
+  /// Whether Gauss-Newton steps from the contact, kept in its element, come near the target.
+  bool reaches(const Contact& c, const dvec3& target, double reach) const {
+    if (c.kind == SourceKind::vertex) return false;
+    const RigidMotion& pose = instance(c).pose;
+    const dvec3 local = glm::transpose(pose.rotation) * (target - pose.translation);
+    double u = c.u;
+    double v = c.v;
+    for (int step = 0;; ++step) {
+      PatchJet1 j;
+      if (c.kind == SourceKind::face) {
+        j = jet1(part(c).patches()[std::size_t(c.element)].bezier, u, v);
+      } else {
+        const CurveJet curve = jet(part(c).pieces()[std::size_t(c.element)].bezier, u);
+        j = {curve.c, curve.ct, dvec3(0.0)};
+      }
+      const dvec3 d = local - j.S;
+      if (glm::length(d) < reach) return true;
+      if (step == projection_steps) return false;
+      const double uu = glm::dot(j.Su, j.Su);
+      const double uv = glm::dot(j.Su, j.Sv);
+      const double vv = glm::dot(j.Sv, j.Sv);
+      const double det = uu * vv - uv * uv;
+      const double fu = glm::dot(j.Su, d);
+      const double fv = glm::dot(j.Sv, d);
+      // Where the tangents are parallel or vanish, one direction alone.
+      if (det > 1e-12 * uu * vv) {
+        u += (vv * fu - uv * fv) / det;
+        v += (uu * fv - uv * fu) / det;
+      } else if (uu >= vv && uu > 0) {
+        u += fu / uu;
+      } else if (vv > 0) {
+        v += fv / vv;
+      }
+      u = std::clamp(u, 0.0, 1.0);
+      v = std::clamp(v, 0.0, 1.0);
+    }
+  }
+
+  const Model& model_;
+  const std::vector<Sample>& samples_;
+  const PointHull& hull_;
+  double distance_bound_;
+};
+
+float rounded_up(double x) {
+  const auto f = static_cast<float>(x);
+  return f < x ? std::nextafterf(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+HullMesh bare_mesh(const PointHull& hull, const PointHull::Polygons& polygons,
+                   std::vector<int>& point_of) {
+  HullMesh mesh;
+  std::vector<int> vertex_of(hull.points().size(), -1);
+  for (const std::vector<int>& loop : polygons.loops) {
+    for (const int p : loop) {
+      if (vertex_of[std::size_t(p)] >= 0) continue;
+      vertex_of[std::size_t(p)] = int(point_of.size());
+      point_of.push_back(p);
+    }
+  }
+  mesh.reserve(point_of.size(), 3 * point_of.size(), polygons.loops.size());
+  for (const int p : point_of) {
+    const dvec3& x = hull.point(p);
+    mesh.add_vertex({x.x, x.y, x.z});
+  }
+  std::vector<OpenMesh::VertexHandle> handles;
+  for (const std::vector<int>& loop : polygons.loops) {
+    handles.clear();
+    for (const int p : loop) handles.emplace_back(vertex_of[std::size_t(p)]);
+    if (!mesh.add_face(handles).is_valid()) {
+      throw BackendError("OpenMesh refused a face of the hull");
+    }
+  }
+  return mesh;
+}
+
+void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
+                    const std::vector<double>& bounds, const std::vector<int>& point_of,
+                    HullMesh& mesh) {
+  for (const auto v : mesh.vertices()) {
+    const auto p = std::size_t(point_of[std::size_t(v.idx())]);
+    const SourceContact c = scene.source(samples[p].contact);
+    auto& data = mesh.data(v);
+    data.source = c.source;
+    data.u = c.u;
+    data.v = c.v;
+    data.quality = rounded_up(bounds[p]);
+    mesh.set_normal(v, {samples[p].n.x, samples[p].n.y, samples[p].n.z});
+  }
+}
+
+void label_faces(const SurfaceWalk& walk, const std::vector<Sample>& samples,
+                 const std::vector<int>& point_of, const std::vector<bool>& flat, HullMesh& mesh) {
+  const auto point_at = [&](auto v) { return point_of[std::size_t(v.idx())]; };
+  std::vector<bool> bridging(mesh.n_edges());
+  for (const auto e : mesh.edges()) {
+    const auto h = mesh.halfedge_handle(e, 0);
+    bridging[std::size_t(e.idx())] = !walk.runs_along_surface(
+        point_at(mesh.from_vertex_handle(h)), point_at(mesh.to_vertex_handle(h)));
+  }
+  for (const auto f : mesh.faces()) {
+    unsigned bridges = 0;
+    for (const auto e : mesh.fe_range(f)) bridges += bridging[std::size_t(e.idx())] ? 1 : 0;
+    int common = -2;
+    int first = -1;
+    for (const auto v : mesh.fv_range(f)) {
+      const int source = walk.face_source(samples[std::size_t(point_at(v))].contact);
+      if (first < 0) first = source;
+      common = common == -2 || common == source ? source : -1;
+    }
+    auto& data = mesh.data(f);
+    data.kind = flat[std::size_t(f.idx())] || bridges == mesh.valence(f) ? FaceKind::facet
+                : bridges == 0                                           ? FaceKind::patch
+                                                                         : FaceKind::scroll;
+    data.source = data.kind == FaceKind::patch ? (common >= 0 ? common : first) : common;
+  }
+}
+
+/// Numbers the hull faces: connected mesh faces of one kind, patches of one source also; every
+/// facet is one of its own. Marks the edges between them.
+void number_hull_faces(HullMesh& mesh) {
+  const auto joined = [&](auto a, auto b) {
+    const auto& x = mesh.data(a);
+    const auto& y = mesh.data(b);
+    return x.kind == y.kind && x.kind != FaceKind::facet &&
+           (x.kind == FaceKind::scroll || x.source == y.source);
+  };
+  int count = 0;
+  std::vector<OpenMesh::FaceHandle> stack;
+  for (const auto start : mesh.faces()) {
+    if (mesh.data(start).hull_face >= 0) continue;
+    mesh.data(start).hull_face = count;
+    stack.assign(1, start);
+    while (!stack.empty()) {
+      const auto f = stack.back();
+      stack.pop_back();
+      for (const auto g : mesh.ff_range(f)) {
+        if (mesh.data(g).hull_face >= 0 || !joined(f, g)) continue;
+        mesh.data(g).hull_face = count;
+        stack.push_back(g);
+      }
+    }
+    ++count;
+  }
+  for (const auto e : mesh.edges()) {
+    const auto f = mesh.face_handle(mesh.halfedge_handle(e, 0));
+    const auto g = mesh.face_handle(mesh.halfedge_handle(e, 1));
+    mesh.data(e).feature = mesh.data(f).hull_face != mesh.data(g).hull_face;
+  }
+}
+
+}  // namespace
+
+HullMesh polytope_mesh(const Scene& scene, const PointHull& hull,
+                       const std::vector<Sample>& samples, const std::vector<double>& gaps,
+                       double flat_gap, const std::vector<double>& vertex_bounds) {
+  const PointHull::Polygons polygons = hull.merged_polygons();
+  std::vector<bool> flat;
+  for (const int f : polygons.facets) flat.push_back(gaps[std::size_t(f)] <= flat_gap);
+  std::vector<int> point_of;  // per mesh vertex
+  HullMesh mesh = bare_mesh(hull, polygons, point_of);
+  label_vertices(scene, samples, vertex_bounds, point_of, mesh);
+  const double bound = *std::max_element(vertex_bounds.begin(), vertex_bounds.end());
+  label_faces(SurfaceWalk(scene, samples, hull, bound), samples, point_of, flat, mesh);
+  number_hull_faces(mesh);
+  return mesh;
+}
+
+}  // namespace taut

@@ -1,0 +1,325 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <string>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/error.h"
+#include "taut/core/parallel.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/certificate.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/point_hull.h"
+#include "taut/hull/polytope_mesh.h"
+
+namespace taut {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Two starting points closer than this, in the scene's frame, count as one: the starting polytope
+/// needs shape, not detail, and slivers would only cost exact predicates.
+constexpr double start_spacing = 1e-6;
+
+/// A scene thinner than this in some direction, in its frame, is flat: below it, facet normals are
+/// rounding noise (support values are proven to about 1e-13).
+constexpr double flat_width = 1e-11;
+
+/// Refines a polytope of support points until its distance from the hull is certified.
+class Sampler {
+ public:
+  Sampler(const Scene& scene, const HullOptions& options)
+      : scene_(scene), options_(options), query_(scene), hull_(inflated(scene.box())) {}
+
+  Hull run();
+
+ private:
+  /// What is known of a facet: its supporting plane.
+  struct Plane {
+    bool known = false;
+    dvec3 n;
+    double h_bound = 0;
+    dvec3 point;  ///< the support point, in model coordinates
+    Contact contact;
+  };
+
+  static Box inflated(Box box) {
+    const dvec3 margin(1e-3 * diagonal(box));
+    box.lower -= margin;
+    box.upper += margin;
+    return box;
+  }
+
+  void start();
+  void add_support_points(const std::vector<dvec3>& directions);
+  void check_not_flat();
+  void find_planes();
+  void bound_vertices();
+  bool refine();
+  void remember(const dvec3& n, const Contact& contact, const dvec3& point);
+  double gap(const Plane& plane, int vertex) const {
+    return plane.h_bound - glm::dot(plane.n, frame_points_[std::size_t(vertex)]) + gap_rounding;
+  }
+  /// What a gap at a vertex means for the distance; infinite where the normals about the vertex
+  /// prove nothing.
+  double distance_bound(double gap, int vertex) const {
+    const double depth = vertex_depths_[std::size_t(vertex)];
+    return depth > 0 ? gap / depth : std::numeric_limits<double>::infinity();
+  }
+  HullMesh make_mesh();
+
+  /// Rounding of a gap in the scene's frame, where coordinates are at most about two.
+  static constexpr double gap_rounding = 16 * rounding_unit;
+
+  static std::vector<dvec3> across(const std::vector<dvec3>& points);
+
+  const Scene& scene_;
+  const HullOptions& options_;
+  SupportQuery query_;
+  PointHull hull_;
+  std::vector<Sample> samples_;        // per vertex
+  std::vector<dvec3> frame_points_;    // per vertex
+  std::vector<double> vertex_gaps_;    // per vertex: the largest gap of its facets
+  std::vector<double> vertex_depths_;  // per vertex: cone_depth() of its facets' normals
+  std::vector<Plane> planes_;          // per facet
+  double tolerance_ = 0;               // in the scene's frame
+  double bound_ = 0;
+  HullStatistics statistics_;
+};
+
+void Sampler::remember(const dvec3& n, const Contact& contact, const dvec3& point) {
+  samples_.push_back({n, contact});
+  frame_points_.push_back(scene_.frame().to_frame(point));
+}
+
+void Sampler::add_support_points(const std::vector<dvec3>& directions) {
+  std::vector<dvec3> points;
+  for (const dvec3& n : directions) {
+    const Support s = query_(n);
+    const dvec3 point = scene_.frame().to_model(s.point);
+    const dvec3 frame_point = scene_.frame().to_frame(point);
+    const bool near_another =
+        std::any_of(frame_points_.begin(), frame_points_.end(), [&](const dvec3& other) {
+          return glm::distance(other, frame_point) < start_spacing;
+        });
+    if (near_another) continue;
+    points.push_back(point);
+    remember(n, s.contact, point);
+  }
+  hull_.add(points);
+}
+
+/// The support points of 26 directions: axes, and diagonals of faces and of space. Should they lie
+/// in a plane or on a line, those of the directions across it as well.
+void Sampler::start() {
+  std::vector<dvec3> directions;
+  for (int k = 0; k < 27; ++k) {
+    const dvec3 d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (d != dvec3(0.0)) directions.push_back(unit(d));
+  }
+  add_support_points(directions);
+  for (int dimension = hull_.dimension(); dimension < 3; dimension = hull_.dimension()) {
+    directions = across(frame_points_);
+    add_support_points(directions);
+    if (hull_.dimension() <= dimension) break;
+  }
+  check_not_flat();
+}
+
+/// Directions across the points' affine hull, if that is a plane or a line.
+std::vector<dvec3> Sampler::across(const std::vector<dvec3>& points) {
+  dvec3 line(0.0);
+  dvec3 normal(0.0);
+  for (const dvec3& p : points) {
+    const dvec3 d = p - points.front();
+    if (glm::length(d) > glm::length(line)) line = d;
+  }
+  for (const dvec3& p : points) {
+    const dvec3 c = glm::cross(line, p - points.front());
+    if (glm::length(c) > glm::length(normal)) normal = c;
+  }
+  if (normal != dvec3(0.0)) return {unit(normal), -unit(normal)};
+  if (line == dvec3(0.0)) return {};
+  const dvec3 axis = std::abs(line.x) < std::abs(line.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  const dvec3 a = unit(glm::cross(line, axis));
+  const dvec3 b = unit(glm::cross(line, a));
+  return {a, -a, b, -b, unit(a + b), -unit(a + b), unit(a - b), -unit(a - b)};
+}
+
+void Sampler::check_not_flat() {
+  int dimension = hull_.dimension();
+  for (const PointHull::Facet& facet : hull_.facets()) {
+    const dvec3 n = unit(facet.side.normal());
+    if (query_(n).h + query_(-n).h < flat_width) dimension = 2;
+  }
+  if (dimension < 3) {
+    throw InvalidInput("the model is flat: its hull has dimension " + std::to_string(dimension) +
+                       ", and only solid hulls can be computed");
+  }
+}
+
+/// Queries the supporting plane of every facet that has none yet, in parallel; each query starts
+/// from the contact of the vertex whose own direction is closest.
+void Sampler::find_planes() {
+  planes_.resize(hull_.facets().size());
+  std::vector<int> wanted;
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    if (hull_.facets()[f].alive && !planes_[f].known) wanted.push_back(int(f));
+  }
+  constexpr std::size_t grain = 64;
+  std::vector<std::pair<long, long>> counts((wanted.size() + grain - 1) / grain);
+  parallel_for(wanted.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
+    SupportQuery query(scene_);
+    for (std::size_t k = begin; k < end; ++k) {
+      options_.progress.check();
+      const PointHull::Facet& facet = hull_.facet(wanted[k]);
+      Plane& plane = planes_[std::size_t(wanted[k])];
+      plane.n = unit(facet.side.normal());
+      const Sample* nearest = nullptr;
+      for (const int v : facet.vertex) {
+        const Sample& s = samples_[std::size_t(v)];
+        if (nearest == nullptr || glm::dot(s.n, plane.n) > glm::dot(nearest->n, plane.n)) {
+          nearest = &s;
+        }
+      }
+      const Support s = query(plane.n, nearest->contact);
+      plane.h_bound = s.h_bound;
+      plane.contact = s.contact;
+      plane.point = scene_.frame().to_model(s.point);
+      plane.known = true;
+    }
+    counts[begin / grain] = {query.queries(), query.newton_iterations()};
+  });
+  for (const auto& [queries, newton] : counts) {
+    statistics_.support_queries += queries;
+    statistics_.newton_iterations += newton;
+  }
+}
+
+/// Certifies, vertex by vertex, how far the true hull may lie outside (certificate.h).
+void Sampler::bound_vertices() {
+  const std::size_t count = hull_.points().size();
+  std::vector<int> first(count + 1, 0);
+  for (const PointHull::Facet& facet : hull_.facets()) {
+    if (!facet.alive) continue;
+    for (const int v : facet.vertex) ++first[std::size_t(v) + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<dvec3> normals(std::size_t(first.back()));
+  std::vector<int> next(first.begin(), first.end() - 1);
+  vertex_gaps_.assign(count, 0);
+  vertex_depths_.assign(count, 1);
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    if (!hull_.facets()[f].alive) continue;
+    for (const int v : hull_.facets()[f].vertex) {
+      normals[std::size_t(next[std::size_t(v)]++)] = planes_[f].n;
+      double& largest = vertex_gaps_[std::size_t(v)];
+      largest = std::max(largest, gap(planes_[f], v));
+    }
+  }
+  bound_ = 0;
+  for (std::size_t v = 0; v < count; ++v) {
+    const std::span<const dvec3> own(normals.data() + first[v], normals.data() + first[v + 1]);
+    if (own.empty()) continue;  // no vertex of the boundary any more
+    vertex_depths_[v] = cone_depth(own);
+    bound_ = std::max(bound_, distance_bound(vertex_gaps_[v], int(v)));
+  }
+}
+
+/// Inserts the support points of all facets that keep a vertex from its tolerance, the largest
+/// gap first. False if none could be inserted.
+bool Sampler::refine() {
+  struct Candidate {
+    double gap;
+    int facet;
+    dvec3 n;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    const PointHull::Facet& facet = hull_.facets()[f];
+    if (!facet.alive) continue;
+    double largest = 0;
+    bool wanted = false;
+    for (const int v : facet.vertex) {
+      const double g = gap(planes_[f], v);
+      largest = std::max(largest, g);
+      wanted = wanted || distance_bound(g, v) > tolerance_;
+    }
+    if (wanted) candidates.push_back({largest, int(f), planes_[f].n});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.gap != b.gap ? a.gap > b.gap : a.facet < b.facet;
+  });
+  bool inserted = false;
+  for (const Candidate& c : candidates) {
+    // A facet that an earlier insertion replaced has lost its plane.
+    const Plane plane = planes_[std::size_t(c.facet)];
+    if (!plane.known || plane.n != c.n) continue;
+    if (!hull_.insert(plane.point, c.facet)) continue;
+    remember(plane.n, plane.contact, plane.point);
+    planes_.resize(hull_.facets().size());
+    for (const int f : hull_.replaced()) planes_[std::size_t(f)].known = false;
+    for (const int f : hull_.created()) planes_[std::size_t(f)].known = false;
+    inserted = true;
+  }
+  return inserted;
+}
+
+HullMesh Sampler::make_mesh() {
+  std::vector<double> gaps(planes_.size(), 0);
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    if (!hull_.facets()[f].alive) continue;
+    for (const int v : hull_.facets()[f].vertex) gaps[f] = std::max(gaps[f], gap(planes_[f], v));
+  }
+  std::vector<double> bounds;
+  for (std::size_t v = 0; v < vertex_gaps_.size(); ++v) {
+    bounds.push_back(scene_.frame().length_to_model(distance_bound(vertex_gaps_[v], int(v))));
+  }
+  return polytope_mesh(scene_, hull_, samples_, gaps, flat_width, bounds);
+}
+
+Hull Sampler::run() {
+  if (!(options_.tolerance > 0)) throw InvalidInput("the tolerance must be positive");
+  const auto start_time = Clock::now();
+  tolerance_ = options_.tolerance * scene_.frame().scale;
+  start();
+  for (;;) {
+    find_planes();
+    bound_vertices();
+    // The share done, guessed from the error's order of convergence.
+    options_.progress.update("sample", std::min(1.0, tolerance_ / bound_));
+    if (bound_ <= tolerance_) break;
+    const bool full = int(hull_.points().size()) >= options_.max_vertices;
+    if (full || !refine()) {
+      const double reached = scene_.frame().length_to_model(bound_);
+      throw NotConverged(full ? "the limit of vertices was met before the tolerance"
+                              : "the tolerance is below what double precision can certify here",
+                         reached);
+    }
+  }
+  Hull result;
+  statistics_.support_queries += query_.queries();
+  statistics_.newton_iterations += query_.newton_iterations();
+  statistics_.seconds_sample = seconds_since(start_time);
+  const auto mesh_time = Clock::now();
+  result.mesh = make_mesh();
+  statistics_.seconds_mesh = seconds_since(mesh_time);
+  result.distance_bound = scene_.frame().length_to_model(bound_);
+  result.statistics = statistics_;
+  return result;
+}
+
+}  // namespace
+
+Hull sampled_hull(const Scene& scene, const HullOptions& options) {
+  return Sampler(scene, options).run();
+}
+
+}  // namespace taut

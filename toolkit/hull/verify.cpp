@@ -1,0 +1,329 @@
+#include "taut/hull/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <span>
+#include <string>
+#include <tuple>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/error.h"
+#include "taut/core/parallel.h"
+#include "taut/core/predicates.h"
+#include "taut/hull/measures.h"
+#include "taut/hull/point_hull.h"
+
+namespace taut {
+namespace {
+
+/// A directed edge of a polygon; sorting brings an edge and its reverse together.
+struct DirectedEdge {
+  int low, high;
+  bool forward;  ///< runs from low to high
+  int polygon;
+};
+
+std::vector<DirectedEdge> directed_edges(const PolygonMesh& mesh) {
+  std::vector<DirectedEdge> edges;
+  for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
+    const std::vector<int>& polygon = mesh.polygons[f];
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const int a = polygon[k];
+      const int b = polygon[(k + 1) % polygon.size()];
+      edges.push_back({std::min(a, b), std::max(a, b), a < b, int(f)});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const DirectedEdge& a, const DirectedEdge& b) {
+    return std::tie(a.low, a.high, a.forward, a.polygon) <
+           std::tie(b.low, b.high, b.forward, b.polygon);
+  });
+  return edges;
+}
+
+/// Disjoint sets over 0 .. size - 1.
+class Sets {
+ public:
+  explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  std::size_t root(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+class Verifier {
+ public:
+  Verifier(const PolygonMesh& mesh, const Scene& scene, const VerifyOptions& options)
+      : mesh_(mesh), scene_(scene), options_(options), edges_(directed_edges(mesh)) {}
+
+  Verification run();
+
+ private:
+  const dvec3& point(int v) const { return mesh_.points[std::size_t(v)]; }
+  const std::vector<int>& polygon(int f) const { return mesh_.polygons[std::size_t(f)]; }
+
+  void check_topology();
+  void check_fans();
+  void find_planes();
+  void check_convexity();
+  void measure_distances();
+
+  /// Calls visit with the uses of every undirected edge.
+  template <class Visit>
+  void for_each_edge(Visit visit) const {
+    for (std::size_t i = 0; i < edges_.size();) {
+      std::size_t j = i;
+      while (j < edges_.size() && edges_[j].low == edges_[i].low &&
+             edges_[j].high == edges_[i].high) {
+        ++j;
+      }
+      visit(std::span<const DirectedEdge>(edges_).subspan(i, j - i));
+      i = j;
+    }
+  }
+
+  const PolygonMesh& mesh_;
+  const Scene& scene_;
+  const VerifyOptions& options_;
+  std::vector<DirectedEdge> edges_;
+  std::vector<std::array<int, 3>> corners_;  ///< per polygon: three not on a line, or -1
+  Verification result_;
+  long euler_ = 0;
+  bool connected_ = false;
+};
+
+void Verifier::check_topology() {
+  result_.closed = result_.manifold = result_.oriented = !edges_.empty();
+  Sets components(mesh_.polygons.size());
+  long edge_count = 0;
+  for_each_edge([&](std::span<const DirectedEdge> uses) {
+    ++edge_count;
+    if (uses.size() != 2) result_.closed = false;
+    if (uses.size() > 2 || uses[0].low == uses[0].high) result_.manifold = false;
+    if (uses.size() != 2 || uses[0].forward == uses[1].forward) result_.oriented = false;
+    for (const DirectedEdge& use : uses) {
+      components.join(std::size_t(uses[0].polygon), std::size_t(use.polygon));
+    }
+  });
+  std::vector<bool> used(mesh_.points.size(), false);
+  for (const auto& p : mesh_.polygons) {
+    for (const int v : p) used[std::size_t(v)] = true;
+  }
+  euler_ = std::count(used.begin(), used.end(), true) - edge_count + long(mesh_.polygons.size());
+  connected_ = true;
+  for (std::size_t f = 1; f < mesh_.polygons.size(); ++f) {
+    connected_ = connected_ && components.root(f) == components.root(0);
+  }
+  check_fans();
+  if (result_.oriented) result_.oriented = measure(mesh_).volume > 0;
+}
+
+/// The polygon corners about a vertex are one fan iff edges join them all.
+void Verifier::check_fans() {
+  std::vector<std::size_t> first(mesh_.polygons.size() + 1, 0);
+  for (std::size_t f = 0; f < mesh_.polygons.size(); ++f) {
+    first[f + 1] = first[f] + mesh_.polygons[f].size();
+  }
+  Sets corners(first.back());
+  const auto corner = [&](int f, int v) {
+    const std::vector<int>& p = polygon(f);
+    return first[std::size_t(f)] +
+           static_cast<std::size_t>(std::find(p.begin(), p.end(), v) - p.begin());
+  };
+  for_each_edge([&](std::span<const DirectedEdge> uses) {
+    for (const DirectedEdge& use : uses) {
+      for (const int v : {use.low, use.high}) {
+        corners.join(corner(uses[0].polygon, v), corner(use.polygon, v));
+      }
+    }
+  });
+  std::vector<std::size_t> fan(mesh_.points.size(), first.back());
+  for (std::size_t f = 0; f < mesh_.polygons.size(); ++f) {
+    for (const int v : mesh_.polygons[f]) {
+      const std::size_t root = corners.root(corner(int(f), v));
+      std::size_t& seen = fan[std::size_t(v)];
+      if (seen != first.back() && seen != root) result_.manifold = false;
+      seen = root;
+    }
+  }
+}
+
+/// Three corners of each polygon that are not on a line, in the polygon's sense.
+void Verifier::find_planes() {
+  result_.no_zero_area = true;
+  for (const std::vector<int>& p : mesh_.polygons) {
+    std::array<int, 3> found = {-1, -1, -1};
+    std::size_t b = 1;
+    while (b < p.size() && point(p[b]) == point(p[0])) ++b;
+    for (std::size_t c = b + 1; c < p.size(); ++c) {
+      if (!collinear(point(p[0]), point(p[b]), point(p[c]))) {
+        found = {p[0], p[b], p[c]};
+        break;
+      }
+    }
+    if (found[0] < 0) result_.no_zero_area = false;
+    corners_.push_back(found);
+  }
+}
+
+void Verifier::check_convexity() {
+  result_.convex =
+      result_.closed && result_.manifold && result_.oriented && result_.no_zero_area &&
+      connected_ && euler_ == 2;
+  const auto none_above = [&](int f, int g) {
+    const auto& c = corners_[std::size_t(f)];
+    return std::all_of(polygon(g).begin(), polygon(g).end(), [&](int v) {
+      const Sign side = orientation(point(c[0]), point(c[1]), point(c[2]), point(v));
+      return f == g ? side == Sign::zero : side != Sign::positive;
+    });
+  };
+  for (std::size_t f = 0; f < mesh_.polygons.size() && result_.convex; ++f) {
+    result_.convex = none_above(int(f), int(f));
+  }
+  for_each_edge([&](std::span<const DirectedEdge> uses) {
+    if (result_.convex) result_.convex = none_above(uses[0].polygon, uses[1].polygon);
+  });
+}
+
+/// The support function of points, by climbing over their hull's edges.
+class PointSupport {
+ public:
+  explicit PointSupport(const std::vector<dvec3>& points) : hull_(box_of(points)) {
+    hull_.add(points);
+    if (hull_.dimension() < 3) {
+      all_ = points;
+      return;
+    }
+    std::vector<std::pair<int, int>> edges;
+    for (const PointHull::Facet& f : hull_.facets()) {
+      if (!f.alive) continue;
+      for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(f.vertex[k], f.vertex[(k + 1) % 3]);
+    }
+    std::sort(edges.begin(), edges.end());
+    first_.assign(points.size() + 1, 0);
+    for (const auto& [a, b] : edges) ++first_[std::size_t(a) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    for (const auto& [a, b] : edges) neighbors_.push_back(b);
+    start_ = edges.front().first;
+  }
+
+  double value(const dvec3& n, const dvec3& origin) const {
+    if (!all_.empty()) {
+      double h = -std::numeric_limits<double>::infinity();
+      for (const dvec3& p : all_) h = std::max(h, glm::dot(p - origin, n));
+      return h;
+    }
+    int v = start_;
+    double h = glm::dot(hull_.point(v) - origin, n);
+    for (bool climbing = true; climbing;) {
+      climbing = false;
+      const int now = v;
+      for (int k = first_[std::size_t(now)]; k < first_[std::size_t(now) + 1]; ++k) {
+        const int other = neighbors_[std::size_t(k)];
+        const double value = glm::dot(hull_.point(other) - origin, n);
+        if (value > h) {
+          h = value;
+          v = other;
+          climbing = true;
+        }
+      }
+    }
+    return h;
+  }
+
+ private:
+  static Box box_of(const std::vector<dvec3>& points) {
+    Box box;
+    for (const dvec3& p : points) box.include(p);
+    return box;
+  }
+
+  PointHull hull_;
+  std::vector<dvec3> all_;  ///< where the points do not span space
+  std::vector<int> first_, neighbors_;
+  int start_ = 0;
+};
+
+/// Facet normals, vertex normals (which look for what a corner may hide) and random directions.
+std::vector<dvec3> directions(const PolygonMesh& mesh, const std::vector<dvec3>& normals,
+                              const VerifyOptions& options) {
+  std::vector<dvec3> result = normals;
+  std::vector<dvec3> at_vertex(mesh.points.size(), dvec3(0.0));
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    for (const int v : mesh.polygons[f]) at_vertex[std::size_t(v)] += normals[f];
+  }
+  for (const dvec3& n : at_vertex) result.push_back(unit(n));
+  std::mt19937_64 random(options.seed);
+  std::normal_distribution<double> gaussian;
+  for (int k = 0; k < options.random_directions; ++k) {
+    const double x = gaussian(random);
+    const double y = gaussian(random);
+    result.push_back(unit({x, y, gaussian(random)}));
+  }
+  std::erase_if(result, [](const dvec3& n) { return n == dvec3(0.0); });
+  return result;
+}
+
+void Verifier::measure_distances() {
+  const dvec3 center = scene_.frame().center;
+  std::vector<dvec3> normals(mesh_.polygons.size(), dvec3(0.0));
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const auto& c = corners_[f];
+    if (c[0] < 0) continue;
+    normals[f] = unit(glm::cross(point(c[1]) - point(c[0]), point(c[2]) - point(c[0])));
+  }
+  const PointSupport mesh_support(mesh_.points);
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const double above = mesh_support.value(normals[f], point(mesh_.polygons[f][0]));
+    result_.largest_violation = std::max(result_.largest_violation, above);
+  }
+
+  const std::vector<dvec3> tried = directions(mesh_, normals, options_);
+  result_.directions = int(tried.size());
+  std::vector<double> difference(tried.size());
+  parallel_for(tried.size(), 256, options_.threads, [&](std::size_t begin, std::size_t end) {
+    SupportQuery query(scene_);
+    Contact near;
+    for (std::size_t k = begin; k < end; ++k) {
+      options_.progress.check();
+      const Support s = query(tried[k], near);
+      near = s.contact;
+      difference[k] =
+          scene_.frame().length_to_model(s.h) - mesh_support.value(tried[k], center);
+    }
+  });
+  for (const double d : difference) {
+    result_.model_outside = std::max(result_.model_outside, d);
+    result_.mesh_outside = std::max(result_.mesh_outside, -d);
+  }
+}
+
+Verification Verifier::run() {
+  for (const auto& p : mesh_.polygons) {
+    for (const int v : p) {
+      if (v < 0 || v >= int(mesh_.points.size())) {
+        throw InvalidInput("polygon vertex " + std::to_string(v) + " is out of range");
+      }
+    }
+    if (p.size() < 3) throw InvalidInput("a polygon has fewer than three corners");
+  }
+  if (mesh_.points.empty()) throw InvalidInput("the mesh has no vertices");
+  check_topology();
+  find_planes();
+  check_convexity();
+  measure_distances();
+  return result_;
+}
+
+}  // namespace
+
+Verification verify(const PolygonMesh& mesh, const Scene& scene, const VerifyOptions& options) {
+  return Verifier(mesh, scene, options).run();
+}
+
+}  // namespace taut

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+
+#include "taut/bounds/scene.h"
+#include "taut/core/progress.h"
+#include "taut/surface/polygon_mesh.h"
+
+namespace taut {
+
+struct VerifyOptions {
+  /// Random directions, besides those of all facets and vertices.
+  int random_directions = 10'000;
+  unsigned seed = 1;
+  int threads = 0;
+  Progress progress;
+};
+
+/// What verify() found; lengths in model units.
+struct Verification {
+  /// Every edge has exactly two polygons.
+  bool closed = false;
+  /// Every edge has at most two polygons and the polygons about every vertex form one fan.
+  bool manifold = false;
+  /// The two polygons at an edge run through it in opposite directions, and the volume is positive.
+  bool oriented = false;
+  /// By exact predicates: every polygon is planar, and no corner of it lies above the plane of a
+  /// neighbour, on a connected surface of Euler characteristic 2 (for which that is convexity).
+  bool convex = false;
+  /// No polygon has all its corners on one line, by exact predicates.
+  bool no_zero_area = false;
+  /// Largest distance of a vertex above the plane of any polygon, rounded.
+  double largest_violation = 0;
+  /// max over the directions tried of h_model - h_mesh: how far the model reaches outside.
+  double model_outside = 0;
+  /// max over the directions tried of h_mesh - h_model: how far the mesh reaches outside the
+  /// model's hull.
+  double mesh_outside = 0;
+  int directions = 0;
+
+  /// The mesh is the model's hull within the tolerance. Files that hold rounded coordinates are not
+  /// exactly convex; they pass if they are convex within the tolerance too.
+  bool is_hull(double tolerance) const {
+    return closed && manifold && oriented && largest_violation <= tolerance &&
+           model_outside <= tolerance && mesh_outside <= tolerance;
+  }
+};
+
+/// Checks any mesh against a model's convex hull: topology, exact convexity, and both one-sided
+/// distances measured by support functions in the directions of all facets and vertices and in
+/// random ones. A measurement, hence a lower bound of the true distances.
+Verification verify(const PolygonMesh& mesh, const Scene& scene, const VerifyOptions& options = {});
+
+}  // namespace taut

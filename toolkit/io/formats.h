@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace taut {
+
+/// A file format by its extension.
+struct Format {
+  std::string extension;    ///< with the dot, lower case: ".ply"
+  std::string description;  ///< a few words
+  bool reads_model = false;
+  bool reads_mesh = false;
+  bool writes_mesh = false;
+};
+
+/// All formats of this library, sorted by extension.
+const std::vector<Format>& formats();
+
+/// The path's extension in lower case: ".ply"; empty if it has none.
+std::string extension(const std::filesystem::path& path);
+
+}  // namespace taut

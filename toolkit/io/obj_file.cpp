@@ -1,0 +1,320 @@
+#include "taut/io/obj_file.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+using Statement = std::vector<Word>;
+
+/// Statements that change nothing of the geometry: materials, rendering, normals, texture, and the
+/// joins of surfaces, which are found from their borders.
+bool is_silent(std::string_view keyword) {
+  static const std::set<std::string_view> silent = {
+      "bevel",     "bmat",   "c_interp", "con", "ctech", "d_interp",   "lod",
+      "maplib",    "mg",     "mtllib",   "s",   "step",  "shadow_obj", "stech",
+      "trace_obj", "usemap", "usemtl",   "vn",  "vt"};
+  return silent.contains(keyword);
+}
+
+class Parser {
+ public:
+  Parser(TextScanner& scanner, const Progress& progress)
+      : scanner_(scanner), progress_(progress), bytes_(scanner.bytes_left()) {}
+
+  ObjFile parse();
+
+ private:
+  void dispatch(const Statement& s);
+  void read_vertex(const Statement& s);
+  void count_parameter_point(const Statement&);
+  void count_polygon(const Statement&);
+  void read_name(const Statement& s);
+  void read_type(const Statement& s);
+  void read_degree(const Statement& s);
+  void begin_element(const Statement& s);
+  void begin_parameter_curve(const Statement& s);
+  void read_parameters(const Statement& s);
+  void refuse_trim(const Statement& s);
+  void pass_special_geometry(const Statement& s);
+  void end_element(const Statement& s);
+
+  void require_no_body(const Statement& s) const;
+  void require_body(const Statement& s) const;
+  Interval read_range(const Statement& s, std::size_t first) const;
+  void warn_once(std::string_view code, const Word& keyword, const std::string& what);
+
+  TextScanner& scanner_;
+  const Progress& progress_;
+  std::size_t bytes_;
+  ObjFile file_;
+  std::size_t parameter_points_ = 0;
+
+  // The state that elements stand in.
+  std::string name_;
+  std::string type_;
+  bool rational_ = false;
+  int degree_u_ = 0;
+  int degree_v_ = 0;
+
+  // The element between its statement and `end`; of a curve in parameter space nothing is kept.
+  std::string body_;
+  ObjElement element_;
+  bool has_parameters_u_ = false;
+  bool has_parameters_v_ = false;
+
+  std::set<std::string, std::less<>> warned_;
+};
+
+ObjFile Parser::parse() {
+  constexpr std::size_t statements_per_update = 4096;
+  Statement statement;
+  for (std::size_t i = 0; scanner_.next_statement(statement); ++i) {
+    if (i % statements_per_update == 0) {
+      const double left = static_cast<double>(scanner_.bytes_left());
+      progress_.update("read", 1 - left / static_cast<double>(bytes_));
+    }
+    dispatch(statement);
+  }
+  if (!body_.empty()) {
+    scanner_.fail(element_.line, "the " + body_ + " that begins here has no end");
+  }
+  return std::move(file_);
+}
+
+void Parser::dispatch(const Statement& s) {
+  static const std::map<std::string_view, void (Parser::*)(const Statement&)> readers = {
+      {"v", &Parser::read_vertex},
+      {"vp", &Parser::count_parameter_point},
+      {"f", &Parser::count_polygon},
+      {"fo", &Parser::count_polygon},
+      {"g", &Parser::read_name},
+      {"o", &Parser::read_name},
+      {"cstype", &Parser::read_type},
+      {"deg", &Parser::read_degree},
+      {"curv", &Parser::begin_element},
+      {"surf", &Parser::begin_element},
+      {"curv2", &Parser::begin_parameter_curve},
+      {"parm", &Parser::read_parameters},
+      {"trim", &Parser::refuse_trim},
+      {"hole", &Parser::refuse_trim},
+      {"scrv", &Parser::pass_special_geometry},
+      {"sp", &Parser::pass_special_geometry},
+      {"end", &Parser::end_element},
+  };
+  const auto reader = readers.find(s[0].text);
+  if (reader != readers.end()) {
+    (this->*reader->second)(s);
+  } else if (!is_silent(s[0].text)) {
+    warn_once("unknown-statement", s[0], "is not known and left out");
+  }
+}
+
+void Parser::count_parameter_point(const Statement&) { ++parameter_points_; }
+void Parser::count_polygon(const Statement&) { ++file_.polygons; }
+
+void Parser::refuse_trim(const Statement& s) {
+  require_body(s);
+  scanner_.refuse(s[0].line, "trimmed surfaces are not supported yet");
+}
+
+void Parser::pass_special_geometry(const Statement& s) {
+  require_body(s);
+  warn_once("special-geometry", s[0], "special curves and points are left out");
+}
+
+void Parser::read_vertex(const Statement& s) {
+  ObjVertex vertex;
+  vertex.point = obj_point(scanner_, s);
+  // Six numbers are a point and a colour, as some programs write; seven have the weight as well.
+  if (s.size() == 5 || s.size() == 8) vertex.weight = scanner_.number(s[4], "a weight");
+  vertex.line = s[0].line;
+  file_.vertices.push_back(vertex);
+}
+
+void Parser::read_name(const Statement& s) {
+  name_.clear();
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    if (i > 1) name_ += ' ';
+    name_ += s[i].text;
+  }
+}
+
+void Parser::read_type(const Statement& s) {
+  require_no_body(s);
+  rational_ = s.size() == 3 && s[1].text == "rat";
+  if (s.size() != (rational_ ? 3U : 2U)) {
+    scanner_.fail(s[0].line, "cstype takes a type, perhaps after the word rat");
+  }
+  type_ = s.back().text;
+  if (type_ == "bmatrix" || type_ == "cardinal" || type_ == "taylor") {
+    scanner_.fail(s[0].line, "cstype " + type_ + " is not supported; bezier and bspline are");
+  }
+  if (type_ != "bezier" && type_ != "bspline") {
+    scanner_.fail(s[0].line, "bezier or bspline expected, found " + in_quotes(type_));
+  }
+}
+
+void Parser::read_degree(const Statement& s) {
+  require_no_body(s);
+  if (s.size() != 2 && s.size() != 3) scanner_.fail(s[0].line, "deg takes one or two degrees");
+  int degrees[2] = {0, 0};
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    const long degree = scanner_.integer(s[i], "a degree");
+    if (degree < 1 || degree > max_degree) {
+      scanner_.refuse(s[i].line, "degree " + std::to_string(degree) + " is not in 1 .. " +
+                                     std::to_string(max_degree));
+    }
+    degrees[i - 1] = static_cast<int>(degree);
+  }
+  degree_u_ = degrees[0];
+  degree_v_ = degrees[1];
+}
+
+void Parser::begin_element(const Statement& s) {
+  require_no_body(s);
+  body_ = s[0].text;
+  element_ = {};
+  element_.line = s[0].line;
+  element_.surface = body_ == "surf";
+  if (type_.empty()) scanner_.fail(s[0].line, body_ + " stands before any cstype");
+  if (degree_u_ == 0) scanner_.fail(s[0].line, body_ + " stands before any deg");
+  if (element_.surface && degree_v_ == 0) {
+    scanner_.fail(s[0].line, "surf needs two degrees, the last deg gives one");
+  }
+  const std::size_t first_vertex = element_.surface ? 5 : 3;
+  if (s.size() <= first_vertex) {
+    scanner_.fail(s[0].line, element_.surface ? "surf takes s0 s1 t0 t1 and vertices"
+                                              : "curv takes t0 t1 and vertices");
+  }
+  element_.rational = rational_;
+  element_.spline = type_ == "bspline";
+  element_.degree_u = degree_u_;
+  element_.degree_v = degree_v_;
+  element_.name = name_;
+  element_.u = read_range(s, 1);
+  if (element_.surface) element_.v = read_range(s, 3);
+  element_.vertices.reserve(s.size() - first_vertex);
+  for (std::size_t i = first_vertex; i < s.size(); ++i) {
+    element_.vertices.push_back(obj_vertex_index(scanner_, s[i], file_.vertices.size()));
+  }
+}
+
+void Parser::begin_parameter_curve(const Statement& s) {
+  require_no_body(s);
+  body_ = s[0].text;
+  element_ = {};
+  element_.line = s[0].line;
+  if (s.size() < 3) scanner_.fail(s[0].line, "curv2 takes two parameter points or more");
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    const std::size_t index = obj_vertex_index(scanner_, s[i], parameter_points_);
+    if (index >= parameter_points_) {
+      scanner_.refuse(s[i].line, "parameter point " + in_quotes(s[i].text) +
+                                     " is referred to, but " + std::to_string(parameter_points_) +
+                                     " came before");
+    }
+  }
+  warn_once("parameter-curve", s[0], "curves in parameter space are left out");
+}
+
+void Parser::read_parameters(const Statement& s) {
+  require_body(s);
+  const bool is_u = s.size() > 1 && s[1].text == "u";
+  if (s.size() < 4 || (!is_u && s[1].text != "v")) {
+    scanner_.fail(s[0].line, "parm takes u or v and two parameters or more");
+  }
+  if (!is_u && body_ != "surf") scanner_.fail(s[0].line, "a curve has no parm v");
+  bool& has_parameters = is_u ? has_parameters_u_ : has_parameters_v_;
+  if (has_parameters) {
+    scanner_.fail(s[0].line, "parm " + std::string(s[1].text) + " stands here a second time");
+  }
+  has_parameters = true;
+
+  std::vector<double>& parameters = is_u ? element_.parameters_u : element_.parameters_v;
+  (is_u ? element_.parameters_line_u : element_.parameters_line_v) = s[0].line;
+  for (std::size_t i = 2; i < s.size(); ++i) {
+    parameters.push_back(scanner_.number(s[i], "a parameter"));
+    if (i > 2 && parameters[i - 2] < parameters[i - 3]) {
+      scanner_.refuse(s[i].line,
+                      "parameter " + in_quotes(s[i].text) + " is below the one before it");
+    }
+  }
+}
+
+void Parser::end_element(const Statement& s) {
+  require_body(s);
+  if (body_ != "curv2") file_.elements.push_back(std::move(element_));
+  body_.clear();
+  has_parameters_u_ = false;
+  has_parameters_v_ = false;
+}
+
+void Parser::require_no_body(const Statement& s) const {
+  if (body_.empty()) return;
+  scanner_.fail(s[0].line, std::string(s[0].text) + " stands before the end of the " + body_ +
+                               " of line " + std::to_string(element_.line));
+}
+
+void Parser::require_body(const Statement& s) const {
+  if (body_.empty())
+    scanner_.fail(s[0].line, std::string(s[0].text) + " stands in no curv or surf");
+}
+
+Interval Parser::read_range(const Statement& s, std::size_t first) const {
+  const Interval range = {scanner_.number(s[first], "a parameter"),
+                          scanner_.number(s[first + 1], "a parameter")};
+  if (!(range.lower < range.upper)) {
+    scanner_.refuse(s[first].line, "the range of parameters is empty: " + in_quotes(s[first].text) +
+                                       " to " + in_quotes(s[first + 1].text));
+  }
+  return range;
+}
+
+void Parser::warn_once(std::string_view code, const Word& keyword, const std::string& what) {
+  // What is no OBJ file at all could name any number of statements.
+  constexpr std::size_t most_kinds = 20;
+  if (warned_.size() >= most_kinds || !warned_.emplace(keyword.text).second) return;
+  progress_.warning(code, scanner_.file() + ":" + std::to_string(keyword.line) + ": " +
+                              in_quotes(keyword.text) + ": " + what);
+}
+
+bool is_index_part(char c) { return ('0' <= c && c <= '9') || c == '-' || c == '/'; }
+
+}  // namespace
+
+ObjFile parse_obj(TextScanner& scanner, const Progress& progress) {
+  return Parser(scanner, progress).parse();
+}
+
+std::size_t obj_vertex_index(const TextScanner& scanner, const Word& word, std::size_t count) {
+  const std::size_t slash = std::min(word.text.find('/'), word.text.size());
+  const std::string_view rest = word.text.substr(slash);
+  if (!std::all_of(rest.begin(), rest.end(), is_index_part)) {
+    scanner.fail(word.line, "a vertex expected, found " + in_quotes(word.text));
+  }
+  const long number = scanner.integer({word.text.substr(0, slash), word.line}, "a vertex");
+  if (number > 0) return static_cast<std::size_t>(number) - 1;
+  // Compared without turning the sign, which the smallest long would not survive.
+  if (number == 0 || number < -static_cast<long>(count)) {
+    scanner.refuse(word.line, "vertex " + std::to_string(number) + " is referred to, but " +
+                                  std::to_string(count) + " came before");
+  }
+  return count - static_cast<std::size_t>(-number);
+}
+
+dvec3 obj_point(const TextScanner& scanner, const std::vector<Word>& statement) {
+  if (statement.size() < 4) scanner.fail(statement[0].line, "v takes three coordinates");
+  dvec3 p;
+  for (int i = 0; i < 3; ++i) {
+    p[i] = scanner.number(statement[static_cast<std::size_t>(i) + 1], "a coordinate");
+  }
+  return p;
+}
+
+}  // namespace taut

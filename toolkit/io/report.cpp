@@ -1,0 +1,68 @@
+#include "taut/io/report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace taut {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const dvec3& p) { return {p.x, p.y, p.z}; }
+
+Json to_json(const Report::Input& input) {
+  Json json = {{"files", input.files},     {"faces", input.faces},
+               {"edges", input.edges},     {"vertices", input.vertices},
+               {"patches", input.patches}, {"diagonal", input.diagonal}};
+  if (!input.box.empty()) json["box"] = {to_json(input.box.lower), to_json(input.box.upper)};
+  return json;
+}
+
+Json to_json(const Report::ExactHull& hull) {
+  Json json = Json::object();
+  if (hull.gap_bound) json["gap_bound"] = *hull.gap_bound;
+  return json;
+}
+
+Json to_json(const Report::Mesh& mesh) {
+  return {{"vertices", mesh.vertices},
+          {"edges", mesh.edges},
+          {"faces", mesh.faces},
+          {"volume", mesh.measures.volume},
+          {"area", mesh.measures.area},
+          {"tolerance", mesh.tolerance},
+          {"distance_bound", mesh.distance_bound}};
+}
+
+Json to_json(const Report::Queries& queries) {
+  return {{"support", queries.support}, {"newton_iterations", queries.newton_iterations}};
+}
+
+Json to_json(const Report::Seconds& seconds) {
+  return {{"read", seconds.read}, {"build", seconds.build}, {"sample", seconds.sample},
+          {"mesh", seconds.mesh}, {"write", seconds.write}, {"total", seconds.total}};
+}
+
+Json to_json(const std::vector<Warning>& warnings) {
+  Json json = Json::array();
+  for (const Warning& w : warnings) json.push_back({{"code", w.code}, {"text", w.text}});
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const Report& report) {
+  const Json json = {{"taut", TAUT_VERSION},
+                     {"input", to_json(report.input)},
+                     {"method", report.method},
+                     {"dimension", report.dimension},
+                     {"hull", to_json(report.hull)},
+                     {"mesh", to_json(report.mesh)},
+                     {"queries", to_json(report.queries)},
+                     {"seconds", to_json(report.seconds)},
+                     {"peak_bytes", report.peak_bytes},
+                     {"warnings", to_json(report.warnings)}};
+  // File names are any bytes; what is no UTF-8 in them must not lose the report.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace taut

@@ -1,0 +1,349 @@
+#include "taut/surface/bezier.h"
+
+#include <cmath>
+#include <string>
+
+#include "taut/core/error.h"
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// Values of the Bernstein polynomials of degree p and of their derivatives up to order 3 at t:
+/// value[k][i] = d^k/dt^k B_i^p(t).
+struct Basis {
+  double value[4][max_degree + 1];
+};
+
+/// The recurrence B_i^r = (1-t) B_i^{r-1} + t B_{i-1}^{r-1} is free of cancellation on [0, 1]; the
+/// k-th derivatives come from the k-fold differences of the basis of degree p - k, which the
+/// recurrence passes through on its way.
+void bernstein(int p, double t, int order, Basis& basis) {
+  const double s = 1 - t;
+  double b[max_degree + 1];
+  b[0] = 1;
+  const auto store = [&](int degree) {
+    const int k = p - degree;
+    if (k > order) return;
+    double* d = basis.value[k];
+    std::copy(b, b + degree + 1, d);
+    for (int r = degree; r < p; ++r) {
+      d[r + 1] = (r + 1) * d[r];
+      for (int i = r; i > 0; --i) d[i] = (r + 1) * (d[i - 1] - d[i]);
+      d[0] = -(r + 1) * d[0];
+    }
+  };
+  for (int k = p + 1; k <= order; ++k) std::fill_n(basis.value[k], p + 1, 0.0);
+  store(0);
+  for (int r = 1; r <= p; ++r) {
+    b[r] = t * b[r - 1];
+    for (int i = r - 1; i > 0; --i) b[i] = s * b[i] + t * b[i - 1];
+    b[0] *= s;
+    store(r);
+  }
+}
+
+template <int Order>
+using Derivatives = std::array<std::array<dvec4, Order + 1>, Order + 1>;
+
+/// Homogeneous partial derivatives d[k][l] with k + l <= Order.
+template <int Order>
+Derivatives<Order> homogeneous_derivatives(const BezierPatch& patch, double u, double v) {
+  Basis bu, bv;
+  bernstein(patch.degree_u, u, Order, bu);
+  bernstein(patch.degree_v, v, Order, bv);
+  Derivatives<Order> d{};
+  const dvec4* row = patch.points.data();
+  for (int i = 0; i <= patch.degree_u; ++i, row += patch.degree_v + 1) {
+    std::array<dvec4, Order + 1> along_v{};
+    for (int j = 0; j <= patch.degree_v; ++j) {
+      for (int l = 0; l <= Order; ++l) along_v[l] += bv.value[l][j] * row[j];
+    }
+    for (int k = 0; k <= Order; ++k) {
+      for (int l = 0; k + l <= Order; ++l) d[k][l] += bu.value[k][i] * along_v[l];
+    }
+  }
+  return d;
+}
+
+/// Partial derivatives of the quotient X / w by Leibniz' rule: X = S w gives, for each order,
+/// S_kl w = X_kl - sum over the terms in which w is differentiated.
+template <int Order>
+std::array<std::array<dvec3, Order + 1>, Order + 1> quotient(const Derivatives<Order>& d) {
+  static constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+  std::array<std::array<dvec3, Order + 1>, Order + 1> S;
+  for (int k = 0; k <= Order; ++k) {
+    for (int l = 0; k + l <= Order; ++l) {
+      dvec3 x(d[k][l]);
+      for (int a = 0; a <= k; ++a) {
+        for (int b = 0; b <= l; ++b) {
+          if (a + b == 0) continue;
+          x -= double(binomial[k][a] * binomial[l][b]) * d[a][b].w * S[k - a][l - b];
+        }
+      }
+      S[k][l] = x / d[0][0].w;
+    }
+  }
+  return S;
+}
+
+template <int Order>
+auto euclidean_derivatives(const BezierPatch& patch, double u, double v) {
+  return quotient<Order>(homogeneous_derivatives<Order>(patch, u, v));
+}
+
+void validate_points(const std::vector<dvec4>& points, const std::string& name) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const dvec4& p = points[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z) || !std::isfinite(p.w)) {
+      throw InvalidInput(name + ": control point " + std::to_string(i) + " is not finite");
+    }
+    if (!(p.w > 0)) {
+      throw InvalidInput(name + ": weight " + std::to_string(p.w) + " of control point " +
+                         std::to_string(i) + " is not positive");
+    }
+  }
+}
+
+void validate_degree(int degree, const std::string& name) {
+  if (degree < 1 || degree > max_degree) {
+    throw InvalidInput(name + ": degree " + std::to_string(degree) + " is not between 1 and " +
+                       std::to_string(max_degree));
+  }
+}
+
+/// Control points of the part over [0, t] by de Casteljau, in place.
+void keep_left(dvec4* p, int degree, std::ptrdiff_t stride, double t) {
+  for (int r = 1; r <= degree; ++r) {
+    for (int i = degree; i >= r; --i) {
+      p[i * stride] = (1 - t) * p[(i - 1) * stride] + t * p[i * stride];
+    }
+  }
+}
+
+void keep_right(dvec4* p, int degree, std::ptrdiff_t stride, double t) {
+  for (int r = 1; r <= degree; ++r) {
+    for (int i = 0; i <= degree - r; ++i) {
+      p[i * stride] = (1 - t) * p[i * stride] + t * p[(i + 1) * stride];
+    }
+  }
+}
+
+void keep(dvec4* p, int degree, std::ptrdiff_t stride, Interval t) {
+  if (t.upper < 1) keep_left(p, degree, stride, t.upper);
+  if (t.lower > 0) keep_right(p, degree, stride, t.lower / t.upper);
+}
+
+/// One step of degree elevation along a strided run of degree + 1 points.
+void elevate_once(const dvec4* from, dvec4* to, int degree, std::ptrdiff_t stride) {
+  to[0] = from[0];
+  for (int i = 1; i <= degree; ++i) {
+    const double a = double(i) / (degree + 1);
+    to[i * stride] = a * from[(i - 1) * stride] + (1 - a) * from[i * stride];
+  }
+  to[(degree + 1) * stride] = from[degree * stride];
+}
+
+/// Norm bounds of a homogeneous difference vector. A k-fold difference of numbers of size m is off
+/// by at most 2^k k rounding units of m, which `rounding` adds.
+void include(HomogeneousBound& bound, const dvec4& d) {
+  bound.space = std::max(bound.space, glm::length(dvec3(d)));
+  bound.weight = std::max(bound.weight, std::abs(d.w));
+}
+
+HomogeneousBound scaled(const HomogeneousBound& b, double factor, const std::vector<dvec4>& points,
+                        double differences) {
+  HomogeneousBound magnitude;
+  for (const dvec4& p : points) include(magnitude, p);
+  const double rounding = differences * std::exp2(differences) * rounding_unit;
+  const double up = 1 + 8 * rounding_unit;
+  return {factor * (b.space + rounding * magnitude.space) * up,
+          factor * (b.weight + (b.weight > 0 ? rounding * magnitude.weight : 0)) * up};
+}
+
+}  // namespace
+
+bool is_polynomial(const std::vector<dvec4>& points) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const dvec4& p) { return p.w == points.front().w; });
+}
+
+void validate(const BezierCurve& curve, const std::string& name) {
+  validate_degree(curve.degree(), name);
+  validate_points(curve.points, name);
+}
+
+void validate(const BezierPatch& patch, const std::string& name) {
+  validate_degree(patch.degree_u, name);
+  validate_degree(patch.degree_v, name);
+  const auto expected =
+      static_cast<std::size_t>(patch.degree_u + 1) * static_cast<std::size_t>(patch.degree_v + 1);
+  if (patch.points.size() != expected) {
+    throw InvalidInput(name + ": " + std::to_string(patch.points.size()) + " control points, not " +
+                       std::to_string(expected));
+  }
+  validate_points(patch.points, name);
+}
+
+dvec3 point(const BezierCurve& curve, double t) {
+  Basis b;
+  bernstein(curve.degree(), t, 0, b);
+  dvec4 x(0.0);
+  for (int i = 0; i <= curve.degree(); ++i) x += b.value[0][i] * curve.points[std::size_t(i)];
+  return euclidean(x);
+}
+
+CurveJet jet(const BezierCurve& curve, double t) {
+  Basis b;
+  bernstein(curve.degree(), t, 3, b);
+  Derivatives<3> d{};
+  for (int i = 0; i <= curve.degree(); ++i) {
+    for (int k = 0; k <= 3; ++k) d[k][0] += b.value[k][i] * curve.points[std::size_t(i)];
+  }
+  const auto c = quotient<3>(d);
+  return {c[0][0], c[1][0], c[2][0], c[3][0]};
+}
+
+dvec3 point(const BezierPatch& patch, double u, double v) {
+  return euclidean(homogeneous_derivatives<0>(patch, u, v)[0][0]);
+}
+
+PatchJet1 jet1(const BezierPatch& patch, double u, double v) {
+  const auto S = euclidean_derivatives<1>(patch, u, v);
+  return {S[0][0], S[1][0], S[0][1]};
+}
+
+PatchJet2 jet2(const BezierPatch& patch, double u, double v) {
+  const auto S = euclidean_derivatives<2>(patch, u, v);
+  return {{S[0][0], S[1][0], S[0][1]}, S[2][0], S[1][1], S[0][2]};
+}
+
+PatchJet3 jet3(const BezierPatch& patch, double u, double v) {
+  const auto S = euclidean_derivatives<3>(patch, u, v);
+  return {{{S[0][0], S[1][0], S[0][1]}, S[2][0], S[1][1], S[0][2]},
+          S[3][0],
+          S[2][1],
+          S[1][2],
+          S[0][3]};
+}
+
+dvec3 unit_normal(const BezierPatch& patch, double u, double v) {
+  // Relative to the patch's extent; below it, N is rounding noise of the two tangents.
+  const auto normal_at = [&](double a, double b) {
+    const PatchJet1 j = jet1(patch, a, b);
+    const dvec3 N = glm::cross(j.Su, j.Sv);
+    const double noise = 64 * rounding_unit * glm::length(j.Su) * glm::length(j.Sv);
+    return glm::length(N) > noise ? unit(N) : dvec3(0.0);
+  };
+  dvec3 n = normal_at(u, v);
+  if (n != dvec3(0.0)) return n;
+  // The limit exists where N(s) = s^k (a + O(s)) along the line: two points at halved distances
+  // extrapolate the direction a to second order in s.
+  const dvec2 inward = dvec2(0.5) - dvec2(u, v);
+  constexpr double s = 0x1p-12;
+  const dvec3 near = normal_at(u + s * inward.x, v + s * inward.y);
+  const dvec3 far = normal_at(u + 2 * s * inward.x, v + 2 * s * inward.y);
+  return unit(2.0 * near - far);
+}
+
+BezierCurve elevated(const BezierCurve& curve, int degree) {
+  BezierCurve result = curve;
+  while (result.degree() < degree) {
+    std::vector<dvec4> next(result.points.size() + 1);
+    elevate_once(result.points.data(), next.data(), result.degree(), 1);
+    result.points = std::move(next);
+  }
+  return result;
+}
+
+BezierPatch elevated(const BezierPatch& patch, int degree_u, int degree_v) {
+  BezierPatch result = patch;
+  while (result.degree_v < degree_v) {
+    BezierPatch next{result.degree_u, result.degree_v + 1, {}};
+    next.points.resize(result.points.size() + static_cast<std::size_t>(result.degree_u) + 1);
+    for (int i = 0; i <= result.degree_u; ++i) {
+      elevate_once(&result.at(i, 0), &next.at(i, 0), result.degree_v, 1);
+    }
+    result = std::move(next);
+  }
+  if (result.degree_u < degree_u) {
+    result = transposed(elevated(transposed(result), result.degree_v, degree_u));
+  }
+  return result;
+}
+
+BezierCurve restricted(const BezierCurve& curve, Interval t) {
+  BezierCurve result = curve;
+  keep(result.points.data(), result.degree(), 1, t);
+  return result;
+}
+
+BezierPatch restricted(const BezierPatch& patch, Interval u, Interval v) {
+  BezierPatch result = patch;
+  const std::ptrdiff_t row = patch.degree_v + 1;
+  for (int j = 0; j <= patch.degree_v; ++j) keep(&result.at(0, j), patch.degree_u, row, u);
+  for (int i = 0; i <= patch.degree_u; ++i) keep(&result.at(i, 0), patch.degree_v, 1, v);
+  return result;
+}
+
+BezierCurve reversed(const BezierCurve& curve) {
+  return {{curve.points.rbegin(), curve.points.rend()}};
+}
+
+BezierPatch transposed(const BezierPatch& patch) {
+  BezierPatch result{patch.degree_v, patch.degree_u, std::vector<dvec4>(patch.points.size())};
+  for (int i = 0; i <= patch.degree_u; ++i) {
+    for (int j = 0; j <= patch.degree_v; ++j) result.at(j, i) = patch.at(i, j);
+  }
+  return result;
+}
+
+BezierCurve border(const BezierPatch& patch, Side side) {
+  BezierCurve curve;
+  if (side == Side::u0 || side == Side::u1) {
+    const int i = side == Side::u0 ? 0 : patch.degree_u;
+    for (int j = 0; j <= patch.degree_v; ++j) curve.points.push_back(patch.at(i, j));
+  } else {
+    const int j = side == Side::v0 ? 0 : patch.degree_v;
+    for (int i = 0; i <= patch.degree_u; ++i) curve.points.push_back(patch.at(i, j));
+  }
+  return curve;
+}
+
+HomogeneousBound second_derivative_bound(const BezierCurve& curve) {
+  HomogeneousBound bound;
+  const auto& p = curve.points;
+  for (std::size_t i = 2; i < p.size(); ++i) include(bound, p[i] - 2.0 * p[i - 1] + p[i - 2]);
+  const int d = curve.degree();
+  return scaled(bound, d * (d - 1), p, 2);
+}
+
+HomogeneousBound second_derivative_bound(const BezierPatch& patch, Direction direction) {
+  HomogeneousBound bound;
+  const bool along_u = direction == Direction::u;
+  const int degree = along_u ? patch.degree_u : patch.degree_v;
+  for (int i = along_u ? 2 : 0; i <= patch.degree_u; ++i) {
+    for (int j = along_u ? 0 : 2; j <= patch.degree_v; ++j) {
+      include(bound, along_u ? patch.at(i, j) - 2.0 * patch.at(i - 1, j) + patch.at(i - 2, j)
+                             : patch.at(i, j) - 2.0 * patch.at(i, j - 1) + patch.at(i, j - 2));
+    }
+  }
+  return scaled(bound, degree * (degree - 1), patch.points, 2);
+}
+
+HomogeneousBound mixed_derivative_bound(const BezierPatch& patch) {
+  HomogeneousBound bound;
+  for (int i = 2; i <= patch.degree_u; ++i) {
+    for (int j = 2; j <= patch.degree_v; ++j) {
+      const auto along_u = [&](int k) {
+        return patch.at(i, k) - 2.0 * patch.at(i - 1, k) + patch.at(i - 2, k);
+      };
+      include(bound, along_u(j) - 2.0 * along_u(j - 1) + along_u(j - 2));
+    }
+  }
+  const int p = patch.degree_u;
+  const int q = patch.degree_v;
+  return scaled(bound, p * (p - 1) * q * (q - 1), patch.points, 4);
+}
+
+}  // namespace taut

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "taut/core/geometry.h"
+
+namespace taut {
+
+/// The two parameter directions of a surface.
+enum class Direction { u, v };
+
+/// A rational Bezier curve c(t), t in [0, 1].
+///
+/// Control points are homogeneous, (w x, w y, w z, w) with w > 0; there are degree + 1 of them.
+struct BezierCurve {
+  std::vector<dvec4> points;
+
+  int degree() const { return static_cast<int>(points.size()) - 1; }
+};
+
+/// A rational tensor-product Bezier patch S(u, v), (u, v) in [0, 1]^2.
+///
+/// Control points are homogeneous, (w x, w y, w z, w) with w > 0, and stand along v within along u:
+/// point (i, j) is points[i * (degree_v + 1) + j].
+struct BezierPatch {
+  int degree_u = 0;
+  int degree_v = 0;
+  std::vector<dvec4> points;
+
+  const dvec4& at(int i, int j) const { return points[index(i, j)]; }
+  dvec4& at(int i, int j) { return points[index(i, j)]; }
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(degree_v + 1) +
+           static_cast<std::size_t>(j);
+  }
+};
+
+/// The Euclidean point of a homogeneous one.
+inline dvec3 euclidean(const dvec4& p) { return dvec3(p) / p.w; }
+
+/// The homogeneous point of a Euclidean one with weight w.
+inline dvec4 homogeneous(const dvec3& p, double w = 1) { return {w * p, w}; }
+
+/// All weights equal: the curve or patch is polynomial.
+bool is_polynomial(const std::vector<dvec4>& points);
+
+/// @throws InvalidInput if degrees are below 1 or above max_degree, the number of points does not
+/// match, or a number is not finite or a weight not positive; `name` begins the message
+void validate(const BezierCurve& curve, const std::string& name);
+void validate(const BezierPatch& patch, const std::string& name);
+
+/// @name Evaluation
+/// Points and derivatives with respect to the parameters, at any (u, v) in [0, 1]^2.
+/// Error of a point: at most (4 degree_u + 4 degree_v + 8) rounding units of the largest control
+/// point's coordinate when weights are equal (Bernstein sums of positive weights).
+/// @{
+struct CurveJet {
+  dvec3 c, ct, ctt, cttt;
+};
+struct PatchJet1 {
+  dvec3 S, Su, Sv;
+};
+struct PatchJet2 : PatchJet1 {
+  dvec3 Suu, Suv, Svv;
+};
+struct PatchJet3 : PatchJet2 {
+  dvec3 Suuu, Suuv, Suvv, Svvv;
+};
+
+dvec3 point(const BezierCurve& curve, double t);
+CurveJet jet(const BezierCurve& curve, double t);
+dvec3 point(const BezierPatch& patch, double u, double v);
+PatchJet1 jet1(const BezierPatch& patch, double u, double v);
+PatchJet2 jet2(const BezierPatch& patch, double u, double v);
+PatchJet3 jet3(const BezierPatch& patch, double u, double v);
+/// @}
+
+/// Unit surface normal, in the direction of Su x Sv.
+///
+/// Where the patch degenerates (a collapsed edge, parallel tangents) it is the limit along the
+/// line to the patch's centre; the zero vector if there is none (the patch is a curve or a point).
+dvec3 unit_normal(const BezierPatch& patch, double u, double v);
+
+/// @name Exact changes of representation
+/// The same curve or patch up to the rounding of convex combinations.
+/// @{
+BezierCurve elevated(const BezierCurve& curve, int degree);
+BezierPatch elevated(const BezierPatch& patch, int degree_u, int degree_v);
+/// The part over an interval within [0, 1], reparametrised to [0, 1].
+BezierCurve restricted(const BezierCurve& curve, Interval t);
+BezierPatch restricted(const BezierPatch& patch, Interval u, Interval v);
+BezierCurve reversed(const BezierCurve& curve);
+/// Exchanges u and v.
+BezierPatch transposed(const BezierPatch& patch);
+/// @}
+
+/// The four borders of a patch.
+enum class Side { u0, u1, v0, v1 };
+inline constexpr std::array<Side, 4> all_sides = {Side::u0, Side::u1, Side::v0, Side::v1};
+
+/// The border as a curve, in the direction of the growing free parameter.
+BezierCurve border(const BezierPatch& patch, Side side);
+
+/// Bounds on the derivatives of the *homogeneous* patch: the largest norms of the space part and
+/// the weight part, separately, over [0, 1]^2. From differences of the control net; rounding
+/// included.
+struct HomogeneousBound {
+  double space = 0;
+  double weight = 0;
+};
+/// Of d^2/du^2 or d^2/dv^2 over the patch.
+HomogeneousBound second_derivative_bound(const BezierPatch& patch, Direction direction);
+/// Of d^2/dt^2 over the curve.
+HomogeneousBound second_derivative_bound(const BezierCurve& curve);
+/// Of the mixed fourth derivative d^4/(du^2 dv^2).
+HomogeneousBound mixed_derivative_bound(const BezierPatch& patch);
+
+}  // namespace taut

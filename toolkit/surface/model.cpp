@@ -1,0 +1,191 @@
+#include "taut/surface/model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "taut/core/error.h"
+
+namespace taut {
+namespace {
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+int to_int(std::size_t n) { return static_cast<int>(n); }
+
+void include(Box& box, const std::vector<dvec4>& points) {
+  for (const dvec4& p : points) box.include(euclidean(p));
+}
+
+/// Far points, or points with tiny weights, may be finite one by one and yet have differences that
+/// overflow; all that follows takes differences. @throws InvalidInput
+void validate_extent(const Box& box, const std::string& name) {
+  if (!std::isfinite(diagonal(box))) throw InvalidInput(name + ": the extent overflows");
+}
+
+/// @throws InvalidInput
+void validate(const RigidMotion& pose, const std::string& name) {
+  constexpr double tolerance = 1e-9;
+  const dmat3 residual = glm::transpose(pose.rotation) * pose.rotation - dmat3(1.0);
+  // Asked in a form that NaN fails.
+  bool rotation = std::abs(glm::determinant(pose.rotation) - 1) <= tolerance;
+  bool translation = true;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rotation = rotation && std::abs(residual[i][j]) <= tolerance;
+    translation = translation && std::isfinite(pose.translation[i]);
+  }
+  if (!rotation) {
+    throw InvalidInput(name + ": the rotation is not orthogonal with determinant 1");
+  }
+  if (!translation) throw InvalidInput(name + ": the translation is not finite");
+}
+
+std::size_t source_count_of(const Part& part) {
+  return part.faces().size() + part.edges().size() + part.vertices().size();
+}
+
+template <class Count>
+int sum_over_instances(const Model& model, const Count& count) {
+  std::size_t sum = 0;
+  for (const Instance& instance : model.instances()) {
+    sum += count(model.parts()[to_size(instance.part)]);
+  }
+  return to_int(sum);
+}
+
+}  // namespace
+
+void Part::add_surface(const NurbsSurface& surface, std::string face_name) {
+  assert(!connected_);
+  validate(surface, face_name);
+  std::vector<PatchPiece> pieces = decompose(surface);
+  Box box = box_;
+  for (const PatchPiece& piece : pieces) include(box, piece.bezier.points);
+  validate_extent(box, face_name);
+
+  const int face = to_int(faces_.size());
+  faces_.push_back({std::move(face_name), to_int(patches_.size()), to_int(pieces.size())});
+  for (PatchPiece& piece : pieces) {
+    Patch patch;
+    patch.bezier = std::move(piece.bezier);
+    patch.u = piece.u;
+    patch.v = piece.v;
+    patch.face = face;
+    patches_.push_back(std::move(patch));
+  }
+  box_ = box;
+}
+
+void Part::add_curve(const NurbsCurve& curve, std::string edge_name) {
+  assert(!connected_);
+  validate(curve, edge_name);
+  std::vector<CurvePiece> pieces = decompose(curve);
+  Box box = box_;
+  for (const CurvePiece& piece : pieces) include(box, piece.bezier.points);
+  validate_extent(box, edge_name);
+
+  const int edge = to_int(edges_.size());
+  edges_.push_back({std::move(edge_name), to_int(pieces_.size()), to_int(pieces.size()), {}});
+  for (CurvePiece& piece : pieces) {
+    EdgePiece edge_piece;
+    edge_piece.bezier = std::move(piece.bezier);
+    edge_piece.t = piece.t;
+    edge_piece.edge = edge;
+    pieces_.push_back(std::move(edge_piece));
+  }
+  box_ = box;
+}
+
+void Part::add_point(const dvec3& point) {
+  assert(!connected_);
+  const std::string point_name = name + ": point " + std::to_string(vertices_.size());
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(point[i])) throw InvalidInput(point_name + " is not finite");
+  }
+  Box box = box_;
+  box.include(point);
+  validate_extent(box, point_name);
+  vertices_.push_back({point, true});
+  box_ = box;
+}
+
+int Model::add_part(Part part, double smooth_angle) {
+  if (!part.connected()) part.connect(smooth_angle);
+  validate_room(part, "part " + part.name);
+  const int index = to_int(parts_.size());
+  parts_.push_back(std::move(part));
+  add_instance(index, {});
+  return index;
+}
+
+void Model::add_instance(int part, const RigidMotion& pose) {
+  const std::string name = "instance " + std::to_string(instances_.size());
+  if (part < 0 || to_size(part) >= parts_.size()) {
+    throw InvalidInput(name + ": there is no part " + std::to_string(part));
+  }
+  validate(pose, name);
+  const Part& placed = parts_[to_size(part)];
+  validate_room(placed, name);
+  instances_.push_back({part, pose});
+  first_source_.push_back(source_count_);
+  source_count_ += to_int(source_count_of(placed));
+  patch_count_ += to_int(placed.patches().size());
+}
+
+void Model::clear_instances() {
+  instances_.clear();
+  first_source_.clear();
+  source_count_ = 0;
+  patch_count_ = 0;
+}
+
+void Model::validate_room(const Part& part, const std::string& name) const {
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (source_count_of(part) > most - to_size(source_count_) ||
+      part.patches().size() > most - to_size(patch_count_)) {
+    throw LimitExceeded(name + ": the model would have more than " + std::to_string(most) +
+                        " sources or patches");
+  }
+}
+
+int Model::source_count() const { return source_count_; }
+
+Source Model::source(int id) const {
+  // Instances without sources share their first number with the next one; the last of them has it.
+  const auto next = std::upper_bound(first_source_.begin(), first_source_.end(), id);
+  Source source;
+  source.instance = to_int(static_cast<std::size_t>(next - first_source_.begin())) - 1;
+  source.index = id - first_source_[to_size(source.instance)];
+  const Part& part = parts_[to_size(instances_[to_size(source.instance)].part)];
+  const int faces = to_int(part.faces().size());
+  const int edges = to_int(part.edges().size());
+  if (source.index < faces) return source;
+  source.index -= faces;
+  source.kind = SourceKind::edge;
+  if (source.index < edges) return source;
+  source.index -= edges;
+  source.kind = SourceKind::vertex;
+  return source;
+}
+
+int Model::source_id(const Source& source) const {
+  const Part& part = parts_[to_size(instances_[to_size(source.instance)].part)];
+  int id = first_source_[to_size(source.instance)] + source.index;
+  if (source.kind != SourceKind::face) id += to_int(part.faces().size());
+  if (source.kind == SourceKind::vertex) id += to_int(part.edges().size());
+  return id;
+}
+
+int Model::face_count() const {
+  return sum_over_instances(*this, [](const Part& part) { return part.faces().size(); });
+}
+int Model::edge_count() const {
+  return sum_over_instances(*this, [](const Part& part) { return part.edges().size(); });
+}
+int Model::vertex_count() const {
+  return sum_over_instances(*this, [](const Part& part) { return part.vertices().size(); });
+}
+int Model::patch_count() const { return patch_count_; }
+
+}  // namespace taut

@@ -1,0 +1,185 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "taut/surface/nurbs.h"
+
+namespace taut {
+
+/// What a source of contacts is (design: face, edge, vertex).
+enum class SourceKind { face, edge, vertex };
+
+/// How a patch ends at one of its four sides.
+enum class BorderKind {
+  smooth,     ///< another patch continues with the same tangent planes (G1)
+  edge,       ///< the surface ends here, or meets its neighbour in a crease
+  collapsed,  ///< the whole side is one point (the pole of a sphere, the tip of a cone)
+};
+
+/// One side of a patch.
+struct Border {
+  BorderKind kind = BorderKind::edge;
+  /// smooth, and an edge in which exactly two sides meet: the patch on the other side (the patch
+  /// itself where it closes on itself), else -1.
+  int neighbor = -1;
+  Side neighbor_side = Side::u0;
+  /// The neighbour's free parameter runs the other way.
+  bool reversed = false;
+  /// edge: the edge and its piece (an index into Part::pieces), else -1.
+  /// `piece_reversed`: the piece runs against the border.
+  int edge = -1;
+  int piece = -1;
+  bool piece_reversed = false;
+  /// collapsed onto a vertex (a tip, or the end of an edge): the vertex; -1 where the surface is
+  /// smooth there (a pole).
+  int vertex = -1;
+};
+
+/// A Bezier patch of a face with the rectangle of the face's parameters that it covers.
+struct Patch {
+  BezierPatch bezier;
+  Interval u, v;
+  int face = -1;
+  /// Indexed by Side.
+  std::array<Border, 4> borders;
+  /// Vertex at the corners (u0,v0), (u0,v1), (u1,v0), (u1,v1), or -1 where the corner is none.
+  std::array<int, 4> corner_vertex = {-1, -1, -1, -1};
+};
+
+/// A Bezier piece of an edge with the interval of the edge's parameter that it covers.
+struct EdgePiece {
+  BezierCurve bezier;
+  Interval t;
+  int edge = -1;
+  /// How it goes on at t.lower and t.upper: either with a vertex, or straight on (G1) with a piece
+  /// of this or another edge, which may run the other way or be this piece itself. The other is -1.
+  std::array<int, 2> end_vertex = {-1, -1};
+  std::array<int, 2> end_neighbor = {-1, -1};
+};
+
+/// What the input calls a face: one surface. Its patches are consecutive in Part::patches.
+struct Face {
+  std::string name;
+  int first_patch = 0;
+  int patch_count = 0;
+};
+
+/// A curve where the surface is not smooth or ends, or a free curve; its pieces are consecutive in
+/// Part::pieces. Border edges run over [0, number of pieces], free curves over their own domain.
+struct Edge {
+  std::string name;
+  int first_piece = 0;
+  int piece_count = 0;
+  /// Faces that meet in it, ascending, one entry per side: none (a free curve), one (an open
+  /// border) or more; the same face twice where it meets itself.
+  std::vector<int> faces;
+};
+
+/// A corner, the end of an edge, or a free point.
+struct Vertex {
+  dvec3 point;
+  /// A free point, on no face and no edge.
+  bool free = false;
+};
+
+/// Geometry in a frame of its own, placed any number of times by instances.
+class Part {
+ public:
+  std::string name;
+
+  /// Each call validates what it is given; one that throws changes nothing.
+  /// @pre not connected @throws InvalidInput
+  void add_surface(const NurbsSurface& surface, std::string face_name);
+  void add_curve(const NurbsCurve& curve, std::string edge_name);
+  void add_point(const dvec3& point);
+
+  /// Finds how the patches meet: fills borders, edges and vertices. Call once after the last add.
+  ///
+  /// Two sides meet if their curves agree, parameter by parameter in either direction, within
+  /// join_distance of the part's diagonal; the join of exactly two is smooth if the one surface
+  /// continues the other with tangent planes that agree within `smooth_angle` everywhere along it
+  /// (checked at as many parameters as determine the polynomials involved). Surfaces need not be
+  /// oriented alike; one that folds back onto the other is not smooth, though its planes agree.
+  ///
+  /// All other sides are edges: maximal runs of straight-on borders along which the same sides of
+  /// the same faces meet. A vertex stands where edges, free curves included, end in anything but
+  /// one straight-on continuation (so also at a kink inside a free curve, which stays one edge),
+  /// and at a collapsed side that has no common normal. The points of an edge's pieces and of the
+  /// vertices are those of the first side that is there.
+  /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]
+  void connect(double smooth_angle);
+  bool connected() const { return connected_; }
+
+  const std::vector<Face>& faces() const { return faces_; }
+  const std::vector<Edge>& edges() const { return edges_; }
+  const std::vector<Vertex>& vertices() const { return vertices_; }
+  const std::vector<Patch>& patches() const { return patches_; }
+  const std::vector<EdgePiece>& pieces() const { return pieces_; }
+  /// Box of the control points, which contains the geometry.
+  const Box& control_box() const { return box_; }
+
+ private:
+  std::vector<Face> faces_;
+  std::vector<Edge> edges_;
+  std::vector<Vertex> vertices_;
+  std::vector<Patch> patches_;
+  std::vector<EdgePiece> pieces_;
+  Box box_;
+  bool connected_ = false;
+};
+
+/// A part placed by a rigid motion.
+struct Instance {
+  int part = 0;
+  RigidMotion pose;
+};
+
+/// A source of contacts: a face, edge or vertex of one instance.
+struct Source {
+  SourceKind kind = SourceKind::face;
+  int instance = 0;
+  int index = 0;  ///< into the part's faces, edges or vertices
+};
+
+/// Faces, edges and vertices, in parts that are placed by instances.
+///
+/// Sources are numbered through: per instance, in order, its faces, then its edges, then its
+/// vertices.
+class Model {
+ public:
+  /// Adds the part, which is connected now if it was not yet, and one instance of it at rest.
+  /// Returns the part's index. @throws LimitExceeded as add_instance() does
+  int add_part(Part part, double smooth_angle);
+  /// Places a part once more. @throws InvalidInput if the index is out of range, the rotation is
+  /// not orthogonal with determinant 1 within 1e-9 or the translation is not finite; LimitExceeded
+  /// if sources or patches no longer could be numbered by an int
+  void add_instance(int part, const RigidMotion& pose);
+  /// Takes the instances out (those at rest too), to be placed anew.
+  void clear_instances();
+
+  const std::vector<Part>& parts() const { return parts_; }
+  const std::vector<Instance>& instances() const { return instances_; }
+
+  int source_count() const;
+  /// @pre 0 <= id < source_count()
+  Source source(int id) const;
+  int source_id(const Source& source) const;
+
+  /// Numbers over all instances.
+  int face_count() const;
+  int edge_count() const;
+  int vertex_count() const;
+  int patch_count() const;
+
+ private:
+  void validate_room(const Part& part, const std::string& name) const;
+
+  std::vector<Part> parts_;
+  std::vector<Instance> instances_;
+  std::vector<int> first_source_;  // per instance
+  int source_count_ = 0;
+  int patch_count_ = 0;
+};
+
+}  // namespace taut

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/core/geometry.h"
+
+namespace taut {
+
+/// Polygons over shared vertices, as files hold them: nothing is promised about their topology.
+struct PolygonMesh {
+  std::vector<dvec3> points;
+  /// Vertex indices, in range, at least three a polygon.
+  std::vector<std::vector<int>> polygons;
+};
+
+}  // namespace taut

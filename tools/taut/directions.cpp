@@ -1,0 +1,128 @@
+#include "directions.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+
+#include "taut/core/error.h"
+#include "text.h"
+
+namespace taut::tool {
+namespace {
+
+/// Three numbers and a comment are shorter; what is longer is no such file.
+constexpr std::size_t max_line_length = 4096;
+
+std::string reason() { return std::error_code(errno, std::generic_category()).message(); }
+
+/// Reads lines from a file or standard input, which may be a terminal or a pipe: it wakes up now
+/// and then to see whether it should stop.
+class LineReader {
+ public:
+  LineReader(const std::string& path, const std::stop_token& stop)
+      : name_(path == "-" ? "standard input" : path),
+        descriptor_(path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)),
+        stop_(stop) {
+    if (descriptor_ < 0) throw IoError(name_ + ": cannot be read: " + reason());
+  }
+  ~LineReader() {
+    if (descriptor_ != STDIN_FILENO) close(descriptor_);
+  }
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+
+  /// The next line without its end; false at the end of the file.
+  bool next(std::string& line) {
+    line.clear();
+    ++line_;
+    for (;;) {
+      const std::size_t end = rest_.find('\n');
+      if (line.size() + std::min(end, rest_.size()) > max_line_length) {
+        throw IoError(place() + "line is longer than " + number(long(max_line_length)) +
+                      " characters");
+      }
+      line += rest_.substr(0, end);
+      if (end != std::string_view::npos) {
+        rest_.remove_prefix(end + 1);
+        return true;
+      }
+      if (!fill()) return !line.empty();
+    }
+  }
+
+  /// "FILE:LINE: " of the last line.
+  std::string place() const { return name_ + ":" + number(line_) + ": "; }
+
+ private:
+  bool fill() {
+    for (;;) {
+      if (stop_.stop_requested()) throw Cancelled();
+      pollfd wait = {descriptor_, POLLIN, 0};
+      if (poll(&wait, 1, 100) == 0) continue;
+      const ssize_t count = read(descriptor_, buffer_.data(), buffer_.size());
+      if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+      if (count < 0) throw IoError(name_ + ": cannot be read: " + reason());
+      rest_ = std::string_view(buffer_.data(), static_cast<std::size_t>(count));
+      return count > 0;
+    }
+  }
+
+  std::string name_;
+  int descriptor_;
+  std::stop_token stop_;
+  std::array<char, 65536> buffer_;
+  std::string_view rest_;
+  long line_ = 0;
+};
+
+std::vector<std::string_view> words(std::string_view line) {
+  constexpr std::string_view space = " \t\r\v\f";
+  line = line.substr(0, line.find('#'));
+  std::vector<std::string_view> found;
+  for (std::size_t begin = line.find_first_not_of(space); begin != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(space, begin), line.size());
+    found.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(space, end);
+  }
+  return found;
+}
+
+dvec3 parse_direction(const std::vector<std::string_view>& fields, const std::string& place) {
+  if (fields.size() != 3) {
+    throw IoError(place + "a direction has three numbers, here are " + number(long(fields.size())) +
+                  " words");
+  }
+  dvec3 direction(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string_view field = fields[std::size_t(axis)];
+    const auto value = parse_number(field);
+    if (!value) throw IoError(place + "'" + std::string(field.substr(0, 40)) + "' is no number");
+    if (!std::isfinite(*value)) {
+      throw InvalidInput(place + "'" + std::string(field.substr(0, 40)) + "' is not finite");
+    }
+    direction[axis] = *value;
+  }
+  if (direction == dvec3(0.0)) throw InvalidInput(place + "the zero vector is no direction");
+  return direction;
+}
+
+}  // namespace
+
+std::vector<dvec3> read_directions(const std::string& path, const std::stop_token& stop) {
+  LineReader reader(path, stop);
+  std::vector<dvec3> directions;
+  std::string line;
+  while (reader.next(line)) {
+    const auto fields = words(line);
+    if (!fields.empty()) directions.push_back(parse_direction(fields, reader.place()));
+  }
+  return directions;
+}
+
+}  // namespace taut::tool

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "taut/core/geometry.h"
+
+namespace taut::tool {
+
+/// Reads directions, one a line: three numbers, not all zero, not necessarily a unit vector. Blank
+/// lines are passed over, and so is the rest of a line from a '#'. "-" is standard input.
+/// @throws IoError (FILE:LINE: ...) for a line that is not three numbers, InvalidInput (likewise)
+/// for a zero vector and for numbers that are not finite, Cancelled
+std::vector<dvec3> read_directions(const std::string& path, const std::stop_token& stop);
+
+}  // namespace taut::tool

@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "input.h"
+#include "output.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/measures.h"
+#include "taut/io/report.h"
+#include "taut/io/write_mesh.h"
+#include "text.h"
+
+namespace taut::tool {
+namespace {
+
+constexpr double default_relative = 1e-4;
+
+struct HullArguments {
+  std::vector<std::string> inputs;
+  std::vector<std::string> outputs;
+  std::string report;
+  std::string method = "sampled";
+  std::optional<double> relative;
+  std::optional<double> tolerance;
+  int max_vertices = HullOptions().max_vertices;
+};
+
+/// What can be told from the command line alone.
+void check(const HullArguments& arguments, bool json) {
+  if (arguments.method != "sampled") {
+    throw UsageError("--method " + arguments.method +
+                     " is not available yet: give --method sampled");
+  }
+  if (arguments.outputs.empty() && arguments.report.empty() && !json) {
+    throw UsageError("nothing to write: give -o FILE, --report FILE or --json");
+  }
+  check_outputs(arguments.outputs, arguments.report, arguments.inputs);
+}
+
+/// In model units.
+double tolerance(const HullArguments& arguments, double diagonal) {
+  if (arguments.tolerance) return *arguments.tolerance;
+  const double relative = arguments.relative.value_or(default_relative);
+  // A single point has no diagonal; any tolerance serves it.
+  if (!(diagonal > 0)) return relative;
+  const double tolerance = relative * diagonal;
+  if (!(tolerance > 0) || !std::isfinite(tolerance)) {
+    throw UsageError("--relative " + number(relative, 17) + " of the diagonal " +
+                     number(diagonal, 17) + " is no number that a double holds");
+  }
+  return tolerance;
+}
+
+/// The hull within the tolerance asked for or, where `failure` is set, within the best that could
+/// be reached.
+struct Outcome {
+  Hull hull;
+  std::optional<NotConverged> failure;
+};
+
+/// @throws NotConverged if there is not even a best result
+Outcome compute(const Scene& scene, HullOptions options) {
+  try {
+    return {sampled_hull(scene, options), {}};
+  } catch (const NotConverged& failure) {
+    const auto give_up = [&] {
+      return NotConverged(std::string(failure.what()) + "; nothing is written", failure.reached);
+    };
+    // The exception tells only how far the computation came, so it is done again up to there.
+    if (!(failure.reached > options.tolerance) || !std::isfinite(failure.reached)) throw give_up();
+    options.tolerance = failure.reached;
+    try {
+      return {sampled_hull(scene, options), failure};
+    } catch (const NotConverged&) {
+      throw give_up();
+    }
+  }
+}
+
+Report make_report(const Input& input, const Hull& hull, const HullArguments& arguments,
+                   double tolerance) {
+  Report report;
+  report.input = input.summary();
+  report.method = arguments.method;
+  report.dimension = hull.dimension;
+  report.hull.gap_bound = hull.distance_bound;
+  report.mesh.vertices = long(hull.mesh.n_vertices());
+  report.mesh.edges = long(hull.mesh.n_edges());
+  report.mesh.faces = long(hull.mesh.n_faces());
+  report.mesh.measures = measure(polygons(hull.mesh));
+  report.mesh.tolerance = tolerance;
+  report.mesh.distance_bound = hull.distance_bound;
+  report.queries = {hull.statistics.support_queries, hull.statistics.newton_iterations};
+  report.seconds.read = input.seconds_read;
+  report.seconds.build = input.seconds_build;
+  report.seconds.sample = hull.statistics.seconds_sample;
+  report.seconds.mesh = hull.statistics.seconds_mesh;
+  return report;
+}
+
+std::string summary(const Report& report, const std::vector<std::string>& written) {
+  const auto line = [](const char* name, const std::string& text) {
+    return padded(name, 10) + one_line(text) + "\n";
+  };
+  const Report::Input& input = report.input;
+  const Report::Seconds& s = report.seconds;
+  const double relative = input.diagonal > 0 ? report.mesh.distance_bound / input.diagonal : 0;
+  std::string text;
+  text += line("input", joined(input.files));
+  text += line("", counted(input.faces, "face", "faces") + ", " +
+                       counted(input.patches, "patch", "patches") + ", diagonal " +
+                       number(input.diagonal));
+  text += line("mesh", counted(report.mesh.faces, "face", "faces") + ", " +
+                           counted(report.mesh.vertices, "vertex", "vertices") + " (" +
+                           report.method + ")");
+  text += line("volume", number(report.mesh.measures.volume, 10));
+  text += line("area", number(report.mesh.measures.area, 10));
+  text += line("distance", "at most " + number(report.mesh.distance_bound, 3) +
+                               " from the true hull, " + number(relative, 3) + " of the diagonal");
+  text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
+                              number(s.build, 2) + ", sample " + number(s.sample, 2) + ", mesh " +
+                              number(s.mesh, 2) + ", write " + number(s.write, 2));
+  for (const std::string& file : written) text += line("wrote", file);
+  return text;
+}
+
+ExitCode run(const HullArguments& arguments, Session& session) {
+  check(arguments, session.options().json);
+  const Input input = load(arguments.inputs, session);
+  HullOptions options;
+  options.tolerance = tolerance(arguments, input.scene.diagonal());
+  options.threads = session.options().threads;
+  options.max_vertices = arguments.max_vertices;
+  options.progress = session.progress();
+  const Outcome outcome = compute(input.scene, options);
+
+  Report report = make_report(input, outcome.hull, arguments, options.tolerance);
+  const Stopwatch writing;
+  for (const std::string& file : arguments.outputs) {
+    options.progress.check();
+    write_mesh(file, outcome.hull.mesh);
+  }
+  options.progress.check();
+  report.seconds.write = writing.seconds();
+  report.seconds.total = session.seconds();
+  report.peak_bytes = peak_bytes();
+  report.warnings = session.warnings();
+  if (outcome.failure) report.warnings.push_back({"not-converged", outcome.failure->what()});
+
+  const std::string json = taut::to_json(report);
+  std::vector<std::string> written = arguments.outputs;
+  if (!arguments.report.empty() && arguments.report != "-") {
+    write_text(arguments.report, json);
+    written.push_back(arguments.report);
+  }
+  if (session.options().json || arguments.report == "-") {
+    session.print(json);
+  } else if (!session.options().quiet) {
+    session.print(summary(report, written));
+  }
+  if (!outcome.failure) return ExitCode::done;
+  throw NotConverged(std::string(outcome.failure->what()) + "; the hull " +
+                         (written.empty() ? "found" : "written") + " is within " +
+                         number(report.mesh.distance_bound, 3),
+                     outcome.failure->reached);
+}
+
+}  // namespace
+
+Command add_hull(CLI::App& parent) {
+  Command command = add_command(
+      parent, "hull", "Convex hull of all inputs together",
+      "Examples:\n"
+      "  taut hull teapot.bpt -o hull.ply\n"
+      "  taut hull teapot.bpt -o hull.ply -o hull.stl --relative 1e-5 --report hull.json\n"
+      "  taut hull a.bpt b.obj --tolerance 0.01 --json");
+  const auto arguments = std::make_shared<HullArguments>();
+  CLI::App& app = *command.app;
+  add_inputs(app, arguments->inputs);
+  app.add_option("-o,--output", arguments->outputs,
+                 "Mesh to write: .ply .obj .off .stl; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  app.add_option("--method", arguments->method,
+                 "sampled (default): a mesh through points of the model;\nprecise and "
+                 "envelope are not available yet")
+      ->check(CLI::IsMember({"sampled", "precise", "envelope"}).description(""))
+      ->type_name("METHOD");
+  CLI::Option* relative =
+      add_positive(
+          app, "--relative", arguments->relative,
+          "Largest distance of the mesh from the true hull, as a fraction of\nthe diagonal "
+          "of the model's box; default 1e-4")
+          ->type_name("R");
+  add_positive(app, "--tolerance", arguments->tolerance,
+               "The same in model units; not with --relative")
+      ->type_name("T")
+      ->excludes(relative);
+  add_integer(app, "--max-vertices", arguments->max_vertices, 4, std::numeric_limits<int>::max(),
+              "Vertices after which to give up on the tolerance, default " +
+                  number(long(arguments->max_vertices)));
+  app.add_option("--report", arguments->report, "JSON report to write; - is stdout")
+      ->type_name("FILE");
+  command.run = [arguments](Session& session) { return run(*arguments, session); };
+  return command;
+}
+
+}  // namespace taut::tool

@@ -1,0 +1,171 @@
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "input.h"
+#include "text.h"
+
+namespace taut::tool {
+namespace {
+
+/// Degrees (u, v) of patches, or (t, 0) of the pieces of free curves, and how many there are.
+using DegreeCounts = std::map<std::pair<int, int>, long>;
+
+/// What one file holds.
+struct Contents {
+  Report::Input summary;
+  DegreeCounts patches;
+  DegreeCounts free_pieces;
+  long free_vertices = 0;
+  long rational = 0;
+  std::vector<std::string> face_names;
+};
+
+Contents contents(const Input& input) {
+  Contents contents;
+  contents.summary = input.summary();
+  for (const Instance& instance : input.scene.model().instances()) {
+    const Part& part = input.scene.model().parts()[std::size_t(instance.part)];
+    for (const Patch& patch : part.patches()) {
+      ++contents.patches[{patch.bezier.degree_u, patch.bezier.degree_v}];
+      contents.rational += is_polynomial(patch.bezier.points) ? 0 : 1;
+    }
+    for (const EdgePiece& piece : part.pieces()) {
+      if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
+      ++contents.free_pieces[{piece.bezier.degree(), 0}];
+      contents.rational += is_polynomial(piece.bezier.points) ? 0 : 1;
+    }
+    for (const Vertex& vertex : part.vertices()) contents.free_vertices += vertex.free ? 1 : 0;
+    for (const Face& face : part.faces()) contents.face_names.push_back(face.name);
+  }
+  return contents;
+}
+
+/// All files taken together, without building a common scene.
+Report::Input total(const std::vector<Contents>& files) {
+  Report::Input total;
+  for (const Contents& file : files) {
+    total.files.insert(total.files.end(), file.summary.files.begin(), file.summary.files.end());
+    total.faces += file.summary.faces;
+    total.edges += file.summary.edges;
+    total.vertices += file.summary.vertices;
+    total.patches += file.summary.patches;
+    total.box.include(file.summary.box);
+  }
+  total.diagonal = diagonal(total.box);
+  return total;
+}
+
+Json degrees_json(const DegreeCounts& counts, const char* noun) {
+  Json json = Json::array();
+  for (const auto& [degree, count] : counts) {
+    Json entry;
+    entry["degree"] = degree.second > 0 ? Json{degree.first, degree.second} : Json{degree.first};
+    entry[noun] = count;
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json json_of(const Contents& file) {
+  Json json;
+  json["file"] = file.summary.files.front();
+  const Json counts = to_json(file.summary);
+  for (const char* key : {"faces", "edges", "vertices", "patches"}) json[key] = counts[key];
+  json["degrees"] = degrees_json(file.patches, "patches");
+  json["free_curves"] = degrees_json(file.free_pieces, "pieces");
+  json["free_points"] = file.free_vertices;
+  json["rational"] = file.rational > 0;
+  json["diagonal"] = counts["diagonal"];
+  json["box"] = counts["box"];
+  json["names"] = file.face_names;
+  return json;
+}
+
+std::string degrees_text(const DegreeCounts& counts) {
+  std::vector<std::string> words;
+  for (const auto& [degree, count] : counts) {
+    std::string word = number(long(degree.first));
+    if (degree.second > 0) word += "x" + number(long(degree.second));
+    words.push_back(word + ": " + number(count));
+  }
+  return joined(words);
+}
+
+std::string point_text(const dvec3& p) {
+  return number(p.x, 9) + " " + number(p.y, 9) + " " + number(p.z, 9);
+}
+
+std::string sizes_text(const Report::Input& input) {
+  return "  faces     " + number(long(input.faces)) + "\n" +     //
+         "  edges     " + number(long(input.edges)) + "\n" +     //
+         "  vertices  " + number(long(input.vertices)) + "\n" +  //
+         "  patches   " + number(long(input.patches)) + "\n" +   //
+         "  box       " + point_text(input.box.lower) + "  to  " + point_text(input.box.upper) +
+         "\n" +  //
+         "  diagonal  " + number(input.diagonal, 9) + "\n";
+}
+
+std::string text_of(const Contents& file, bool names) {
+  std::string text = one_line(file.summary.files.front()) + "\n" + sizes_text(file.summary);
+  if (!file.patches.empty()) text += "  degrees   " + degrees_text(file.patches) + "\n";
+  if (!file.free_pieces.empty()) {
+    text += "  free curves, degrees  " + degrees_text(file.free_pieces) + "\n";
+  }
+  if (file.free_vertices > 0) text += "  free points  " + number(file.free_vertices) + "\n";
+  text += std::string("  rational  ") +
+          (file.rational > 0 ? "yes, " + number(file.rational) + " of the patches and curves"
+                             : std::string("no")) +
+          "\n";
+  if (names) {
+    for (std::size_t i = 0; i < file.face_names.size(); ++i) {
+      text += "  face " + number(long(i)) + "  " + one_line(file.face_names[i]) + "\n";
+    }
+  }
+  return text;
+}
+
+ExitCode run(const std::vector<std::string>& inputs, Session& session) {
+  std::vector<Contents> files;
+  double seconds_read = 0;
+  double seconds_build = 0;
+  for (const std::string& file : inputs) {
+    const Input input = load({file}, session);
+    files.push_back(contents(input));
+    seconds_read += input.seconds_read;
+    seconds_build += input.seconds_build;
+  }
+  if (session.options().json) {
+    Json list = Json::array();
+    for (const Contents& file : files) list.push_back(json_of(file));
+    session.print(text(
+        Json{{"taut", TAUT_VERSION},
+             {"input", to_json(total(files))},
+             {"files", std::move(list)},
+             {"seconds",
+              {{"read", seconds_read}, {"build", seconds_build}, {"total", session.seconds()}}},
+             {"peak_bytes", peak_bytes()},
+             {"warnings", to_json(session.warnings())}}));
+    return ExitCode::done;
+  }
+  for (const Contents& file : files) session.print(text_of(file, session.options().verbose));
+  if (files.size() > 1) session.print("all together\n" + sizes_text(total(files)));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& parent) {
+  Command command = add_command(parent, "info", "What the inputs hold",
+                                "Examples:\n"
+                                "  taut info teapot.bpt\n"
+                                "  taut info a.bpt b.obj --json");
+  const auto inputs = std::make_shared<std::vector<std::string>>();
+  add_inputs(*command.app, *inputs);
+  command.run = [inputs](Session& session) { return run(*inputs, session); };
+  return command;
+}
+
+}  // namespace taut::tool

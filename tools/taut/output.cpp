@@ -1,0 +1,122 @@
+#include "output.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "exit_code.h"
+#include "taut/io/formats.h"
+#include "text.h"
+
+namespace taut::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason() { return std::error_code(errno, std::generic_category()).message(); }
+
+void check_extension(const std::string& file) {
+  if (file == "-") {
+    throw UsageError("a mesh cannot be written to standard output: give a file's name");
+  }
+  const std::string wanted = extension(file);
+  std::vector<std::string> known;
+  for (const Format& format : formats()) {
+    if (!format.writes_mesh) continue;
+    if (format.extension == wanted) return;
+    known.push_back(format.extension);
+  }
+  throw UsageError(file + ": " +
+                   (wanted.empty() ? "no extension names the format"
+                                   : "no mesh format has the extension " + wanted) +
+                   "; known are " + joined(known, " "));
+}
+
+void check_place(const std::string& file) {
+  const fs::path path(file);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::exists(folder, error)) {
+    throw IoError(file + ": cannot be written: there is no folder " + folder.string());
+  }
+  if (!fs::is_directory(folder, error)) {
+    throw IoError(file + ": cannot be written: " + folder.string() + " is no folder");
+  }
+  if (fs::is_directory(path, error)) {
+    throw IoError(file + ": cannot be written: it is a folder");
+  }
+  const bool there = fs::exists(path, error);
+  if (there && access(file.c_str(), W_OK) != 0) {
+    throw IoError(file + ": cannot be written: " + reason());
+  }
+  // A file is written beside its place first, a pipe or device in its place.
+  const bool beside = !there || fs::is_regular_file(path, error);
+  if (beside && access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw IoError(file + ": cannot be written: " + folder.string() + ": " + reason());
+  }
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path first = fs::weakly_canonical(fs::absolute(a, error), error);
+  const fs::path second = fs::weakly_canonical(fs::absolute(b, error), error);
+  return !first.empty() && first == second;
+}
+
+void write_whole(std::FILE* file, const std::string& path, std::string_view text) {
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  if (!written) throw IoError(path + ": cannot be written: " + reason());
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<std::string>& meshes, const std::string& report,
+                   const std::vector<std::string>& inputs) {
+  for (const std::string& file : meshes) check_extension(file);
+  std::vector<std::string> outputs = meshes;
+  if (!report.empty() && report != "-") outputs.push_back(report);
+  for (const std::string& file : outputs) check_place(file);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (same_file(outputs[i], outputs[k])) {
+        throw UsageError(outputs[i] + ": is named twice as an output");
+      }
+    }
+    for (const std::string& input : inputs) {
+      if (same_file(outputs[i], input)) throw UsageError(outputs[i] + ": is an input");
+    }
+  }
+}
+
+void write_text(const std::string& path, std::string_view text) {
+  std::error_code error;
+  const bool in_place = fs::exists(path, error) && !fs::is_regular_file(path, error);
+  const std::string name =
+      in_place ? path : path + ".tmp-" + std::to_string(static_cast<long>(getpid()));
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "wb"),
+                                                       &std::fclose);
+  if (!file) throw IoError(path + ": cannot be written: " + reason());
+  try {
+    write_whole(file.get(), path, text);
+    if (std::fclose(file.release()) != 0) {
+      throw IoError(path + ": cannot be written: " + reason());
+    }
+    if (!in_place && std::rename(name.c_str(), path.c_str()) != 0) {
+      throw IoError(path + ": cannot be written: " + reason());
+    }
+  } catch (const IoError&) {
+    if (!in_place) std::remove(name.c_str());
+    throw;
+  }
+}
+
+void write_stdout(std::string_view text) { write_whole(stdout, "standard output", text); }
+
+}  // namespace taut::tool

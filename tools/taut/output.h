@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut::tool {
+
+/// Checks before any work is done that the meshes and, if not empty, the report can be written.
+/// @throws UsageError if no format writes a mesh with such an extension, or a file is named twice
+/// or is also an input; IoError if the folder is not there or a place cannot be written
+void check_outputs(const std::vector<std::string>& meshes, const std::string& report,
+                   const std::vector<std::string>& inputs);
+
+/// Writes a text file under a temporary name and renames it, so that it appears whole or not at
+/// all. What is there and is no regular file (a pipe, a device) is written to.
+/// @throws IoError
+void write_text(const std::string& path, std::string_view text);
+
+/// @throws IoError
+void write_stdout(std::string_view text);
+
+}  // namespace taut::tool

@@ -1,0 +1,100 @@
+#include "session.h"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "output.h"
+#include "text.h"
+
+namespace taut::tool {
+namespace {
+
+constexpr int max_threads = 4096;
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  const std::string group = "Common options";
+  command.add_flag("--json", options.json, "Result as JSON on stdout")->group(group);
+  command.add_flag("-q,--quiet", options.quiet, "No summary, warnings or progress")->group(group);
+  command.add_flag("-v,--verbose", options.verbose, "Tell more on stderr")->group(group);
+  add_integer(command, "--threads", options.threads, 0, max_threads,
+              "Threads to use, 0 (default) for all; same result for any number")
+      ->group(group);
+  command
+      .add_option("--progress", options.progress,
+                  "On stderr; auto (default): a bar if that is a terminal; plain: lines")
+      ->check(CLI::IsMember({"auto", "plain", "never"}).description(""))
+      ->type_name("auto|plain|never")
+      ->group(group);
+  command.set_version_flag("--version", "taut " TAUT_VERSION)->group(group);
+  command.set_help_flag("-h,--help", "Print this help and exit")->group(group);
+}
+
+CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optional<double>& value,
+                          const std::string& description) {
+  return command.add_option_function<std::string>(
+      name,
+      [&value, name](const std::string& text) {
+        const auto parsed = parse_number(text);
+        if (!parsed || !(*parsed > 0) || !std::isfinite(*parsed)) {
+          throw CLI::ValidationError(name, text + " is no positive number");
+        }
+        value = parsed;
+      },
+      description);
+}
+
+CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
+                         int highest, const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&value, name, lowest, highest](const std::string& text) {
+            const auto parsed = parse_integer(text);
+            if (!parsed || *parsed < lowest || *parsed > highest) {
+              throw CLI::ValidationError(name, text + " is no number from " + number(long(lowest)) +
+                                                   " to " + number(long(highest)));
+            }
+            value = *parsed;
+          },
+          description)
+      ->type_name("N");
+}
+
+Progress Session::progress() {
+  Progress progress;
+  progress.report = [this](std::string_view step, double share) { bar_.update(step, share); };
+  progress.warn = [this](std::string_view code, std::string_view text) { warn(code, text); };
+  progress.stop = stop_;
+  return progress;
+}
+
+void Session::warn(std::string_view code, std::string_view text) {
+  warnings_.push_back({std::string(code), std::string(text)});
+  if (!options_.quiet) message("taut: warning: " + one_line(text));
+}
+
+void Session::note(std::string_view text) {
+  if (options_.verbose) message("taut: " + one_line(text));
+}
+
+void Session::print(std::string_view text) {
+  bar_.clear();
+  write_stdout(text);
+}
+
+void Session::message(const std::string& line) {
+  bar_.clear();
+  std::fputs((line + "\n").c_str(), stderr);
+}
+
+long peak_bytes() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return usage.ru_maxrss * 1024;  // Linux counts in kilobytes
+}
+
+}  // namespace taut::tool

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "progress_bar.h"
+#include "taut/core/progress.h"
+#include "taut/io/report.h"
+
+namespace taut::tool {
+
+/// The options that every command has.
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  bool verbose = false;
+  int threads = 0;
+  std::string progress = "auto";
+};
+
+/// Adds them to a command, with its --version.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// Adds an option whose value must be a positive finite number.
+CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optional<double>& value,
+                          const std::string& description);
+
+/// Adds an option whose value must be an integer in [lowest, highest].
+CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
+                         int highest, const std::string& description);
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One run of a command: its common options, what it says, and whether it should stop.
+class Session {
+ public:
+  Session(const CommonOptions& options, std::stop_token stop)
+      : options_(options), stop_(std::move(stop)), bar_(options.progress, options.quiet) {}
+
+  const CommonOptions& options() const { return options_; }
+  /// For the toolkit's operations; the session must outlive it.
+  Progress progress();
+
+  /// Keeps the warning for reports, and shows it unless --quiet.
+  void warn(std::string_view code, std::string_view text);
+  const std::vector<Warning>& warnings() const { return warnings_; }
+  /// Shows a line on stderr with -v.
+  void note(std::string_view text);
+  /// Writes results to stdout. @throws IoError
+  void print(std::string_view text);
+  /// Takes the progress bar away.
+  void clear() { bar_.clear(); }
+
+  /// Since the session began.
+  double seconds() const { return watch_.seconds(); }
+
+ private:
+  void message(const std::string& line);
+
+  CommonOptions options_;
+  std::stop_token stop_;
+  ProgressBar bar_;
+  std::vector<Warning> warnings_;
+  Stopwatch watch_;
+};
+
+/// The largest memory that the process has held.
+long peak_bytes();
+
+}  // namespace taut::tool

@@ -1,0 +1,153 @@
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "input.h"
+#include "taut/hull/verify.h"
+#include "taut/io/read_mesh.h"
+#include "text.h"
+
+namespace taut::tool {
+namespace {
+
+constexpr double default_relative = 1e-4;
+
+struct VerifyArguments {
+  std::string hull;
+  std::vector<std::string> inputs;
+  std::optional<double> given_relative;
+
+  double relative() const { return given_relative.value_or(default_relative); }
+};
+
+/// A check with its answer and, where it measures a length, that as a fraction of the diagonal.
+struct Check {
+  const char* key;
+  const char* name;
+  const char* fault;
+  bool passed;
+  const char* measure_key = nullptr;
+  double measure = 0;
+};
+
+std::vector<Check> checks(const Verification& found, double relative, double diagonal) {
+  const auto fraction = [&](double length) {
+    if (diagonal > 0) return length / diagonal;
+    return length > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  };
+  const double model_outside = fraction(found.model_outside);
+  const double mesh_outside = fraction(found.mesh_outside);
+  return {
+      {"closed", "closed", "not closed", found.closed},
+      {"manifold", "manifold", "not manifold", found.manifold},
+      {"oriented", "oriented outward", "not oriented outward", found.oriented},
+      {"convex", "convex", "not convex", found.convex, "largest_violation",
+       fraction(found.largest_violation)},
+      {"no_zero_area", "no face of zero area", "a face has zero area", found.no_zero_area},
+      {"contains_model", "contains the model", "the model reaches outside",
+       model_outside <= relative, "model_outside", model_outside},
+      {"inside_hull", "inside the model's hull", "it reaches outside the model's hull",
+       mesh_outside <= relative, "mesh_outside", mesh_outside},
+  };
+}
+
+std::string text_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
+                    const Verification& found, bool is_hull) {
+  std::string text;
+  for (const Check& check : checks) {
+    text += padded(check.name, 26) + padded(check.passed ? "yes" : "no", 5);
+    if (check.measure_key != nullptr) {
+      text += check.key == std::string("convex") ? "largest violation " : "outside by ";
+      text += number(check.measure, 3);
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += "\n";
+  }
+  text += "(lengths are fractions of the diagonal, measured in " +
+          counted(found.directions, "direction", "directions") + ")\n";
+  text += padded("hull within " + number(arguments.relative(), 3), 26) + (is_hull ? "yes" : "no");
+  return text + "\n";
+}
+
+Json json_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
+             const Verification& found, bool is_hull) {
+  Json json;
+  json["taut"] = TAUT_VERSION;
+  json["hull"] = arguments.hull;
+  json["is_hull"] = is_hull;
+  json["relative"] = arguments.relative();
+  for (const Check& check : checks) {
+    json[check.key] = check.passed;
+    if (check.measure_key != nullptr) json[check.measure_key] = check.measure;
+  }
+  json["directions"] = found.directions;
+  return json;
+}
+
+std::string faults_of(const std::vector<Check>& checks) {
+  std::vector<std::string> faults;
+  for (const Check& check : checks) {
+    if (!check.passed) faults.emplace_back(check.fault);
+  }
+  return joined(faults);
+}
+
+ExitCode run(const VerifyArguments& arguments, Session& session) {
+  if (arguments.hull == "-") {
+    throw UsageError("a mesh cannot be read from standard input: give a file's name");
+  }
+  const PolygonMesh mesh = read_mesh(arguments.hull);
+  const Input input = load(arguments.inputs, session);
+  const double diagonal = input.scene.diagonal();
+  const Stopwatch watch;
+  VerifyOptions options;
+  options.threads = session.options().threads;
+  options.progress = session.progress();
+  const Verification found = verify(mesh, input.scene, options);
+  const double seconds = watch.seconds();
+
+  const bool is_hull = found.is_hull(arguments.relative() * diagonal);
+  const std::vector<Check> results = checks(found, arguments.relative(), diagonal);
+  if (session.options().json) {
+    Json json = json_of(results, arguments, found, is_hull);
+    json["input"] = to_json(input.summary());
+    json["seconds"] = {{"read", input.seconds_read},
+                       {"build", input.seconds_build},
+                       {"verify", seconds},
+                       {"total", session.seconds()}};
+    json["peak_bytes"] = peak_bytes();
+    json["warnings"] = to_json(session.warnings());
+    session.print(text(json));
+  } else if (!session.options().quiet) {
+    session.print(text_of(results, arguments, found, is_hull));
+  }
+  if (is_hull) return ExitCode::done;
+  throw CheckFailed(arguments.hull + ": is no convex hull of the model within " +
+                    number(arguments.relative(), 3) + " of its diagonal: " + faults_of(results));
+}
+
+}  // namespace
+
+Command add_verify(CLI::App& parent) {
+  Command command = add_command(
+      parent, "verify", "Checks any hull file against a model",
+      "Exits with 0 if HULL is the model's convex hull within the tolerance, else 1.\n\n"
+      "Examples:\n"
+      "  taut verify hull.ply teapot.bpt\n"
+      "  taut verify hull.stl teapot.bpt --relative 1e-3");
+  const auto arguments = std::make_shared<VerifyArguments>();
+  command.app->add_option("HULL", arguments->hull, "Mesh file to check")
+      ->required()
+      ->option_text("FILE");
+  add_inputs(*command.app, arguments->inputs);
+  add_positive(*command.app, "--relative", arguments->given_relative,
+               "Tolerance as a fraction of the model's diagonal, default 1e-4")
+      ->type_name("R");
+  command.run = [arguments](Session& session) { return run(*arguments, session); };
+  return command;
+}
+
+}  // namespace taut::tool
