@@ -364,47 +364,52 @@ TEST_F(Cli, FullDeviceIsAnError) {
   EXPECT_EQ(run("hull " + teapot_ + " --relative 1e-2 --report /dev/full").exit_code, 3);
 }
 
-/// Starts a hull that would take long, sends the signal once the sampling has begun, and returns
-/// the exit code.
-int exit_code_after_signal(int signal, const std::string& model, const std::string& output) {
-  std::array<int, 2> ends;
-  if (pipe(ends.data()) != 0) return -1;
+/// Starts taut, sends the signal once it has said `word` on stderr, and returns the exit code. Its
+/// standard input stays open and silent.
+int exit_code_after_signal(int signal, std::vector<std::string> arguments,
+                           const std::string& word) {
+  std::array<int, 2> input, errors;
+  if (pipe(input.data()) != 0 || pipe(errors.data()) != 0) return -1;
+  std::string program = TAUT_EXECUTABLE;
+  std::vector<char*> argv = {program.data()};
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
   const pid_t child = fork();
   if (child == 0) {
-    dup2(ends[1], STDERR_FILENO);
-    close(ends[0]);
-    execl(TAUT_EXECUTABLE, TAUT_EXECUTABLE, "hull", model.c_str(), "-o", output.c_str(),
-          "--relative", "1e-6", "--progress", "plain", nullptr);
+    dup2(input[0], STDIN_FILENO);
+    dup2(errors[1], STDERR_FILENO);
+    for (const int end : {input[0], input[1], errors[0], errors[1]}) close(end);
+    execv(program.c_str(), argv.data());
     _exit(127);
   }
-  close(ends[1]);
+  close(input[0]);
+  close(errors[1]);
   std::string seen;
   std::array<char, 256> buffer;
   bool sent = false;
-  for (ssize_t count = 0; (count = read(ends[0], buffer.data(), buffer.size())) > 0;) {
+  for (ssize_t count = 0; (count = read(errors[0], buffer.data(), buffer.size())) > 0;) {
     seen.append(buffer.data(), static_cast<std::size_t>(count));
-    if (!sent && seen.find("sampl") != std::string::npos) sent = kill(child, signal) == 0;
+    if (!sent && seen.find(word) != std::string::npos) sent = kill(child, signal) == 0;
   }
-  close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
+  close(input[1]);
+  close(errors[0]);
   EXPECT_TRUE(sent) << seen;
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 TEST_F(Cli, InterruptLeavesNothing) {
-  EXPECT_EQ(exit_code_after_signal(SIGINT, teapot_, path("a.ply").string()), 130);
-  EXPECT_EQ(exit_code_after_signal(SIGTERM, teapot_, path("a.ply").string()), 143);
+  const std::vector<std::string> hull = {
+      "hull", teapot_, "-o", path("a.ply").string(), "--relative", "1e-6", "--progress", "plain"};
+  EXPECT_EQ(exit_code_after_signal(SIGINT, hull, "sample"), 130);
+  EXPECT_EQ(exit_code_after_signal(SIGTERM, hull, "sample"), 143);
   EXPECT_EQ(file_count(), 0U);
 }
 
 TEST_F(Cli, InterruptEndsWaitingForInput) {
-  // The shell writes nothing for ten seconds and then is gone with taut.
-  const Result result = run("support " + teapot_ +
-                                " --directions - & pid=$!; sleep 0.5; "
-                                "kill -INT $pid; wait $pid; echo code $?; true",
-                            "sleep 10 |");
-  EXPECT_NE(result.out.find("code 130"), std::string::npos) << result.out;
+  const std::vector<std::string> support = {"support", teapot_, "--directions", "-", "-v"};
+  EXPECT_EQ(exit_code_after_signal(SIGINT, support, "standard input"), 130);
 }
 
 }  // namespace

@@ -296,7 +296,7 @@ TEST(Orientation, CoincidentAndCollinearPointsAreZero) {
 TEST(Orientation, AgreesWithRationals) {
   Random random(1);
   std::array<long, 3> total = {};
-  std::printf("%-36s %8s %8s %8s   decided zero\n", "stage that settles it", "double", "double^2",
+  std::printf("%-36s %8s %8s %8s   coplanar\n", "stage that settles it", "double", "double^2",
               "integer");
   for (const Sweep& sweep : sweeps()) {
     std::array<long, 3> used = {};

@@ -158,8 +158,43 @@ HomogeneousBound scaled(const HomogeneousBound& b, double factor, const std::vec
   const double rounding = differences * std::exp2(differences) * rounding_unit;
   const double up = 1 + 8 * rounding_unit;
   return {factor * (b.space + rounding * magnitude.space) * up,
-          factor * (b.weight + (b.weight > 0 ? rounding * magnitude.weight : 0)) * up};
+          factor * (b.weight + (is_polynomial(points) ? 0 : rounding * magnitude.weight)) * up};
 }
+
+/// Tells normals from rounding: tangents are differences of control points, so the rounding of the
+/// points' coordinates is what they may consist of, wherever the patch lies.
+class NormalNoise {
+ public:
+  explicit NormalNoise(const BezierPatch& patch) {
+    double size = 0;
+    for (const dvec4& p : patch.points) {
+      size = std::max({size, std::abs(p.x / p.w), std::abs(p.y / p.w), std::abs(p.z / p.w)});
+    }
+    u_ = roundings * rounding_unit * patch.degree_u * size;
+    v_ = roundings * rounding_unit * patch.degree_v * size;
+  }
+
+  /// The unit normal, or zero where it may be rounding.
+  dvec3 cleaned_normal(const PatchJet1& j) const {
+    const double su = glm::length(j.Su);
+    const double sv = glm::length(j.Sv);
+    const dvec3 N = glm::cross(j.Su, j.Sv);
+    const double noise = su * v_ + sv * u_ + roundings * rounding_unit * su * sv;
+    return glm::length(N) > noise ? unit(N) : dvec3(0.0);
+  }
+
+  /// Whether a derivative of N is well above its rounding, enough for ten good digits or so.
+  bool is_certain_derivative(const dvec3& derivative, const PatchJet2& j) const {
+    const double largest = std::max({glm::length(j.Su), glm::length(j.Sv), glm::length(j.Suu),
+                                     glm::length(j.Suv), glm::length(j.Svv)});
+    const double noise = (u_ + v_ + roundings * rounding_unit * largest) * largest;
+    return glm::length(derivative) > 1024 * noise;
+  }
+
+ private:
+  static constexpr double roundings = 64;  ///< that a derivative of a Bernstein sum gathers
+  double u_, v_;
+};
 
 }  // namespace
 
@@ -228,22 +263,25 @@ PatchJet3 jet3(const BezierPatch& patch, double u, double v) {
 }
 
 dvec3 unit_normal(const BezierPatch& patch, double u, double v) {
-  // Relative to the patch's extent; below it, N is rounding noise of the two tangents.
-  const auto normal_at = [&](double a, double b) {
-    const PatchJet1 j = jet1(patch, a, b);
-    const dvec3 N = glm::cross(j.Su, j.Sv);
-    const double noise = 64 * rounding_unit * glm::length(j.Su) * glm::length(j.Sv);
-    return glm::length(N) > noise ? unit(N) : dvec3(0.0);
-  };
-  dvec3 n = normal_at(u, v);
-  if (n != dvec3(0.0)) return n;
-  // The limit exists where N(s) = s^k (a + O(s)) along the line: two points at halved distances
-  // extrapolate the direction a to second order in s.
+  const NormalNoise noise(patch);
+  const PatchJet2 j = jet2(patch, u, v);
+  const dvec3 N = noise.cleaned_normal(j);
+  if (N != dvec3(0.0)) return N;
+
+  // N vanishes: its derivative along the line to the centre points where the limit does.
   const dvec2 inward = dvec2(0.5) - dvec2(u, v);
+  const dvec3 Nu = glm::cross(j.Suu, j.Sv) + glm::cross(j.Su, j.Suv);
+  const dvec3 Nv = glm::cross(j.Suv, j.Sv) + glm::cross(j.Su, j.Svv);
+  const dvec3 along = inward.x * Nu + inward.y * Nv;
+  if (noise.is_certain_derivative(along, j)) return unit(along);
+
+  // So does the derivative: N(s) = s^k (a + O(s)), and two points at halved distances extrapolate
+  // the direction of a to second order in s.
   constexpr double s = 0x1p-12;
-  const dvec3 near = normal_at(u + s * inward.x, v + s * inward.y);
-  const dvec3 far = normal_at(u + 2 * s * inward.x, v + 2 * s * inward.y);
-  return unit(2.0 * near - far);
+  const auto normal_at = [&](double t) {
+    return noise.cleaned_normal(jet1(patch, u + t * inward.x, v + t * inward.y));
+  };
+  return unit(2.0 * normal_at(s) - normal_at(2 * s));
 }
 
 BezierCurve elevated(const BezierCurve& curve, int degree) {

@@ -78,6 +78,7 @@ std::vector<ModelSupport> answer(const Scene& scene, const std::vector<dvec3>& d
 ExitCode run(const SupportOptions& options, Session& session) {
   const bool json = session.options().json;
   const Progress progress = session.progress();
+  if (options.directions == "-") session.note("reads directions from standard input");
   const auto directions = read_directions(options.directions, progress.stop);
   const Input input = load(options.inputs, session);
   Counts counts;

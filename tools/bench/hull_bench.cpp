@@ -1,0 +1,180 @@
+// The sampled hull of the teapot against the honest alternative: a uniform tessellation of the same
+// measured accuracy, then the hull of its points by CGAL and Qhull. One thread; the programs take
+// turns within one run, and the medians of the paired ratios are printed.
+//
+// The peers are given their points: tessellating, and finding the resolution that a wanted accuracy
+// needs, is not counted.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <vector>
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/point_hull.h"
+#include "taut/io/read_model.h"
+
+#ifdef TAUT_WITH_CGAL
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/convex_hull_3.h>
+#endif
+#ifdef TAUT_WITH_QHULL
+extern "C" {
+#include <libqhull_r/qhull_ra.h>
+}
+#endif
+
+namespace {
+
+using namespace taut;
+
+std::vector<dvec3> tessellate(const Model& model, int steps) {
+  std::vector<dvec3> points;
+  for (const Patch& patch : model.parts()[0].patches()) {
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; j <= steps; ++j) {
+        points.push_back(point(patch.bezier, double(i) / steps, double(j) / steps));
+      }
+    }
+  }
+  return points;
+}
+
+/// How far the model reaches out of the points' hull: the largest gap of its facets.
+double measured_distance(const Scene& scene, const std::vector<dvec3>& points) {
+  PointHull hull(scene.box());
+  hull.add(points);
+  SupportQuery query(scene);
+  double distance = 0;
+  for (const PointHull::Facet& facet : hull.facets()) {
+    if (!facet.alive) continue;
+    const dvec3 n = unit(facet.side.normal());
+    const dvec3 p = scene.frame().to_frame(hull.point(facet.vertex[0]));
+    distance = std::max(distance, query(n).h - glm::dot(n, p));
+  }
+  return scene.frame().length_to_model(distance);
+}
+
+/// The coarsest tessellation of at most the distance, by bisection.
+std::vector<dvec3> tessellation_of_accuracy(const Model& model, const Scene& scene,
+                                            double distance) {
+  int low = 1;
+  int high = 2;
+  while (measured_distance(scene, tessellate(model, high)) > distance) {
+    low = high;
+    high *= 2;
+  }
+  while (high - low > 1 && double(high - low) > 0.02 * high) {
+    const int middle = low + (high - low) / 2;
+    (measured_distance(scene, tessellate(model, middle)) > distance ? low : high) = middle;
+  }
+  return tessellate(model, high);
+}
+
+double seconds(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+struct Peer {
+  const char* name;
+  std::function<long(const std::vector<dvec3>&)> faces;  ///< computes the hull, returns its faces
+};
+
+std::vector<Peer> peers() {
+  std::vector<Peer> result;
+  result.push_back({"point hull of Taut", [](const std::vector<dvec3>& points) {
+                      Box box;
+                      for (const dvec3& p : points) box.include(p);
+                      PointHull hull(box);
+                      hull.add(points);
+                      return long(hull.facet_count());
+                    }});
+#ifdef TAUT_WITH_CGAL
+  result.push_back({"CGAL", [](const std::vector<dvec3>& points) {
+                      using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+                      std::vector<Kernel::Point_3> input;
+                      for (const dvec3& p : points) input.emplace_back(p.x, p.y, p.z);
+                      CGAL::Surface_mesh<Kernel::Point_3> mesh;
+                      CGAL::convex_hull_3(input.begin(), input.end(), mesh);
+                      return long(mesh.number_of_faces());
+                    }});
+#endif
+#ifdef TAUT_WITH_QHULL
+  result.push_back({"Qhull", [](const std::vector<dvec3>& points) {
+                      std::vector<double> input;
+                      for (const dvec3& p : points) input.insert(input.end(), {p.x, p.y, p.z});
+                      qhT qhull;
+                      qh_zero(&qhull, stderr);
+                      char options[] = "qhull Qt";
+                      const int failed = qh_new_qhull(&qhull, 3, int(points.size()), input.data(),
+                                                      False, options, nullptr, stderr);
+                      const long faces = failed ? 0 : long(qhull.num_facets);
+                      qh_freeqhull(&qhull, !qh_ALL);
+                      int left = 0;
+                      int total = 0;
+                      qh_memfreeshort(&qhull, &left, &total);
+                      return faces;
+                    }});
+#endif
+  return result;
+}
+
+void compare(const Model& model, const Scene& scene, double relative, int runs) {
+  HullOptions options;
+  options.tolerance = relative * scene.diagonal();
+  options.threads = 1;
+  const std::vector<dvec3> points = tessellation_of_accuracy(model, scene, options.tolerance);
+  long vertices = 0;
+  long faces = 0;
+  std::vector<double> taut_times;
+  const std::vector<Peer> others = peers();
+  std::vector<std::vector<double>> times(others.size());
+  std::vector<long> other_faces(others.size());
+  for (int run = 0; run < runs; ++run) {
+    taut_times.push_back(seconds([&] {
+      const Scene fresh(model, {.threads = 1, .progress = {}});
+      const Hull hull = sampled_hull(fresh, options);
+      vertices = long(hull.mesh.n_vertices());
+      faces = long(hull.mesh.n_faces());
+    }));
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      times[k].push_back(seconds([&] { other_faces[k] = others[k].faces(points); }));
+    }
+  }
+  std::printf("\naccuracy %g of the diagonal\n", relative);
+  std::printf("  %-20s %10.2f ms  %9ld faces  %9ld vertices, build included\n", "taut sampled",
+              1e3 * median(taut_times), faces, vertices);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    std::vector<double> ratios;
+    for (std::size_t run = 0; run < times[k].size(); ++run) {
+      ratios.push_back(taut_times[run] / times[k][run]);
+    }
+    std::printf("  %-20s %10.2f ms  %9ld faces  %9zu points    time ratio %.3f, faces ratio %.3f\n",
+                others[k].name, 1e3 * median(times[k]), other_faces[k], points.size(),
+                median(ratios), double(faces) / double(other_faces[k]));
+  }
+}
+
+}  // namespace
+
+int main() {
+  Model model;
+  read_model(TAUT_SOURCE_DIR "/data/teapot.bpt", model);
+  const Scene scene(model, {.threads = 1, .progress = {}});
+  std::printf("Taut against point hulls of uniform tessellations of equal measured accuracy\n");
+  compare(model, scene, 1e-3, 15);
+  compare(model, scene, 1e-4, 9);
+  compare(model, scene, 1e-5, 3);
+}
