@@ -71,7 +71,7 @@ class Cli : public TemporaryFolder {
     return file(name, text).filename().string();
   }
 
-  const std::string teapot_ = TAUT_DATA "/teapot.bpt";
+  const std::string teapot_ = TAUT_SOURCE_DIR "/data/teapot.bpt";
 };
 
 /// A polygon mesh as an OFF file.
@@ -327,7 +327,7 @@ TEST_F(Cli, VerifyFindsDamage) {
     const Result result = run("verify --json damaged.off " + teapot_);
     EXPECT_EQ(result.exit_code, 1) << result.err;
     EXPECT_NE(result.err.find("taut: damaged.off: "), std::string::npos) << result.err;
-    const Json json = Json::parse(result.out);
+    Json json = Json::parse(result.out);
     EXPECT_EQ(json["is_hull"], false);
     return json;
   };

@@ -370,9 +370,9 @@ TEST_F(ReadModel, ObjPiecewiseBezier) {
 
 TEST_F(ReadModel, ObjSplineSurfaceAgreesWithBasisFunctions) {
   const std::vector<double> knots_u = {0, 0, 0, 0, 1, 2.5, 2.5, 4, 4, 4, 4};  // 7 points
-  const std::vector<double> knots_v = {-1, 0, 0.5, 2, 3, 4};                  // 3, not clamped
+  const std::vector<double> knots_v = {-1, 0, 0.5, 1.25, 2, 3, 4};            // 4, not clamped
   const std::string body =
-      numbers(1, 21) + "\nparm u 0 0 0 0 1 2.5 2.5 4 4 4 4\nparm v -1 0 .5 2 3 4\nend\n";
+      numbers(1, 28) + "\nparm u 0 0 0 0 1 2.5 2.5 4 4 4 4\nparm v -1 0 .5 1.25 2 3 4\nend\n";
   std::mt19937 random(1);
   for (const bool rational : {false, true}) {
     for (const auto& [range, u, v] :
@@ -381,7 +381,7 @@ TEST_F(ReadModel, ObjSplineSurfaceAgreesWithBasisFunctions) {
              {"0.25 3.125 0.5 2", {0.25, 3.125}, {0.5, 2}},
              {"1 2.5 0.75 1.875", {1, 2.5}, {0.75, 1.875}},
              {"2.75 3 1 1.0625", {2.75, 3}, {1, 1.0625}}}) {
-      const Part part = this->part("a.obj", vertices(21) + "cstype " + (rational ? "rat " : "") +
+      const Part part = this->part("a.obj", vertices(28) + "cstype " + (rational ? "rat " : "") +
                                                 "bspline\ndeg 3 2\nsurf " + range + body);
       ASSERT_EQ(part.faces().size(), 1U);
       EXPECT_EQ(part.patches().front().u.lower, u.lower);

@@ -232,10 +232,12 @@ dvec3 CoonsBvh::coons_point(const Leaf& leaf, double u, double v) const {
     }
     return sum;
   };
-  const dvec4 along_u = (1 - v) * bernstein_sum(v0, degree_u_, u) + v * bernstein_sum(v1, degree_u_, u);
-  const dvec4 along_v = (1 - u) * bernstein_sum(u0, degree_v_, v) + u * bernstein_sum(u1, degree_v_, v);
-  const dvec4 bilinear = (1 - u) * ((1 - v) * v0[0] + v * v1[0]) +
-                         u * ((1 - v) * v0[degree_u_] + v * v1[degree_u_]);
+  const dvec4 along_u =
+      (1 - v) * bernstein_sum(v0, degree_u_, u) + v * bernstein_sum(v1, degree_u_, u);
+  const dvec4 along_v =
+      (1 - u) * bernstein_sum(u0, degree_v_, v) + u * bernstein_sum(u1, degree_v_, v);
+  const dvec4 bilinear =
+      (1 - u) * ((1 - v) * v0[0] + v * v1[0]) + u * ((1 - v) * v0[degree_u_] + v * v1[degree_u_]);
   return euclidean(along_u + along_v - bilinear);
 }
 

@@ -10,8 +10,8 @@ namespace taut {
 /// A cell of a CoonsBvh: the sub-patch over the rectangle
 /// [i, i + 1] / 2^level x [j, j + 1] / 2^level of the patch's unit square.
 struct CoonsCell {
-  std::int32_t node = 0;    ///< the explicit node, for implicit cells the leaf that holds them
-  std::int32_t level = 0;   ///< depth in the hierarchy, the root is 0
+  std::int32_t node = 0;   ///< the explicit node, for implicit cells the leaf that holds them
+  std::int32_t level = 0;  ///< depth in the hierarchy, the root is 0
   std::uint32_t i = 0;
   std::uint32_t j = 0;
 
@@ -40,15 +40,16 @@ struct CoonsCell {
 /// levels below its leaf deviates by at most E_u[k] + E_v[k] + the leaf's distance. The lists
 /// E_u and E_v are kept as their first terms: bounded by |c''| / 8 they are geometric, ratio 1/4.
 ///
-/// Both deviations come from differences of homogeneous control points: with |dX| and |dw| bounds of
-/// the error of X and w about the cell's centre c, and R the largest |x - c|,
+/// Both deviations come from differences of homogeneous control points: with |dX| and |dw| bounds
+/// of the error of X and w about the cell's centre c, and R the largest |x - c|,
 ///     |X / w - B| <= (|dX| + R |dw|) / w_min.
 /// So polynomial and rational, regular and collapsed patches are bounded alike. Rounding included.
 ///
 /// The degrees may be zero: a curve is a patch of degrees (p, 0), a point one of degrees (0, 0).
 class CoonsBvh {
  public:
-  /// @pre coons_tolerance > 0; weights are positive
+  /// @pre coons_tolerance > 0; weights are positive; coordinates are of moderate size (squares
+  /// neither over- nor underflow)
   CoonsBvh(const BezierPatch& patch, double coons_tolerance);
 
   CoonsCell root() const { return {}; }

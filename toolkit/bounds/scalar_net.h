@@ -23,8 +23,8 @@ struct NetJet {
 
 /// Bounds of its second derivatives over the unit square.
 struct NetCurvature {
-  double uu_max;  ///< largest d^2/du^2
-  double vv_max;
+  double uu_min, uu_max;  ///< of d^2/du^2
+  double vv_min, vv_max;
   double uv_abs;  ///< largest |d^2/(du dv)|
 };
 
@@ -78,18 +78,24 @@ class ScalarNet {
 
   NetCurvature curvature(const double* b) const {
     const int row = q() + 1;
-    double uu = p() > 1 ? -infinity : 0;
+    double uu_min = p() > 1 ? infinity : 0;
+    double uu_max = -uu_min;
     for (int i = 0; i + 2 <= p(); ++i) {
       for (int j = 0; j <= q(); ++j) {
         const double* c = b + i * row + j;
-        uu = std::max(uu, c[0] - 2 * c[row] + c[2 * row]);
+        const double second = c[0] - 2 * c[row] + c[2 * row];
+        uu_min = std::min(uu_min, second);
+        uu_max = std::max(uu_max, second);
       }
     }
-    double vv = q() > 1 ? -infinity : 0;
+    double vv_min = q() > 1 ? infinity : 0;
+    double vv_max = -vv_min;
     for (int i = 0; i <= p(); ++i) {
       for (int j = 0; j + 2 <= q(); ++j) {
         const double* c = b + i * row + j;
-        vv = std::max(vv, c[0] - 2 * c[1] + c[2]);
+        const double second = c[0] - 2 * c[1] + c[2];
+        vv_min = std::min(vv_min, second);
+        vv_max = std::max(vv_max, second);
       }
     }
     double uv = 0;
@@ -99,7 +105,9 @@ class ScalarNet {
         uv = std::max(uv, std::abs((c[row + 1] - c[row]) - (c[1] - c[0])));
       }
     }
-    return {p() * (p() - 1) * uu, q() * (q() - 1) * vv, p() * q() * uv};
+    const double uu = p() * (p() - 1);
+    const double vv = q() * (q() - 1);
+    return {uu * uu_min, uu * uu_max, vv * vv_min, vv * vv_max, p() * q() * uv};
   }
 
   /// The net over [u0, u1] x [v0, v1], in place.

@@ -46,13 +46,15 @@ class BoxTreeBuilder {
       return;
     }
     const dvec3 extent = centers.upper - centers.lower;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
+                     : extent.y >= extent.z                       ? 1
+                                                                  : 2;
     const std::size_t middle = begin + (end - begin) / 2;
     const auto position = [&](int item) { return box(item).center()[axis]; };
-    std::nth_element(items_.begin() + std::ptrdiff_t(begin), items_.begin() + std::ptrdiff_t(middle),
-                     items_.begin() + std::ptrdiff_t(end), [&](int a, int b) {
-                       return std::pair(position(a), a) < std::pair(position(b), b);
-                     });
+    std::nth_element(
+        items_.begin() + std::ptrdiff_t(begin), items_.begin() + std::ptrdiff_t(middle),
+        items_.begin() + std::ptrdiff_t(end),
+        [&](int a, int b) { return std::pair(position(a), a) < std::pair(position(b), b); });
     const std::size_t child = nodes_.size();
     nodes_[node].first = std::int32_t(child);
     nodes_.resize(child + 2);
@@ -64,7 +66,6 @@ class BoxTreeBuilder {
   std::vector<BoxTree::Node>& nodes_;
   std::vector<int> items_;
 };
-
 
 SceneNet make_net(const BezierPatch& patch, bool rational) {
   SceneNet net;
@@ -80,15 +81,16 @@ SceneNet make_net(const BezierPatch& patch, bool rational) {
 
 SceneElement make_element(SourceKind kind, int index, const BezierPatch& patch) {
   const bool rational = !is_polynomial(patch.points);
-  double min_weight = rational ? patch.points.front().w : 1;
+  double reach = 0;
   for (const dvec4& p : patch.points) {
-    if (rational) min_weight = std::min(min_weight, p.w);
+    const dvec3 x = glm::abs(euclidean(p));
+    reach = std::max(reach, x.x + x.y + x.z);
   }
   return {kind,
           index,
           {patch.degree_u, patch.degree_v},
           rational,
-          min_weight,
+          reach,
           make_net(patch, rational),
           CoonsBvh(patch, coons_tolerance)};
 }
@@ -137,6 +139,13 @@ Candidates candidates(const Part& part) {
   return result;
 }
 
+/// The homogeneous point about the centre, scaled; w (x - c) = w x - w c is rounded once, so points
+/// far from the origin lose nothing but what they share with the centre.
+dvec4 moved(const dvec4& p, const dvec3& center, double scale) {
+  return {scale * std::fma(-p.w, center.x, p.x), scale * std::fma(-p.w, center.y, p.y),
+          scale * std::fma(-p.w, center.z, p.z), p.w};
+}
+
 ScenePart make_part(const Part& part, double scale, int threads) {
   Candidates found = candidates(part);
   ScenePart result;
@@ -144,9 +153,7 @@ ScenePart make_part(const Part& part, double scale, int threads) {
   std::vector<std::optional<SceneElement>> built(found.elements.size());
   parallel_for(built.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      for (dvec4& p : found.patches[k].points) {
-        p = homogeneous((euclidean(p) - result.center) * scale, p.w);
-      }
+      for (dvec4& p : found.patches[k].points) p = moved(p, result.center, scale);
       built[k] = make_element(found.elements[k].first, found.elements[k].second, found.patches[k]);
     }
   });
@@ -165,6 +172,13 @@ ScenePart make_part(const Part& part, double scale, int threads) {
   }
   result.tree = BoxTree(boxes);
   return result;
+}
+
+/// Bound of the rounding of x . n over an element: Bernstein sums with positive weights err by some
+/// rounding units a degree, of the size of the points, however uneven the weights; so do nets that
+/// are halved up to 40 times.
+double value_rounding(const SceneElement& e) {
+  return 2 * (16 + 40.0 * (e.shape.p + e.shape.q)) * rounding_unit * e.reach;
 }
 
 /// Box of the part's control box under a rigid motion.
@@ -231,16 +245,27 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
   for (const Part& part : c.model.parts()) {
     options.progress.check();
     c.parts.push_back(make_part(part, c.frame.scale, options.threads));
+    for (const SceneElement& e : c.parts.back().elements) {
+      c.rounding = std::max(c.rounding, value_rounding(e));
+    }
   }
+  double pose_rounding = 0;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     const Instance& instance = c.model.instances()[k];
     const dvec3& center = c.parts[std::size_t(instance.part)].center;
-    c.instances.push_back({instance.part, instance.pose.rotation != dmat3(1.0),
-                           instance.pose.rotation,
-                           c.frame.to_frame(instance.pose(center))});
+    // The two far parts cancel before anything is rounded to their size, where nothing is turned.
+    const dvec3 turned = instance.pose.rotation * center;
+    const dvec3 offset = instance.pose.translation - c.frame.center;
+    const bool rotated = instance.pose.rotation != dmat3(1.0);
+    c.instances.push_back(
+        {instance.part, rotated, instance.pose.rotation, c.frame.scale * (turned + offset)});
+    const double moving = rotated ? 8 : 2;
+    pose_rounding = std::max(pose_rounding, moving * rounding_unit * c.frame.scale *
+                                                (glm::length(turned) + glm::length(offset)));
     Box& box = boxes[k];
     box = {c.frame.to_frame(box.lower), c.frame.to_frame(box.upper)};
   }
+  c.rounding += pose_rounding;
   c.tree = BoxTree(boxes);
 
   SupportQuery query(*this);

@@ -39,7 +39,7 @@ struct SceneElement {
   int index;  ///< into the part's patches, pieces or vertices
   NetShape shape;
   bool rational;
-  double min_weight;
+  double reach;  ///< largest |x| + |y| + |z| of the control points
   SceneNet net;
   CoonsBvh bvh;
 };
@@ -57,7 +57,7 @@ struct ScenePart {
   std::vector<SceneElement> elements;
   std::vector<SceneCell> cells;
   std::vector<int> element_of_patch, element_of_piece, element_of_vertex;  ///< -1: not queried
-  BoxTree tree;  ///< over the cells
+  BoxTree tree;                                                            ///< over the cells
 };
 
 struct SceneInstance {
@@ -75,6 +75,7 @@ struct Scene::Content {
   BoxTree tree;  ///< over the instances
   Box box;
   double diagonal = 0;
+  double rounding = 0;  ///< of a support value x . n, in the scene's frame
 
   const ScenePart& part_of(int instance) const {
     return parts[std::size_t(instances[std::size_t(instance)].part)];

@@ -1,8 +1,9 @@
 #include "taut/bounds/support_query.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/core/error.h"
@@ -16,11 +17,22 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// queries need about ten, contact along a whole curve in general position some ten thousand.
 constexpr int cell_limit = 400'000;
 
+/// Cells after which a query turns from depth first to best first, so that, should it meet its
+/// limit, what it has left is as low as can be.
+constexpr int patience = 2'000;
+
+/// A cell is split where its curvature exceeds the other direction's by more than this.
+constexpr double compactness = 16;
+
 /// Newton steps within one cell; convergence is quadratic, more would mean a bad start.
 constexpr int newton_limit = 12;
 
 /// Parameter step after which a further one is below rounding: Newton's method squares the error.
 constexpr double newton_step_end = 1e-9;
+
+/// A value that is the same, up to rounding, at this share of a parameter's range from an end and
+/// at the end itself is constant between.
+constexpr double flat_length = 1e-3;
 
 /// A rise of the best value, in the scene's frame, that is more than rounding.
 constexpr double gain_worth_taking = 16 * rounding_unit;
@@ -44,8 +56,8 @@ struct SecondOrderBound {
 ///     g(x) <= g + gu du + gv dv + (uu_max du^2 + 2 uv_abs |du dv| + vv_max dv^2) / 2,
 /// with the mixed term shared out by 2 |du dv| <= r du^2 + dv^2 / r, so that the two directions
 /// separate and each is maximised exactly. Where both curvatures are negative, r = sqrt(uu_max /
-/// vv_max) keeps them so exactly if uv_abs^2 < uu_max vv_max; where one is, the largest r that keeps
-/// it so leaves the other the least.
+/// vv_max) keeps them so exactly if uv_abs^2 < uu_max vv_max; where one is, the largest r that
+/// keeps it so leaves the other the least.
 SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, double u, double v) {
   double r = 1;
   if (c.uv_abs > 0) {
@@ -63,22 +75,25 @@ SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, do
 }
 
 /// Newton's step for the maximum of g over the unit square, with coordinates that press against a
-/// side kept there. Returns the predicted gain, or -1 where g is not concave in the free
-/// directions.
+/// side kept there. Where g is not concave in both free directions, they are stepped along one after
+/// the other, to an end where g is convex. Returns the gain that the second-order model predicts.
 double newton_step(const NetJet& j, double& u, double& v) {
   const auto pressed = [](double x, double slope) {
     return (x <= 0 && slope <= 0) || (x >= 1 && slope >= 0);
   };
   const auto along = [](double x, double slope, double curvature) {
-    return std::clamp(x - slope / curvature, 0.0, 1.0) - x;
+    if (curvature < 0) return std::clamp(x - slope / curvature, 0.0, 1.0) - x;
+    const auto gain = [&](double d) { return d * (slope + 0.5 * curvature * d); };
+    const double up = gain(1 - x);
+    const double down = gain(-x);
+    return std::max(up, down) <= 0 ? 0.0 : up >= down ? 1 - x : -x;
   };
-  double du = 0;
-  double dv = 0;
   const bool free_u = !pressed(u, j.gu);
   const bool free_v = !pressed(v, j.gv);
-  if (free_u && free_v) {
-    const double det = j.guu * j.gvv - j.guv * j.guv;
-    if (!(j.guu < 0 && det > 0)) return -1;
+  const double det = j.guu * j.gvv - j.guv * j.guv;
+  double du = 0;
+  double dv = 0;
+  if (free_u && free_v && j.guu < 0 && det > 0) {
     du = (j.guv * j.gv - j.gvv * j.gu) / det;
     dv = (j.guv * j.gu - j.guu * j.gv) / det;
     if (u + du < 0 || u + du > 1) {
@@ -88,12 +103,12 @@ double newton_step(const NetJet& j, double& u, double& v) {
       dv = std::clamp(v + dv, 0.0, 1.0) - v;
       du = along(u, j.gu + j.guv * dv, j.guu);
     }
-  } else if (free_u) {
-    if (!(j.guu < 0)) return -1;
-    du = along(u, j.gu, j.guu);
-  } else if (free_v) {
-    if (!(j.gvv < 0)) return -1;
-    dv = along(v, j.gv, j.gvv);
+  } else if (j.guu <= j.gvv) {
+    if (free_u) du = along(u, j.gu, j.guu);
+    if (free_v) dv = along(v, j.gv + j.guv * du, j.gvv);
+  } else {
+    if (free_v) dv = along(v, j.gv, j.gvv);
+    if (free_u) du = along(u, j.gu + j.guv * dv, j.guu);
   }
   u = std::clamp(u + du, 0.0, 1.0);
   v = std::clamp(v + dv, 0.0, 1.0);
@@ -103,25 +118,17 @@ double newton_step(const NetJet& j, double& u, double& v) {
 }  // namespace
 
 /// Depth-first search, the higher bound first: with the good first value that a hint or the first
-/// descent gives, it visits hardly more than a best-first search and needs no heap. With f = N / W the support value on an element and h the best value so far,
-/// everything is asked of the polynomial g = N - h W: where g <= 0, f <= h. Raising h to f at the
-/// maximum of g is Dinkelbach's iteration, so rational elements need no quotient rule.
+/// descent gives, it visits hardly more than a best-first search and needs no heap. With f = N / W
+/// the support value on an element and h the best value so far, everything is asked of the
+/// polynomial g = N - h W: where g <= 0, f <= h. Raising h to f at the maximum of g is Dinkelbach's
+/// iteration, so rational elements need no quotient rule.
 class SupportQuery::Search {
  public:
   Search(const Scene::Content& scene, SupportBounds bounds)
-      : scene_(scene), bounds_(bounds), directions_(scene.instances.size()) {
-    for (const ScenePart& part : scene.parts) {
-      for (const SceneElement& e : part.elements) {
-        double reach = 0;
-        for (std::size_t k = 0; k < e.net.x.size(); ++k) {
-          reach = std::max(reach,
-                           std::abs(e.net.x[k]) + std::abs(e.net.y[k]) + std::abs(e.net.z[k]));
-        }
-        rounding_ = std::max(rounding_, 16.0 * (e.shape.p + e.shape.q + 2) * rounding_unit *
-                                            (1 + reach / e.min_weight));
-      }
-    }
-  }
+      : scene_(scene),
+        bounds_(bounds),
+        rounding_(scene.rounding),
+        directions_(scene.instances.size()) {}
 
   Support run(const dvec3& n, const Contact& hint);
 
@@ -136,6 +143,7 @@ class SupportQuery::Search {
     Kind kind;
     std::int32_t instance;
     std::int32_t index;  // node, coons cell or net cell
+    bool operator<(const Entry& other) const { return bound < other.bound; }
   };
   /// A sub-rectangle of an element with its nets: N, and W where rational, at `slot`.
   struct NetCell {
@@ -174,11 +182,13 @@ class SupportQuery::Search {
   double threshold() const { return best_h_ + support_slack; }
 
   void push(double bound, Kind kind, int instance, int index) {
-    if (bound > threshold()) stack_.push_back({bound, kind, instance, index});
+    if (!(bound > threshold())) return;
+    stack_.push_back({bound, kind, instance, index});
+    if (best_first_) std::push_heap(stack_.begin(), stack_.end());
   }
   /// Puts the last two entries in ascending order, if there are two since `size`.
   void order_last(std::size_t size) {
-    if (stack_.size() == size + 2 && stack_[size].bound > stack_[size + 1].bound) {
+    if (!best_first_ && stack_.size() == size + 2 && stack_[size].bound > stack_[size + 1].bound) {
       std::swap(stack_[size], stack_[size + 1]);
     }
   }
@@ -193,16 +203,30 @@ class SupportQuery::Search {
 
   template <class Net>
   bool settle(const Net& net, const SceneElement& e, const NetCell& cell, bool& split_u);
+  /// Rounding of a second-order bound, as a share of the weight: coefficients carry 4 rounding
+  /// units and one for each of the p or q averages that a halving takes; second differences add
+  /// four of them, times p (p - 1) / 2, q (q - 1) / 2 and p q.
+  double certificate_rounding(const SceneElement& e, const NetCell& cell,
+                              const Interval& weight) const {
+    const int p = e.shape.p;
+    const int q = e.shape.q;
+    const double averages = -p * std::log2(cell.size_u) - q * std::log2(cell.size_v);
+    return 2 * (p + q) * (p + q) * (4 + averages) * rounding_unit * e.reach * weight.upper /
+           weight.lower;
+  }
   template <class Net>
   void split(const Net& net, const SceneElement& e, NetCell cell, bool along_u);
   template <class Net>
   void polish(const Net& net, const SceneElement& e, const NetCell& cell);
+  template <class Net>
+  void seek_extreme_point(const Net& net, const SceneElement& e, const NetCell& cell);
   void open_net(const Entry& entry);
   void polish_from(const Contact& contact);
+  void finish();
 
   const Scene::Content& scene_;
   SupportBounds bounds_;
-  double rounding_ = 0;
+  double rounding_;  ///< of a value x . n
   dvec3 n_ = dvec3(0.0);
   dvec3 abs_n_ = dvec3(0.0);
   std::vector<LocalDirection> directions_;
@@ -210,7 +234,9 @@ class SupportQuery::Search {
   double best_h_ = -infinity;
   Contact best_;
   int best_element_ = -1;
-  bool converged_ = false;  ///< Newton's method has ended at the best contact
+  bool best_first_ = false;
+  double proof_rounding_ = 0;  ///< of the second-order bounds that the answer rests on
+  bool converged_ = false;     ///< Newton's method has ended at the best contact
 
   std::vector<Entry> stack_;
   std::vector<NetCell> net_cells_;
@@ -343,11 +369,18 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
   const double best_u = (best_.u - cell.u) / cell.size_u;
   const double best_v = (best_.v - cell.v) / cell.size_v;
   const bool inside = same && best_u >= 0 && best_u <= 1 && best_v >= 0 && best_v <= 1;
-  const auto choose_split = [&](const SecondOrderBound& b) {
-    // Where the bound loses most, but keep cells compact: curvature bounds loosen with both sizes.
-    split_u = cell.size_u > 2 * cell.size_v ||
-              (cell.size_v <= 2 * cell.size_u &&
-               (b.along_u != b.along_v ? b.along_u > b.along_v : cell.size_u >= cell.size_v));
+  const auto choose_split = [&](const NetCurvature& c, const SecondOrderBound& b) {
+    // Where the bound loses most, but keep cells compact, in the measure of their curvature: bounds
+    // of second derivatives loosen with both sizes.
+    const double uu = std::max(std::abs(c.uu_min), std::abs(c.uu_max)) + c.uv_abs;
+    const double vv = std::max(std::abs(c.vv_min), std::abs(c.vv_max)) + c.uv_abs;
+    if (uu > compactness * vv || vv > compactness * uu) {
+      split_u = uu > vv;
+    } else if (b.along_u != b.along_v) {
+      split_u = b.along_u > b.along_v;
+    } else {
+      split_u = cell.size_u >= cell.size_v;
+    }
   };
 
   // Start at the best contact if it is on this element, else at the largest coefficient.
@@ -377,19 +410,22 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
     g = g_.data();
   };
   refer_to();
+  const Interval weight =
+      e.rational ? Interval{*std::min_element(W, W + size), *std::max_element(W, W + size)}
+                 : Interval{1, 1};
   NetCurvature curvature = net.curvature(g);
   // Not concave where Newton's method has already been: no bound about that point can succeed.
   const bool concave = curvature.uu_max < 0 && curvature.vv_max < 0 &&
                        curvature.uv_abs * curvature.uv_abs < curvature.uu_max * curvature.vv_max;
   if (inside && converged_ && !concave) {
     const SecondOrderBound b = second_order_bound({}, curvature, u, v);
-    choose_split(b);
+    choose_split(curvature, b);
     if (b.bound > 0.01) return false;
   }
   for (int step = 0; step < newton_limit; ++step) {
     NetJet jet = net.jet(g, u, v);
     if (!e.rational) jet.g -= h;
-    if (jet.g > gain_worth_taking * e.min_weight) {
+    if (jet.g > gain_worth_taking * weight.upper) {
       const double gain = e.rational ? jet.g / net.value(W, u, v) : jet.g;
       h += gain;
       improve(cell, u, v, h + offset);
@@ -402,8 +438,11 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
       }
     }
     const SecondOrderBound b = second_order_bound(jet, curvature, u, v);
-    if (b.bound <= support_slack * e.min_weight) return true;
-    choose_split(b);
+    if (b.bound <= support_slack * weight.lower) {
+      proof_rounding_ = std::max(proof_rounding_, certificate_rounding(e, cell, weight));
+      return true;
+    }
+    choose_split(curvature, b);
     if (inside && converged_) return false;
     const double u_before = u;
     const double v_before = v;
@@ -411,7 +450,7 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
     // Worth a step only where it may beat the best value, or where the bound about the cell's own
     // maximum may succeed.
     const double gain = newton_step(jet, u, v);
-    if (gain < 0 || (jet.g + gain < 0 && !concave)) return false;
+    if (jet.g + gain < 0 && !concave) return false;
     if (std::abs(u - u_before) + std::abs(v - v_before) < newton_step_end) return false;
   }
   return false;
@@ -460,31 +499,33 @@ void SupportQuery::Search::polish(const Net& net, const SceneElement& e, const N
   const std::size_t size = std::size_t(net.size());
   const double* N = nets_.data() + cell.slot;
   const double* W = N + size;
+  const auto value = [&](double u, double v) {
+    return e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
+  };
   double u = best_.u;
   double v = best_.v;
-  double h = e.rational ? net.value(N, u, v) / net.value(W, u, v) : 0;
-  for (int step = 0; step < newton_limit; ++step) {
+  double h = value(u, v);
+  bool settled = false;
+  for (int step = 0; step < newton_limit && !settled; ++step) {
     const double* g = N;
     if (e.rational) {
       g_.resize(size);
       for (std::size_t k = 0; k < size; ++k) g_[k] = N[k] - h * W[k];
       g = g_.data();
     }
-    const NetJet jet = net.jet(g, u, v);
-    if (!e.rational) h = jet.g;
     ++newton_iterations;
     double next_u = u;
     double next_v = v;
-    if (newton_step(jet, next_u, next_v) < 0) break;
-    const double size_of_step = std::abs(next_u - u) + std::abs(next_v - v);
+    newton_step(net.jet(g, u, v), next_u, next_v);
+    settled = std::abs(next_u - u) + std::abs(next_v - v) < newton_step_end;
+    const double next_h = value(next_u, next_v);
+    if (next_h < h - gain_worth_taking) break;  // the step overshot
     u = next_u;
     v = next_v;
-    // Its effect on h is of second order in the step.
-    if (size_of_step < newton_step_end) break;
-    if (e.rational) h = net.value(N, u, v) / net.value(W, u, v);
+    h = next_h;
   }
   improve(cell, u, v, h + local(cell.instance).offset);
-  converged_ = true;
+  converged_ = settled;
 }
 
 void SupportQuery::Search::polish_from(const Contact& contact) {
@@ -495,6 +536,35 @@ void SupportQuery::Search::polish_from(const Contact& contact) {
   with_scalar_net(e.shape, [&](const auto& net) { polish(net, e, cell); });
 }
 
+/// Where the value does not change along a parameter line (the ruling of a cylinder, a plane that
+/// faces the direction), goes to the line's end: points between are not extreme, and tell nothing.
+template <class Net>
+void SupportQuery::Search::seek_extreme_point(const Net& net, const SceneElement& e,
+                                              const NetCell& cell) {
+  const double* N = nets_.data() + cell.slot;
+  const double* W = N + net.size();
+  const double h = best_h_ - local(cell.instance).offset;
+  const auto is_flat = [&](double u, double v) {
+    const double value = e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
+    return value >= h - gain_worth_taking;
+  };
+  const auto is_far = [](double x) { return x > flat_length && x < 1 - flat_length; };
+  for (const double end : {0.0, 1.0}) {
+    if (net.p() > 0 && is_far(best_.u) && is_flat(end, best_.v)) best_.u = end;
+    if (net.q() > 0 && is_far(best_.v) && is_flat(best_.u, end)) best_.v = end;
+  }
+}
+
+void SupportQuery::Search::finish() {
+  const int index = scene_.element(best_);
+  const SceneElement& e = element(best_.instance, index);
+  const NetCell cell = net_cell(best_.instance, index, e.bvh.root(), e.net, e);
+  with_scalar_net(e.shape, [&](const auto& net) {
+    if (!converged_) polish(net, e, cell);
+    seek_extreme_point(net, e, cell);
+  });
+}
+
 Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   n_ = n;
   abs_n_ = glm::abs(n);
@@ -502,29 +572,42 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   best_h_ = -infinity;
   best_element_ = -1;
   converged_ = false;
+  best_first_ = false;
+  proof_rounding_ = 0;
   stack_.clear();
   net_cells_.clear();
   coons_cells_.clear();
   nets_.clear();
-  if (hint.instance >= 0) polish_from(hint);
-  const double hinted = best_h_;
+  if (hint.instance >= 0 && scene_.element(hint) >= 0) polish_from(hint);
 
   stack_.push_back({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
+    if (count == patience) {
+      best_first_ = true;
+      std::make_heap(stack_.begin(), stack_.end());
+    }
+    if (best_first_) std::pop_heap(stack_.begin(), stack_.end());
     const Entry entry = stack_.back();
     stack_.pop_back();
     if (!(entry.bound > threshold())) continue;
     switch (entry.kind) {
-      case Kind::net_cell: open_net(entry); break;
-      case Kind::coons_cell: open_coons(entry); break;
-      default: open_node(entry);
+      case Kind::net_cell:
+        open_net(entry);
+        break;
+      case Kind::coons_cell:
+        open_coons(entry);
+        break;
+      default:
+        open_node(entry);
     }
   }
   double left = -infinity;  // what the limit left open
   for (const Entry& entry : stack_) left = std::max(left, entry.bound);
   const double proven = std::max(best_h_ + support_slack, left);
-  if (best_h_ != hinted) polish_from(best_);
-  return {best_h_, std::max(proven, best_h_) + rounding_, best_, scene_.frame_point(best_)};
+  assert(best_.instance >= 0);  // the direction is finite
+  finish();
+  return {best_h_, std::max(proven, best_h_) + rounding_ + proof_rounding_, best_,
+          scene_.frame_point(best_)};
 }
 
 SupportQuery::SupportQuery(const Scene& scene, SupportBounds bounds)

@@ -17,7 +17,8 @@ struct Progress {
   std::function<void(std::string_view step, double share)> report;
   /// Called with a warning: a code fit for scripts ("open-border") and a sentence for a person.
   std::function<void(std::string_view code, std::string_view text)> warn;
-  /// Stopping is asked for through the token's source, from any thread or a signal handler's helper.
+  /// Stopping is asked for through the token's source, from any thread or a signal handler's
+  /// helper.
   std::stop_token stop;
 
   void update(std::string_view step, double share) const {

@@ -16,17 +16,16 @@ inline constexpr double rounding_unit = std::numeric_limits<double>::epsilon() /
 inline constexpr double smooth_join_angle = 1e-3;
 
 /// Two border points are the same if they differ by at most this fraction of their part's
-/// diagonal: a tenth of the 1e-6 to which exchanged borders agree would miss real joins, ten times
-/// more would join the two sides of thin sheets.
-inline constexpr double join_distance = 1e-6;
+/// diagonal. Exchanged borders agree to about that; ten times more would join the two sides of thin
+/// parts and take short sides of long ones for points.
+inline constexpr double join_distance = 1e-7;
 
 /// A support query stops when nothing can exceed the value found by more than this fraction of the
-/// scene's size (2^-43, about 1.1e-13).
+/// scene's size (2^-43, about 1.1e-13), rounding apart.
 ///
-/// It must exceed the rounding of the nets that carry the proof, at most
-/// (8 + degree * depth) * rounding_unit of the largest coefficient: 2^-43 is 1024 rounding units,
-/// enough for degree 31 at 32 levels of subdivision. A smaller value would buy no accuracy, since
-/// the value itself is polished by Newton steps to the last bits.
+/// Contact along a whole curve in general position needs cells of the size of the slack's cube
+/// root; a smaller one would buy no accuracy, since the value itself is polished by Newton steps to
+/// the last bits.
 inline constexpr double support_slack = 1024 * rounding_unit;
 
 /// Highest degree of a curve or surface in either direction. Exchange formats in use stop at 25.

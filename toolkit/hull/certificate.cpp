@@ -1,34 +1,97 @@
 #include "taut/hull/certificate.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "taut/core/tolerances.h"
 
 namespace taut {
+namespace {
+
+/// The point of least norm in the convex hull of up to three points, and which of them carry it.
+struct Nearest {
+  dvec3 point = dvec3(0.0);
+  std::array<dvec3, 3> carrier;
+  int size = 0;
+  double norm2 = std::numeric_limits<double>::infinity();
+
+  void offer(const dvec3& p, std::span<const dvec3> points) {
+    if (!(glm::dot(p, p) < norm2)) return;
+    point = p;
+    norm2 = glm::dot(p, p);
+    size = int(points.size());
+    std::copy(points.begin(), points.end(), carrier.begin());
+  }
+
+  void offer_segment(const dvec3& a, const dvec3& b) {
+    const dvec3 edge = b - a;
+    const double t = -glm::dot(a, edge) / glm::dot(edge, edge);
+    if (!(t > 0 && t < 1)) return;
+    offer(a + t * edge, std::array{a, b});
+  }
+
+  /// The foot of the origin on the triangle's plane, if it lies in the triangle.
+  void offer_triangle(const dvec3& a, const dvec3& b, const dvec3& c) {
+    const dvec3 n = glm::cross(b - a, c - a);
+    const double n2 = glm::dot(n, n);
+    if (n2 == 0) return;
+    const dvec3 foot = glm::dot(a, n) / n2 * n;
+    const auto inside = [&](const dvec3& p, const dvec3& q) {
+      return glm::dot(glm::cross(q - p, foot - p), n) >= 0;
+    };
+    if (inside(a, b) && inside(b, c) && inside(c, a)) offer(foot, std::array{a, b, c});
+  }
+};
+
+/// The point of least norm on the boundary of the simplex of the carrier and one more point.
+Nearest nearest_with(const Nearest& old, const dvec3& w) {
+  Nearest result;
+  result.offer(w, std::array{w});
+  for (int i = 0; i < old.size; ++i) {
+    const dvec3& a = old.carrier[std::size_t(i)];
+    result.offer(a, std::array{a});
+    result.offer_segment(a, w);
+    for (int j = i + 1; j < old.size; ++j) {
+      const dvec3& b = old.carrier[std::size_t(j)];
+      result.offer_segment(a, b);
+      result.offer_triangle(a, b, w);
+    }
+  }
+  if (old.size == 3) result.offer_triangle(old.carrier[0], old.carrier[1], old.carrier[2]);
+  return result;
+}
+
+}  // namespace
 
 double cone_depth(std::span<const dvec3> directions) {
-  constexpr int iterations = 16;
-  dvec3 x(0.0);
-  for (const dvec3& d : directions) x += d;
-  x /= double(std::max<std::size_t>(directions.size(), 1));
-  double best = -1;
+  constexpr double narrow = 0.95;
+  constexpr int iterations = 64;
+  // The lowest direction over x bounds the distance from below, |x| from above.
+  const auto lowest = [&](const dvec3& x) {
+    return *std::min_element(
+        directions.begin(), directions.end(),
+        [&](const dvec3& a, const dvec3& b) { return glm::dot(a, x) < glm::dot(b, x); });
+  };
+  if (directions.empty()) return 1;
+  dvec3 mean(0.0);
+  for (const dvec3& d : directions) mean += d;
+  mean = unit(mean);
+  double best = glm::dot(lowest(mean), mean) - 8 * rounding_unit;
+  if (best > narrow) return best;
+
+  Nearest nearest;
+  nearest.offer(directions.front(), directions.first(1));
   for (int k = 0; k < iterations; ++k) {
-    const double length = glm::length(x);
+    const double length = glm::length(nearest.point);
     if (!(length > 0)) break;
-    const dvec3* lowest = nullptr;
-    double least = 2;
-    for (const dvec3& d : directions) {
-      const double value = glm::dot(d, x) / length;
-      if (value < least) {
-        least = value;
-        lowest = &d;
-      }
-    }
-    best = std::max(best, least - 8 * rounding_unit);
-    // The distance is between `least` and |x|.
-    if (lowest == nullptr || length - least < 0.02 * length) break;
-    const dvec3 edge = *lowest - x;
-    x += std::clamp(-glm::dot(x, edge) / glm::dot(edge, edge), 0.0, 1.0) * edge;
+    const dvec3 w = lowest(nearest.point);
+    const double bound = glm::dot(w, nearest.point) / length - 8 * rounding_unit;
+    best = std::max(best, bound);
+    if (length - bound < 0.01 * length) break;
+    const Nearest next = nearest_with(nearest, w);
+    if (!(next.norm2 < nearest.norm2)) break;  // the origin is inside, or rounding is reached
+    nearest = next;
   }
   return std::min(best, 1.0);
 }

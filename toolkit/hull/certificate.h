@@ -9,9 +9,9 @@ namespace taut {
 /// Lower bound of the distance of the origin from the convex hull of unit vectors, at most one.
 /// Not positive if they lie in no open half-space, or hardly.
 ///
-/// It is what turns gaps into distances. Let P be a polytope inside a convex body H, v a vertex of P
-/// and n_1 .. n_k directions whose cone holds the unit vector n, n = sum l_i n_i with l_i >= 0. The
-/// support function is convex and homogeneous, so
+/// It is what turns gaps into distances. Let P be a polytope inside a convex body H, v a vertex of
+/// P and n_1 .. n_k directions whose cone holds the unit vector n, n = sum l_i n_i with l_i >= 0.
+/// The support function is convex and homogeneous, so
 ///     h_H(n) - v.n <= sum l_i (h_H(n_i) - v.n_i) <= max_i (h_H(n_i) - v.n_i) * sum l_i,
 /// and sum l_i <= 1 / depth, because n.m = sum l_i n_i.m >= depth * sum l_i for the unit vector m
 /// that attains the depth. With the normals of the facets about v these cones cover all directions
@@ -20,7 +20,8 @@ namespace taut {
 ///     max_n h_H(n) - h_P(n) <= max_v max_i (h_H(n_i) - v.n_i) / depth_v,
 /// and the left side is the Hausdorff distance of P and H.
 ///
-/// Method: Gilbert's iteration for the point of least norm, any iterate of which gives a bound.
+/// Method: the point of least norm by Gilbert, Johnson and Keerthi 1988, any iterate of which gives
+/// a bound; narrow cones are answered by their mean.
 double cone_depth(std::span<const dvec3> directions);
 
 }  // namespace taut

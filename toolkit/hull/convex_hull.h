@@ -12,8 +12,9 @@ struct HullOptions {
   double tolerance = 0;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;
-  /// Vertices after which refinement gives up (NotConverged is thrown with what was reached).
-  int max_vertices = 20'000'000;
+  /// Vertices after which refinement gives up (NotConverged is thrown with what was reached). Each
+  /// takes about 700 bytes meanwhile.
+  int max_vertices = 4'000'000;
   Progress progress;
 };
 

@@ -48,7 +48,8 @@ Measures measure(const PolygonMesh& mesh) {
       area.add(glm::length(normal) / 2);
       surface_moment.add(glm::length(normal) / 6 * sum);
       moment.add(det / 24 * sum);
-      // Integral of x y over the tetrahedron (0, a, b, c): det / 120 (sum x sum y + sum of x_i y_i).
+      // Integral of x y over the tetrahedron (0, a, b, c): det / 120 (sum x sum y + sum of x_i
+      // y_i).
       squares.add(det / 120 * (sum * sum + a * a + b * b + c * c));
       const auto mixed = [&](int i, int j) {
         return sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j];

@@ -36,20 +36,25 @@ bool PointHull::make_simplex() {
     }
     return best;
   };
+  // Differences of halves, in units of the extent, neither over- nor underflow.
+  const double unit = std::max({extent_.x, extent_.y, extent_.z, 1e-300});
+  const auto from = [&](const dvec3& p, const dvec3& q) { return (0.5 * q - 0.5 * p) / unit; };
   const dvec3 a = point(0);
   dimension_ = 0;
-  const int ib = find([&](const dvec3& p) { return glm::length(p - a); },
+  const int ib = find([&](const dvec3& p) { return glm::length(from(a, p)); },
                       [&](const dvec3& p) { return p != a; });
   if (ib < 0) return false;
   const dvec3 b = point(ib);
+  const dvec3 ab = from(a, b);
   dimension_ = 1;
-  const int ic = find([&](const dvec3& p) { return glm::length(glm::cross(b - a, p - a)); },
+  const int ic = find([&](const dvec3& p) { return glm::length(glm::cross(ab, from(a, p))); },
                       [&](const dvec3& p) { return !collinear(a, b, p); });
   if (ic < 0) return false;
   const dvec3 c = point(ic);
+  const dvec3 normal = glm::cross(ab, from(a, c));
   dimension_ = 2;
   const PlaneSide plane(a, b, c, extent_);
-  const int id = find([&](const dvec3& p) { return std::abs(plane.determinant(p)); },
+  const int id = find([&](const dvec3& p) { return std::abs(glm::dot(normal, from(a, p))); },
                       [&](const dvec3& p) { return plane.side(p) != Sign::zero; });
   if (id < 0) return false;
   dimension_ = 3;
@@ -69,10 +74,8 @@ bool PointHull::make_simplex() {
 }
 
 int PointHull::new_facet(int a, int b, int c) {
-  const Facet facet{{a, b, c},
-                    {-1, -1, -1},
-                    PlaneSide(point(a), point(b), point(c), extent_),
-                    true};
+  const Facet facet{
+      {a, b, c}, {-1, -1, -1}, PlaneSide(point(a), point(b), point(c), extent_), true};
   ++alive_;
   if (free_.empty()) {
     facets_.push_back(facet);
@@ -124,7 +127,8 @@ void PointHull::collect_visible(const dvec3& p, int start) {
         neighbor.alive = false;
         stack_.push_back(other);
       } else {
-        horizon_.push_back({facet.vertex[std::size_t(k)], facet.vertex[std::size_t(next3(k))], other});
+        horizon_.push_back(
+            {facet.vertex[std::size_t(k)], facet.vertex[std::size_t(next3(k))], other});
       }
     }
   }
@@ -138,7 +142,8 @@ void PointHull::make_cone(int apex) {
     const int f = new_facet(e.from, e.to, apex);
     Facet& outside = facets_[std::size_t(e.outside)];
     for (int k = 0; k < 3; ++k) {
-      if (outside.vertex[std::size_t(k)] == e.to && outside.vertex[std::size_t(next3(k))] == e.from) {
+      if (outside.vertex[std::size_t(k)] == e.to &&
+          outside.vertex[std::size_t(next3(k))] == e.from) {
         outside.neighbor[std::size_t(k)] = f;
       }
     }

@@ -19,12 +19,16 @@ constexpr int projection_steps = 3;
 /// surface that the hull has left.
 constexpr double along_share = 0.25;
 
-/// Follows the scene's surfaces from contacts; in model coordinates.
+/// Follows the scene's surfaces from contacts, in model coordinates times the scene's scale.
 class SurfaceWalk {
  public:
   SurfaceWalk(const Scene& scene, const std::vector<Sample>& samples, const PointHull& hull,
               double distance_bound)
-      : model_(scene.model()), samples_(samples), hull_(hull), distance_bound_(distance_bound) {}
+      : model_(scene.model()),
+        scale_(scene.frame().scale),
+        samples_(samples),
+        hull_(hull),
+        distance_bound_(distance_bound * scale_) {}
 
   bool runs_along_surface(int a, int b) const {
     const dvec3 middle = 0.5 * (hull_.point(a) + hull_.point(b));
@@ -33,8 +37,8 @@ class SurfaceWalk {
     const Contact& ca = samples_[std::size_t(a)].contact;
     const Contact& cb = samples_[std::size_t(b)].contact;
     if (ca.instance == cb.instance && ca.kind == cb.kind && ca.element == cb.element) {
-      const dvec3 x = point_at(ca, 0.5 * (ca.u + cb.u), 0.5 * (ca.v + cb.v));
-      if (glm::distance(x, middle) < reach) return true;
+      const PatchJet1 j = jet_at(ca, 0.5 * (ca.u + cb.u), 0.5 * (ca.v + cb.v));
+      if (glm::distance(j.S, to_part(ca, middle)) < reach) return true;
     }
     return reaches(ca, middle, reach) || reaches(cb, middle, reach);
   }
@@ -50,36 +54,35 @@ class SurfaceWalk {
   const Instance& instance(const Contact& c) const {
     return model_.instances()[std::size_t(c.instance)];
   }
-  const Part& part(const Contact& c) const {
-    return model_.parts()[std::size_t(instance(c).part)];
+  const Part& part(const Contact& c) const { return model_.parts()[std::size_t(instance(c).part)]; }
+
+  /// Point and tangents of the contact's element, in its part's frame.
+  PatchJet1 jet_at(const Contact& c, double u, double v) const {
+    PatchJet1 j;
+    if (c.kind == SourceKind::face) {
+      j = jet1(part(c).patches()[std::size_t(c.element)].bezier, u, v);
+    } else if (c.kind == SourceKind::edge) {
+      const CurveJet curve = jet(part(c).pieces()[std::size_t(c.element)].bezier, u);
+      j = {curve.c, curve.ct, dvec3(0.0)};
+    } else {
+      j = {part(c).vertices()[std::size_t(c.element)].point, dvec3(0.0), dvec3(0.0)};
+    }
+    return {scale_ * j.S, scale_ * j.Su, scale_ * j.Sv};
   }
 
-  dvec3 point_at(const Contact& c, double u, double v) const {
-    switch (c.kind) {
-      case SourceKind::face:
-        return instance(c).pose(point(part(c).patches()[std::size_t(c.element)].bezier, u, v));
-      case SourceKind::edge:
-        return instance(c).pose(point(part(c).pieces()[std::size_t(c.element)].bezier, u));
-      default:
-        return instance(c).pose(part(c).vertices()[std::size_t(c.element)].point);
-    }
+  dvec3 to_part(const Contact& c, const dvec3& x) const {
+    const RigidMotion& pose = instance(c).pose;
+    return glm::transpose(pose.rotation) * (x - scale_ * pose.translation);
   }
 
   /// Whether Gauss-Newton steps from the contact, kept in its element, come near the target.
   bool reaches(const Contact& c, const dvec3& target, double reach) const {
     if (c.kind == SourceKind::vertex) return false;
-    const RigidMotion& pose = instance(c).pose;
-    const dvec3 local = glm::transpose(pose.rotation) * (target - pose.translation);
+    const dvec3 local = to_part(c, target);
     double u = c.u;
     double v = c.v;
     for (int step = 0;; ++step) {
-      PatchJet1 j;
-      if (c.kind == SourceKind::face) {
-        j = jet1(part(c).patches()[std::size_t(c.element)].bezier, u, v);
-      } else {
-        const CurveJet curve = jet(part(c).pieces()[std::size_t(c.element)].bezier, u);
-        j = {curve.c, curve.ct, dvec3(0.0)};
-      }
+      const PatchJet1 j = jet_at(c, u, v);
       const dvec3 d = local - j.S;
       if (glm::length(d) < reach) return true;
       if (step == projection_steps) return false;
@@ -104,6 +107,7 @@ class SurfaceWalk {
   }
 
   const Model& model_;
+  double scale_;
   const std::vector<Sample>& samples_;
   const PointHull& hull_;
   double distance_bound_;
@@ -114,7 +118,7 @@ float rounded_up(double x) {
   return f < x ? std::nextafterf(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-HullMesh bare_mesh(const PointHull& hull, const PointHull::Polygons& polygons,
+HullMesh bare_mesh(const PointHull& hull, double scale, const PointHull::Polygons& polygons,
                    std::vector<int>& point_of) {
   HullMesh mesh;
   std::vector<int> vertex_of(hull.points().size(), -1);
@@ -127,7 +131,7 @@ HullMesh bare_mesh(const PointHull& hull, const PointHull::Polygons& polygons,
   }
   mesh.reserve(point_of.size(), 3 * point_of.size(), polygons.loops.size());
   for (const int p : point_of) {
-    const dvec3& x = hull.point(p);
+    const dvec3 x = hull.point(p) / scale;  // exactly the coordinates that were scaled
     mesh.add_vertex({x.x, x.y, x.z});
   }
   std::vector<OpenMesh::VertexHandle> handles;
@@ -162,8 +166,8 @@ void label_faces(const SurfaceWalk& walk, const std::vector<Sample>& samples,
   std::vector<bool> bridging(mesh.n_edges());
   for (const auto e : mesh.edges()) {
     const auto h = mesh.halfedge_handle(e, 0);
-    bridging[std::size_t(e.idx())] = !walk.runs_along_surface(
-        point_at(mesh.from_vertex_handle(h)), point_at(mesh.to_vertex_handle(h)));
+    bridging[std::size_t(e.idx())] = !walk.runs_along_surface(point_at(mesh.from_vertex_handle(h)),
+                                                              point_at(mesh.to_vertex_handle(h)));
   }
   for (const auto f : mesh.faces()) {
     unsigned bridges = 0;
@@ -225,7 +229,7 @@ HullMesh polytope_mesh(const Scene& scene, const PointHull& hull,
   std::vector<bool> flat;
   for (const int f : polygons.facets) flat.push_back(gaps[std::size_t(f)] <= flat_gap);
   std::vector<int> point_of;  // per mesh vertex
-  HullMesh mesh = bare_mesh(hull, polygons, point_of);
+  HullMesh mesh = bare_mesh(hull, scene.frame().scale, polygons, point_of);
   label_vertices(scene, samples, vertex_bounds, point_of, mesh);
   const double bound = *std::max_element(vertex_bounds.begin(), vertex_bounds.end());
   label_faces(SurfaceWalk(scene, samples, hull, bound), samples, point_of, flat, mesh);

@@ -20,11 +20,12 @@ struct Sample {
 /// Coplanar facets become polygons, vertices that are not extreme go. The kinds of faces are read
 /// off the samples: a face whose plane supports the model (`gaps`, per facet, not above
 /// flat_gap) is a facet; an edge runs along the surface if the model has a point as near to its
-/// middle as the polytope is to the hull, sought from either end, and bridges a gap otherwise; a face with no bridging edge is part of a
-/// patch, with all its edges bridging it stands for a facet, else it lies on a scroll. At a coarse
-/// tolerance that is a guess; it never moves a vertex.
+/// middle as the polytope is to the hull, sought from either end, and bridges a gap otherwise; a
+/// face with no bridging edge is part of a patch, with all its edges bridging it stands for a
+/// facet, else it lies on a scroll. At a coarse tolerance that is a guess; it never moves a vertex.
 ///
-/// @pre samples and vertex_bounds (in model units) per point of the hull, gaps per facet place
+/// @pre the hull's points are model coordinates times the scene's scale; samples and vertex_bounds
+/// (in model units) per point of the hull, gaps per facet place
 HullMesh polytope_mesh(const Scene& scene, const PointHull& hull,
                        const std::vector<Sample>& samples, const std::vector<double>& gaps,
                        double flat_gap, const std::vector<double>& vertex_bounds);

@@ -24,19 +24,16 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Two starting points closer than this, in the scene's frame, count as one: the starting polytope
-/// needs shape, not detail, and slivers would only cost exact predicates.
-constexpr double start_spacing = 1e-6;
-
 /// A scene thinner than this in some direction, in its frame, is flat: below it, facet normals are
-/// rounding noise (support values are proven to about 1e-13).
+/// rounding noise (support values are proven to about 1e-13). Starting points closer than this
+/// count as one.
 constexpr double flat_width = 1e-11;
 
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
  public:
   Sampler(const Scene& scene, const HullOptions& options)
-      : scene_(scene), options_(options), query_(scene), hull_(inflated(scene.box())) {}
+      : scene_(scene), options_(options), query_(scene), hull_(inflated(scene)) {}
 
   Hull run();
 
@@ -50,12 +47,14 @@ class Sampler {
     Contact contact;
   };
 
-  static Box inflated(Box box) {
-    const dvec3 margin(1e-3 * diagonal(box));
-    box.lower -= margin;
-    box.upper += margin;
-    return box;
+  static Box inflated(const Scene& scene) {
+    const double scale = scene.frame().scale;
+    const dvec3 margin(1e-3 * scale * scene.diagonal());
+    return {scale * scene.box().lower - margin, scale * scene.box().upper + margin};
   }
+  /// What the point hull is told: model coordinates times the scene's scale, a power of two, so
+  /// that its decisions hold for the coordinates as stored and never leave the range of doubles.
+  dvec3 scaled(const dvec3& point) const { return scene_.frame().scale * point; }
 
   void start();
   void add_support_points(const std::vector<dvec3>& directions);
@@ -74,6 +73,13 @@ class Sampler {
     return depth > 0 ? gap / depth : std::numeric_limits<double>::infinity();
   }
   HullMesh make_mesh();
+  /// How far rounding may move a support point out of the hull, in model units: half a unit in the
+  /// last place of each stored coordinate, and the evaluation in the frame.
+  double vertex_rounding() const {
+    const dvec3 largest = glm::max(glm::abs(scene_.box().lower), glm::abs(scene_.box().upper));
+    return rounding_unit * (largest.x + largest.y + largest.z) +
+           scene_.frame().length_to_model(gap_rounding);
+  }
 
   /// Rounding of a gap in the scene's frame, where coordinates are at most about two.
   static constexpr double gap_rounding = 16 * rounding_unit;
@@ -105,12 +111,11 @@ void Sampler::add_support_points(const std::vector<dvec3>& directions) {
     const Support s = query_(n);
     const dvec3 point = scene_.frame().to_model(s.point);
     const dvec3 frame_point = scene_.frame().to_frame(point);
-    const bool near_another =
-        std::any_of(frame_points_.begin(), frame_points_.end(), [&](const dvec3& other) {
-          return glm::distance(other, frame_point) < start_spacing;
-        });
+    const bool near_another = std::any_of(
+        frame_points_.begin(), frame_points_.end(),
+        [&](const dvec3& other) { return glm::distance(other, frame_point) < flat_width; });
     if (near_another) continue;
-    points.push_back(point);
+    points.push_back(scaled(point));
     remember(n, s.contact, point);
   }
   hull_.add(points);
@@ -262,7 +267,7 @@ bool Sampler::refine() {
     // A facet that an earlier insertion replaced has lost its plane.
     const Plane plane = planes_[std::size_t(c.facet)];
     if (!plane.known || plane.n != c.n) continue;
-    if (!hull_.insert(plane.point, c.facet)) continue;
+    if (!hull_.insert(scaled(plane.point), c.facet)) continue;
     remember(plane.n, plane.contact, plane.point);
     planes_.resize(hull_.facets().size());
     for (const int f : hull_.replaced()) planes_[std::size_t(f)].known = false;
@@ -293,12 +298,13 @@ Hull Sampler::run() {
   for (;;) {
     find_planes();
     bound_vertices();
-    // The share done, guessed from the error's order of convergence.
-    options_.progress.update("sample", std::min(1.0, tolerance_ / bound_));
+    // Vertices grow as the inverse of the distance: the orders of magnitude done tell the rounds.
+    options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
     if (bound_ <= tolerance_) break;
     const bool full = int(hull_.points().size()) >= options_.max_vertices;
     if (full || !refine()) {
-      const double reached = scene_.frame().length_to_model(bound_);
+      // Where nothing is certified, everything lies within the diagonal all the same.
+      const double reached = std::min(scene_.frame().length_to_model(bound_), scene_.diagonal());
       throw NotConverged(full ? "the limit of vertices was met before the tolerance"
                               : "the tolerance is below what double precision can certify here",
                          reached);
@@ -309,9 +315,10 @@ Hull Sampler::run() {
   statistics_.newton_iterations += query_.newton_iterations();
   statistics_.seconds_sample = seconds_since(start_time);
   const auto mesh_time = Clock::now();
+  options_.progress.update("mesh", 0);
   result.mesh = make_mesh();
   statistics_.seconds_mesh = seconds_since(mesh_time);
-  result.distance_bound = scene_.frame().length_to_model(bound_);
+  result.distance_bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding());
   result.statistics = statistics_;
   return result;
 }

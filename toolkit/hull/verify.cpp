@@ -56,10 +56,21 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
+/// The mesh times a power of two, which no predicate notices.
+PolygonMesh scaled(PolygonMesh mesh, double scale) {
+  for (dvec3& p : mesh.points) p *= scale;
+  return mesh;
+}
+
+/// Checks the mesh in model coordinates times the scene's scale, where no product leaves the range
+/// of doubles.
 class Verifier {
  public:
   Verifier(const PolygonMesh& mesh, const Scene& scene, const VerifyOptions& options)
-      : mesh_(mesh), scene_(scene), options_(options), edges_(directed_edges(mesh)) {}
+      : mesh_(scaled(mesh, scene.frame().scale)),
+        scene_(scene),
+        options_(options),
+        edges_(directed_edges(mesh)) {}
 
   Verification run();
 
@@ -87,7 +98,7 @@ class Verifier {
     }
   }
 
-  const PolygonMesh& mesh_;
+  PolygonMesh mesh_;
   const Scene& scene_;
   const VerifyOptions& options_;
   std::vector<DirectedEdge> edges_;
@@ -172,9 +183,8 @@ void Verifier::find_planes() {
 }
 
 void Verifier::check_convexity() {
-  result_.convex =
-      result_.closed && result_.manifold && result_.oriented && result_.no_zero_area &&
-      connected_ && euler_ == 2;
+  result_.convex = result_.closed && result_.manifold && result_.oriented && result_.no_zero_area &&
+                   connected_ && euler_ == 2;
   const auto none_above = [&](int f, int g) {
     const auto& c = corners_[std::size_t(f)];
     return std::all_of(polygon(g).begin(), polygon(g).end(), [&](int v) {
@@ -270,7 +280,7 @@ std::vector<dvec3> directions(const PolygonMesh& mesh, const std::vector<dvec3>&
 }
 
 void Verifier::measure_distances() {
-  const dvec3 center = scene_.frame().center;
+  const dvec3 center = scene_.frame().scale * scene_.frame().center;
   std::vector<dvec3> normals(mesh_.polygons.size(), dvec3(0.0));
   for (std::size_t f = 0; f < normals.size(); ++f) {
     const auto& c = corners_[f];
@@ -293,8 +303,7 @@ void Verifier::measure_distances() {
       options_.progress.check();
       const Support s = query(tried[k], near);
       near = s.contact;
-      difference[k] =
-          scene_.frame().length_to_model(s.h) - mesh_support.value(tried[k], center);
+      difference[k] = s.h - mesh_support.value(tried[k], center);
     }
   });
   for (const double d : difference) {
@@ -317,6 +326,10 @@ Verification Verifier::run() {
   find_planes();
   check_convexity();
   measure_distances();
+  for (double* length :
+       {&result_.largest_violation, &result_.model_outside, &result_.mesh_outside}) {
+    *length = scene_.frame().length_to_model(*length);
+  }
   return result_;
 }
 

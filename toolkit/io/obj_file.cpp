@@ -66,8 +66,6 @@ class Parser {
   // The element between its statement and `end`; of a curve in parameter space nothing is kept.
   std::string body_;
   ObjElement element_;
-  bool has_parameters_u_ = false;
-  bool has_parameters_v_ = false;
 
   std::set<std::string, std::less<>> warned_;
 };
@@ -230,13 +228,10 @@ void Parser::read_parameters(const Statement& s) {
     scanner_.fail(s[0].line, "parm takes u or v and two parameters or more");
   }
   if (!is_u && body_ != "surf") scanner_.fail(s[0].line, "a curve has no parm v");
-  bool& has_parameters = is_u ? has_parameters_u_ : has_parameters_v_;
-  if (has_parameters) {
+  std::vector<double>& parameters = is_u ? element_.parameters_u : element_.parameters_v;
+  if (!parameters.empty()) {
     scanner_.fail(s[0].line, "parm " + std::string(s[1].text) + " stands here a second time");
   }
-  has_parameters = true;
-
-  std::vector<double>& parameters = is_u ? element_.parameters_u : element_.parameters_v;
   (is_u ? element_.parameters_line_u : element_.parameters_line_v) = s[0].line;
   for (std::size_t i = 2; i < s.size(); ++i) {
     parameters.push_back(scanner_.number(s[i], "a parameter"));
@@ -251,8 +246,6 @@ void Parser::end_element(const Statement& s) {
   require_body(s);
   if (body_ != "curv2") file_.elements.push_back(std::move(element_));
   body_.clear();
-  has_parameters_u_ = false;
-  has_parameters_v_ = false;
 }
 
 void Parser::require_no_body(const Statement& s) const {

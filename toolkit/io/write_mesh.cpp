@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "taut/core/error.h"
@@ -88,7 +89,10 @@ struct Material {
     if (kind == FaceKind::facet) return "facet";
     return source < 0 ? "patch" : "patch_" + std::to_string(source);
   }
-  auto operator<=>(const Material&) const = default;
+  bool operator<(const Material& other) const {
+    return std::pair(kind, source) < std::pair(other.kind, other.source);
+  }
+  bool operator==(const Material&) const = default;
 };
 
 Material material(const HullMesh& mesh, OpenMesh::FaceHandle face) {

@@ -255,11 +255,8 @@ PatchJet2 jet2(const BezierPatch& patch, double u, double v) {
 
 PatchJet3 jet3(const BezierPatch& patch, double u, double v) {
   const auto S = euclidean_derivatives<3>(patch, u, v);
-  return {{{S[0][0], S[1][0], S[0][1]}, S[2][0], S[1][1], S[0][2]},
-          S[3][0],
-          S[2][1],
-          S[1][2],
-          S[0][3]};
+  return {
+      {{S[0][0], S[1][0], S[0][1]}, S[2][0], S[1][1], S[0][2]}, S[3][0], S[2][1], S[1][2], S[0][3]};
 }
 
 dvec3 unit_normal(const BezierPatch& patch, double u, double v) {

@@ -98,8 +98,8 @@ void cbvh_convergence(benchmark::State& state) {
       for (double v = 0; v < 1; v += size) {
         // A tolerance that every patch meets makes the root the leaf: its distance is asked.
         const CoonsBvh bvh(restricted(patch, {u, u + size}, {v, v + size}), 1e9);
-        result = std::max(result,
-                          coons ? bvh.coons_distance(bvh.root()) : bvh.deviation(bvh.root()));
+        result =
+            std::max(result, coons ? bvh.coons_distance(bvh.root()) : bvh.deviation(bvh.root()));
       }
     }
     return result;

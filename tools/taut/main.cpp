@@ -55,8 +55,9 @@ ExitCode fail(ExitCode code, const std::string& text) {
   return code;
 }
 
+/// Says what went wrong; `cancelled` is the code where that is a Cancelled.
 /// @pre called while an exception is handled
-ExitCode fail_with_current_exception(const Interrupt& interrupt) {
+ExitCode fail_with_current_exception(ExitCode cancelled) {
   try {
     throw;
   } catch (const CheckFailed& error) {
@@ -74,7 +75,7 @@ ExitCode fail_with_current_exception(const Interrupt& interrupt) {
   } catch (const NotConverged& error) {
     return fail(ExitCode::not_converged, error.what());
   } catch (const Cancelled&) {
-    return fail(interrupt.exit_code(), "interrupted");
+    return fail(cancelled, "interrupted");
   } catch (const LimitExceeded& error) {
     return fail(ExitCode::limit_exceeded, error.what());
   } catch (const std::bad_alloc&) {
@@ -130,7 +131,7 @@ class CommandLine {
       Session session(*command->common, interrupt.token());
       return command->run(session);
     } catch (...) {
-      return fail_with_current_exception(interrupt);
+      return fail_with_current_exception(interrupt.exit_code());
     }
   }
 
@@ -165,9 +166,7 @@ int main(int argc, char** argv) {
   using taut::tool::ExitCode;
   try {
     return static_cast<int>(taut::tool::CommandLine().run(argc, argv));
-  } catch (const taut::tool::UsageError& error) {
-    return static_cast<int>(taut::tool::fail(ExitCode::wrong_usage, error.what()));
-  } catch (const std::exception& error) {
-    return static_cast<int>(taut::tool::fail(ExitCode::io_error, error.what()));
+  } catch (...) {
+    return static_cast<int>(taut::tool::fail_with_current_exception(ExitCode::interrupted));
   }
 }
