@@ -21,8 +21,8 @@ PolygonMesh box_mesh(const dvec3& lower, const dvec3& upper) {
     mesh.points.emplace_back((k & 1) != 0 ? upper.x : lower.x, (k & 2) != 0 ? upper.y : lower.y,
                              (k & 4) != 0 ? upper.z : lower.z);
   }
-  mesh.polygons = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2},
-                   {1, 3, 7, 5}};
+  mesh.polygons = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                   {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   return mesh;
 }
 
@@ -98,8 +98,8 @@ void expect_measures(const PolygonMesh& mesh, const Measures& truth, double accu
   const Measures m = measure(mesh);
   EXPECT_NEAR(m.volume, truth.volume, accuracy * truth.volume) << name;
   EXPECT_NEAR(m.area, truth.area, accuracy * truth.area) << name;
-  expect_near(m.centroid, truth.centroid,
-              accuracy * std::sqrt(truth.area) + centroid_error, name + ": centroid");
+  expect_near(m.centroid, truth.centroid, accuracy * std::sqrt(truth.area) + centroid_error,
+              name + ": centroid");
   const double trace = truth.inertia[0][0] + truth.inertia[1][1] + truth.inertia[2][2];
   expect_near(m.inertia, truth.inertia, accuracy * trace, name + ": inertia");
   EXPECT_EQ(m.inertia, glm::transpose(m.inertia)) << name;
@@ -119,7 +119,9 @@ Measures corner_measures(double a, double b, double c) {
   const auto moment = [&](double p, double q) { return 3.0 / 80 * m * (p * p + q * q); };
   const auto product = [&](double p, double q) { return m / 80 * p * q; };
   const double slant = std::sqrt(a * a * b * b + b * b * c * c + c * c * a * a);
-  return {m, (a * b + b * c + c * a + slant) / 2, {a / 4, b / 4, c / 4},
+  return {m,
+          (a * b + b * c + c * a + slant) / 2,
+          {a / 4, b / 4, c / 4},
           {moment(b, c), product(a, b), product(a, c),  //
            product(a, b), moment(c, a), product(b, c),  //
            product(a, c), product(b, c), moment(a, b)}};
@@ -151,11 +153,21 @@ TEST(Measures, OctahedronAndIcosahedron) {
                   "octahedron");
   const double phi = std::numbers::phi;
   const PolygonMesh icosahedron = {
-      {{-1, phi, 0}, {1, phi, 0}, {-1, -phi, 0}, {1, -phi, 0}, {0, -1, phi}, {0, 1, phi},
-       {0, -1, -phi}, {0, 1, -phi}, {phi, 0, -1}, {phi, 0, 1}, {-phi, 0, -1}, {-phi, 0, 1}},
-      {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-       {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9},
-       {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+      {{-1, phi, 0},
+       {1, phi, 0},
+       {-1, -phi, 0},
+       {1, -phi, 0},
+       {0, -1, phi},
+       {0, 1, phi},
+       {0, -1, -phi},
+       {0, 1, -phi},
+       {phi, 0, -1},
+       {phi, 0, 1},
+       {-phi, 0, -1},
+       {-phi, 0, 1}},
+      {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+       {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+       {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
   const double volume = 10 * (3 + std::sqrt(5.0)) / 3;  // edges of length 2
   expect_measures(icosahedron,
                   {volume, 20 * std::sqrt(3.0), dvec3(0.0), dmat3(0.4 * phi * phi * volume)}, 3e-15,
@@ -171,7 +183,9 @@ TEST(Measures, PrismsOnPolygonsOfManyCorners) {
     const double m = base * h;
     const double polar = m * R * R * (2 + std::cos(angle)) / 6;
     const double across = polar / 2 + m * h * h / 12;
-    const Measures truth = {m, 2 * base + n * h * 2 * R * std::sin(angle / 2), {0, 0, h / 2},
+    const Measures truth = {m,
+                            2 * base + n * h * 2 * R * std::sin(angle / 2),
+                            {0, 0, h / 2},
                             diagonal_matrix(across, across, polar)};
     expect_measures(prism_mesh(n, R, h), truth, 1e-14, std::to_string(n) + " corners");
   }

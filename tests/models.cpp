@@ -36,8 +36,8 @@ void map(Geometry& geometry, const dmat3& matrix, const dvec3& translation) {
 }
 
 NurbsSurface bilinear(const dvec3& p00, const dvec3& p01, const dvec3& p10, const dvec3& p11) {
-  return taut::as_nurbs(BezierPatch{
-      1, 1, {dvec4(p00, 1.0), dvec4(p01, 1.0), dvec4(p10, 1.0), dvec4(p11, 1.0)}});
+  return taut::as_nurbs(
+      BezierPatch{1, 1, {dvec4(p00, 1.0), dvec4(p01, 1.0), dvec4(p10, 1.0), dvec4(p11, 1.0)}});
 }
 
 /// z(x, y) over [-1, 1]^2 with quadratic z given at the 3 x 3 Bezier points.
@@ -136,8 +136,8 @@ NurbsCurve segment(const dvec3& a, const dvec3& b) {
 }
 
 NurbsCurve twisted_cubic() {
-  return taut::as_nurbs(BezierCurve{{{0, 0, 0, 1}, {1.0 / 3, 0, 0, 1}, {2.0 / 3, 1.0 / 3, 0, 1},
-                                     {1, 1, 1, 1}}});
+  return taut::as_nurbs(
+      BezierCurve{{{0, 0, 0, 1}, {1.0 / 3, 0, 0, 1}, {2.0 / 3, 1.0 / 3, 0, 1}, {1, 1, 1, 1}}});
 }
 
 NurbsSurface revolved(const NurbsCurve& profile) {
@@ -236,9 +236,8 @@ Shape spherical_cap(double height) {
   // The arc from the pole down to the rim as one rational quadratic.
   const double half = 0.5 * std::acos(1 - height);
   const dvec3 end(std::sin(2 * half), 0, std::cos(2 * half));
-  const BezierCurve arc{{{0, 0, 1, 1},
-                         taut::homogeneous({std::tan(half), 0, 1}, std::cos(half)),
-                         dvec4(end, 1.0)}};
+  const BezierCurve arc{
+      {{0, 0, 1, 1}, taut::homogeneous({std::tan(half), 0, 1}, std::cos(half)), dvec4(end, 1.0)}};
   return {{revolved(taut::as_nurbs(arc))}, {}, {}};
 }
 
@@ -247,15 +246,13 @@ Shape two_spheres(double r1, double r2, double d) {
 }
 
 Shape oloid() {
-  return {{},
-          {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0}), circle({1, 0, 0}, {1, 0, 0}, {0, 0, 1})},
-          {}};
+  return {
+      {}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0}), circle({1, 0, 0}, {1, 0, 0}, {0, 0, 1})}, {}};
 }
 
 Shape perpendicular_circles() {
-  return {{},
-          {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0}), circle(dvec3(0.0), {1, 0, 0}, {0, 0, 1})},
-          {}};
+  return {
+      {}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0}), circle(dvec3(0.0), {1, 0, 0}, {0, 0, 1})}, {}};
 }
 
 Shape paraboloid() { return height_field({{2, 0, 2}, {0, -2, 0}, {2, 0, 2}}); }
@@ -266,9 +263,12 @@ Shape bilinear_saddle() {
 }
 
 Shape dented() {
-  const BezierCurve profile{
-      {{0, 0, 0.2, 1}, {0.8, 0, 0.2, 1}, {0.9, 0, 2, 1}, {1.8, 0, 0.5, 1}, {1, 0, -1, 1},
-       {0, 0, -1, 1}}};
+  const BezierCurve profile{{{0, 0, 0.2, 1},
+                             {0.8, 0, 0.2, 1},
+                             {0.9, 0, 2, 1},
+                             {1.8, 0, 0.5, 1},
+                             {1, 0, -1, 1},
+                             {0, 0, -1, 1}}};
   return {{revolved(taut::as_nurbs(profile))}, {}, {}};
 }
 

@@ -74,8 +74,9 @@ void expect_triangulation(const PointHull& hull, std::size_t step = 1) {
       ASSERT_TRUE(other.alive);
       bool back = false;
       for (std::size_t j = 0; j < 3; ++j) {
-        back = back || (other.neighbor[j] == int(f) && other.vertex[j] == facet.vertex[(k + 1) % 3] &&
-                        other.vertex[(j + 1) % 3] == facet.vertex[k]);
+        back =
+            back || (other.neighbor[j] == int(f) && other.vertex[j] == facet.vertex[(k + 1) % 3] &&
+                     other.vertex[(j + 1) % 3] == facet.vertex[k]);
       }
       ASSERT_TRUE(back);
     }
@@ -466,12 +467,17 @@ TEST(PointHull, InsertOneByOneEqualsAdd) {
     std::vector<dvec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int k = 0; k < 150; ++k) {
       switch (repeat % 4) {
-        case 0: points.push_back(random_point(random)); break;
-        case 1: points.push_back(taut_test::random_direction(random)); break;
+        case 0:
+          points.push_back(random_point(random));
+          break;
+        case 1:
+          points.push_back(taut_test::random_direction(random));
+          break;
         case 2:
           points.emplace_back(pick(random, -3, 3), pick(random, -3, 3), pick(random, -3, 3));
           break;
-        default: points.push_back(random_point(random) * dvec3(1, 1e-8, 1e-16));
+        default:
+          points.push_back(random_point(random) * dvec3(1, 1e-8, 1e-16));
       }
     }
     PointHull hull(box_of(points));

@@ -259,7 +259,8 @@ ReferenceSupport::ReferenceSupport(const taut::Model& model, const dvec3& origin
           cpp_bin_float_quad sum = instance.pose.translation[i];
           sum -= origin[i];
           for (int j = 0; j < 3; ++j) {
-            sum += cpp_bin_float_quad(instance.pose.rotation[j][i]) * cpp_bin_float_quad(x[j]) / x.w;
+            sum +=
+                cpp_bin_float_quad(instance.pose.rotation[j][i]) * cpp_bin_float_quad(x[j]) / x.w;
           }
           size_ = std::max(size_, std::abs(static_cast<real>(sum)));
           placed[i] = static_cast<real>(sum * x.w);
@@ -359,8 +360,9 @@ struct ExactPlane {
   int side(const dvec3& x, const rvec3& rounded_normal, const dvec3& origin) const {
     const rvec3 d = rvec3(x) - rvec3(origin);
     const real value = glm::dot(rounded_normal, d);
-    const real error = 1e-15L * (std::abs(rounded_normal.x * d.x) + std::abs(rounded_normal.y * d.y) +
-                                 std::abs(rounded_normal.z * d.z));
+    const real error =
+        1e-15L * (std::abs(rounded_normal.x * d.x) + std::abs(rounded_normal.y * d.y) +
+                  std::abs(rounded_normal.z * d.z));
     if (std::abs(value) > error) return value > 0 ? 1 : -1;
     return dot(normal, exact(x) - point).sign();
   }
@@ -395,8 +397,7 @@ MeshFacts mesh_facts(const taut::PolygonMesh& mesh) {
       int turned = 0;
       int to = start[v];
       do {
-        const std::vector<int>& p =
-            mesh.polygons[std::size_t(half_edges.at({int(v), to}))];
+        const std::vector<int>& p = mesh.polygons[std::size_t(half_edges.at({int(v), to}))];
         const auto here = std::find(p.begin(), p.end(), int(v));
         to = here == p.begin() ? p.back() : *(here - 1);
         ++turned;
@@ -439,9 +440,9 @@ MeshFacts mesh_facts(const taut::PolygonMesh& mesh) {
         mesh.polygons[std::size_t(half_edges.at({edge.second, edge.first}))];
     bool below = false;
     for (const int v : other) {
-      const int side = planes[std::size_t(f)].side(
-          mesh.points[std::size_t(v)], rounded[std::size_t(f)],
-          mesh.points[std::size_t(mesh.polygons[std::size_t(f)][0])]);
+      const int side =
+          planes[std::size_t(f)].side(mesh.points[std::size_t(v)], rounded[std::size_t(f)],
+                                      mesh.points[std::size_t(mesh.polygons[std::size_t(f)][0])]);
       if (side > 0) facts.edges_convex = false;
       if (side < 0) below = true;
     }

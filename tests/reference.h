@@ -51,11 +51,12 @@ class ReferenceSupport {
 
 /// Topology and exact convexity of a mesh, found the slow way.
 struct MeshFacts {
-  bool closed_manifold = false;  ///< every edge in two polygons, in opposite directions; one fan each
-  long euler = 0;                ///< V - E + F
-  bool planar = false;           ///< every polygon, exactly
-  bool edges_convex = false;     ///< no corner of a polygon above a neighbour's plane, exactly
-  bool strictly = false;         ///< neighbours are never coplanar, corners never straight
+  bool closed_manifold =
+      false;                  ///< every edge in two polygons, in opposite directions; one fan each
+  long euler = 0;             ///< V - E + F
+  bool planar = false;        ///< every polygon, exactly
+  bool edges_convex = false;  ///< no corner of a polygon above a neighbour's plane, exactly
+  bool strictly = false;      ///< neighbours are never coplanar, corners never straight
   bool no_zero_area = false;
   bool all_points_used = false;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hull_checks.h"
+#include "support_checks.h"
 
 namespace taut {
 namespace {

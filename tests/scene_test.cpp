@@ -17,7 +17,7 @@ using namespace taut_test;  // NOLINT: models and reference answers
 
 void expect_box(const Scene& scene, const dvec3& lower, const dvec3& upper,
                 const std::string& name) {
-  const double length = glm::length(upper - lower);
+  const double length = diagonal({lower, upper});
   for (int i = 0; i < 3; ++i) {
     // A query's value may be below the truth by a share of the scene's size.
     EXPECT_NEAR(scene.box().lower[i], lower[i], 1e-12 * length) << name << " " << i;
@@ -40,9 +40,9 @@ void expect_frame(const Scene& scene, const std::string& name) {
       control.include(frame.to_frame(instance.pose(corner)));
     }
   }
-  const double size = std::max({std::abs(control.lower.x), std::abs(control.lower.y),
-                                std::abs(control.lower.z), std::abs(control.upper.x),
-                                std::abs(control.upper.y), std::abs(control.upper.z)});
+  const double size =
+      std::max({std::abs(control.lower.x), std::abs(control.lower.y), std::abs(control.lower.z),
+                std::abs(control.upper.x), std::abs(control.upper.y), std::abs(control.upper.z)});
   EXPECT_LE(size, 1 + 1e-12) << name;
   EXPECT_GE(size, 0.5 - 1e-12) << name;
 }
@@ -155,8 +155,8 @@ void expect_contacts(const Scene& scene, double accuracy, const std::string& nam
     const Source source = scene.model().source(on.source);
     EXPECT_EQ(source.instance, contact.instance) << name;
     EXPECT_EQ(source.kind, on.kind) << name;
-    source_error = std::max(
-        source_error, glm::length(source_point(scene.model(), on.source, on.u, on.v) - x));
+    source_error =
+        std::max(source_error, glm::length(source_point(scene.model(), on.source, on.u, on.v) - x));
   }
   EXPECT_LE(point_error, accuracy * scene.diagonal()) << name;
   EXPECT_LE(source_error, accuracy * scene.diagonal()) << name;

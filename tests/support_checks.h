@@ -35,7 +35,7 @@ struct SupportErrors {
   real contact = 0;     ///< |point - S(u, v)|
   real reproduced = 0;  ///< |h - S(u, v) . n|
   int directions = 0;
-  int undecided = 0;    ///< directions whose truth is known to less than 1e-13 only
+  int undecided = 0;  ///< directions whose truth is known to less than 1e-13 only
   dvec3 worst_below = dvec3(0.0);
   dvec3 worst_above = dvec3(0.0);
 };
@@ -53,7 +53,9 @@ inline rvec3 contact_point(const taut::Scene& scene, const taut::Contact& contac
     case taut::SourceKind::edge:
       x = reference_point(part.pieces().at(element).bezier, contact.u);
       break;
-    case taut::SourceKind::vertex: x = rvec3(part.vertices().at(element).point); break;
+    case taut::SourceKind::vertex:
+      x = rvec3(part.vertices().at(element).point);
+      break;
   }
   const rvec3 shift = rvec3(instance.pose.translation) - rvec3(scene.frame().center);
   return glm::mat<3, 3, real>(instance.pose.rotation) * x + shift;
@@ -90,18 +92,23 @@ inline void check_support(const taut::Scene& scene, const Truth& truth, const dv
 /// Largest permitted share of the diagonal by which a support value may be wrong.
 inline constexpr double support_accuracy = 1e-12;
 
+/// Largest share by which a bound may exceed the truth for random patches of degrees up to 7 with
+/// weights within [1/30, 30].
+inline constexpr double random_bound_excess = 1e-11;
+
 /// `model_error`: by how much the control points as rounded may differ from the truth's shape.
+/// `bound_excess`: largest share of the diagonal by which the bound may exceed the truth.
+/// `contact_error`: what the check of the contact, in long double, may be off itself.
 inline void expect_correct(const SupportErrors& errors, const std::string& name,
-                           double model_error = 0) {
+                           double model_error = 0, double bound_excess = support_accuracy,
+                           double contact_error = 1e-14) {
   EXPECT_LE(errors.value, support_accuracy) << name;
-  EXPECT_LE(errors.below, model_error)
-      << name << " n = " << errors.worst_below.x << ", " << errors.worst_below.y << ", "
-      << errors.worst_below.z;
-  EXPECT_LE(errors.above, support_accuracy)
-      << name << " n = " << errors.worst_above.x << ", " << errors.worst_above.y << ", "
-      << errors.worst_above.z;
-  EXPECT_LE(errors.contact, 1e-14) << name;
-  EXPECT_LE(errors.reproduced, 1e-14) << name;
+  EXPECT_LE(errors.below, model_error) << name << " n = " << errors.worst_below.x << ", "
+                                       << errors.worst_below.y << ", " << errors.worst_below.z;
+  EXPECT_LE(errors.above, bound_excess) << name << " n = " << errors.worst_above.x << ", "
+                                        << errors.worst_above.y << ", " << errors.worst_above.z;
+  EXPECT_LE(errors.contact, contact_error) << name;
+  EXPECT_LE(errors.reproduced, contact_error) << name;
   EXPECT_LE(10 * errors.undecided, errors.directions) << name;
 }
 
@@ -131,14 +138,15 @@ inline std::vector<dvec3> random_directions(Random& random, int count) {
 /// Cold queries in all directions by both kinds of bounds.
 inline void expect_support(const taut::Scene& scene, const Truth& truth,
                            const std::vector<dvec3>& directions, const std::string& name,
-                           double model_error = 0) {
+                           double model_error = 0, double bound_excess = support_accuracy,
+                           double contact_error = 1e-14) {
   for (const taut::SupportBounds bounds :
        {taut::SupportBounds::bezier_nets, taut::SupportBounds::coons}) {
     taut::SupportQuery query(scene, bounds);
     SupportErrors errors;
     for (const dvec3& n : directions) check_support(scene, truth, n, query(n), errors);
     expect_correct(errors, name + (bounds == taut::SupportBounds::coons ? " (coons)" : " (nets)"),
-                   model_error);
+                   model_error, bound_excess, contact_error);
   }
 }
 

@@ -9,14 +9,16 @@ namespace {
 
 using namespace taut_test;  // NOLINT: models and reference answers
 
-// More than 100,000 directions in all: values within support_accuracy of the diagonal, bounds never below.
-// Every direction is asked cold of both kinds of bounds, and with the neighbour's contact as hint.
+// More than 100,000 directions in all: values within support_accuracy of the diagonal, bounds never
+// below. Every direction is asked cold of both kinds of bounds, and with the neighbour's contact as
+// hint.
 
 /// Rational quarter circles meet the circle to a few rounding units.
 constexpr double circle_rounding = 1e-15;
 
 void sweep(const Scene& scene, const Truth& truth, const std::vector<dvec3>& directions,
-           const std::string& name, double model_error = 0) {
+           const std::string& name, double model_error = 0,
+           double bound_excess = support_accuracy) {
   SupportQuery nets(scene);
   SupportQuery coons(scene, SupportBounds::coons);
   SupportQuery warm(scene);
@@ -31,9 +33,9 @@ void sweep(const Scene& scene, const Truth& truth, const std::vector<dvec3>& dir
     near = s.contact;
     check_support(scene, known, n, s, of_warm);
   }
-  expect_correct(of_nets, name + " (nets)", model_error);
-  expect_correct(of_coons, name + " (coons)", model_error);
-  expect_correct(of_warm, name + " (hints)", model_error);
+  expect_correct(of_nets, name + " (nets)", model_error, bound_excess);
+  expect_correct(of_coons, name + " (coons)", model_error, bound_excess);
+  expect_correct(of_warm, name + " (hints)", model_error, bound_excess);
 }
 
 /// `count` directions: special ones, some that miss a pole by 1e-1 .. 1e-16, random others.
@@ -53,7 +55,7 @@ std::vector<dvec3> directions(unsigned seed, std::size_t count) {
 TEST(SupportSweep, Sphere) {
   const Scene scene = make_scene(sphere());
   sweep(scene, closed_form(scene, [](const rvec3& n) { return glm::length(n); }),
-        directions(1, 24'000), "sphere", circle_rounding);
+        directions(1, 14'000), "sphere", circle_rounding);
 }
 
 TEST(SupportSweep, Torus) {
@@ -61,13 +63,13 @@ TEST(SupportSweep, Torus) {
   const auto h = [](const rvec3& n) {
     return 2 * std::sqrt(n.x * n.x + n.y * n.y) + 0.5L * glm::length(n);
   };
-  sweep(scene, closed_form(scene, h), directions(2, 24'000), "torus", circle_rounding);
+  sweep(scene, closed_form(scene, h), directions(2, 12'000), "torus", circle_rounding);
 }
 
 TEST(SupportSweep, Ellipsoid) {
   const Scene scene = make_scene(ellipsoid(3, 2, 1));
   const auto h = [](const rvec3& n) { return glm::length(rvec3(3, 2, 1) * n); };
-  sweep(scene, closed_form(scene, h), directions(3, 24'000), "ellipsoid", circle_rounding);
+  sweep(scene, closed_form(scene, h), directions(3, 12'000), "ellipsoid", circle_rounding);
 }
 
 TEST(SupportSweep, Circles) {
@@ -75,12 +77,12 @@ TEST(SupportSweep, Circles) {
   const auto h = [](const rvec3& n) {
     return std::max(std::hypot(n.x, n.y), n.x + std::hypot(n.x, n.z));
   };
-  sweep(scene, closed_form(scene, h), directions(4, 20'000), "circles", circle_rounding);
+  sweep(scene, closed_form(scene, h), directions(4, 12'000), "circles", circle_rounding);
 }
 
 TEST(SupportSweep, Teapot) {
   const Scene scene = make_scene(teapot());
-  sweep(scene, reference(scene), directions(5, 2'000), "teapot");
+  sweep(scene, reference(scene), directions(5, 20'000), "teapot");
 }
 
 TEST(SupportSweep, RationalPatchesOfDegreesOneToSeven) {
@@ -89,7 +91,7 @@ TEST(SupportSweep, RationalPatchesOfDegreesOneToSeven) {
     for (int q = 1; q <= 7; ++q) {
       for (const double weights : {1.0, log_uniform(random, 1.1, 30)}) {
         const Scene scene = make_scene(of_patch(random_patch(random, p, q, weights)));
-        std::vector<dvec3> tried = random_directions(random, 59);
+        std::vector<dvec3> tried = random_directions(random, 309);
         for (int axis = 0; axis < 3; ++axis) {
           dvec3 n(0.0);
           n[axis] = pick(random, 0, 1) == 0 ? 1 : -1;
@@ -97,7 +99,8 @@ TEST(SupportSweep, RationalPatchesOfDegreesOneToSeven) {
         }
         sweep(scene, reference(scene), tried,
               "degrees " + std::to_string(p) + " x " + std::to_string(q) + ", weights up to " +
-                  std::to_string(weights));
+                  std::to_string(weights),
+              0, random_bound_excess);
       }
     }
   }

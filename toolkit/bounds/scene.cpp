@@ -254,14 +254,16 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
     const Instance& instance = c.model.instances()[k];
     const dvec3& center = c.parts[std::size_t(instance.part)].center;
     // The two far parts cancel before anything is rounded to their size, where nothing is turned.
-    const dvec3 turned = instance.pose.rotation * center;
-    const dvec3 offset = instance.pose.translation - c.frame.center;
+    const dvec3 turned = c.frame.scale * (instance.pose.rotation * center);
+    const dvec3 offset = c.frame.scale * (instance.pose.translation - c.frame.center);
     const bool rotated = instance.pose.rotation != dmat3(1.0);
-    c.instances.push_back(
-        {instance.part, rotated, instance.pose.rotation, c.frame.scale * (turned + offset)});
-    const double moving = rotated ? 8 : 2;
-    pose_rounding = std::max(pose_rounding, moving * rounding_unit * c.frame.scale *
-                                                (glm::length(turned) + glm::length(offset)));
+    c.instances.push_back({instance.part, rotated, instance.pose.rotation, turned + offset});
+    // Unturned, the centres cancel exactly or nearly; turned, their products are rounded first.
+    const double rounded = rotated ? 8 * (glm::length(turned) + glm::length(offset))
+                           : instance.pose.translation == dvec3(0.0)
+                               ? glm::length(turned + offset)
+                               : glm::length(offset) + glm::length(turned + offset);
+    pose_rounding = std::max(pose_rounding, 2 * rounding_unit * rounded);
     Box& box = boxes[k];
     box = {c.frame.to_frame(box.lower), c.frame.to_frame(box.upper)};
   }

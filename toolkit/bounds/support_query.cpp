@@ -75,8 +75,9 @@ SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, do
 }
 
 /// Newton's step for the maximum of g over the unit square, with coordinates that press against a
-/// side kept there. Where g is not concave in both free directions, they are stepped along one after
-/// the other, to an end where g is convex. Returns the gain that the second-order model predicts.
+/// side kept there. Where g is not concave in both free directions, they are stepped along one
+/// after the other, to an end where g is convex. Returns the gain that the second-order model
+/// predicts.
 double newton_step(const NetJet& j, double& u, double& v) {
   const auto pressed = [](double x, double slope) {
     return (x <= 0 && slope <= 0) || (x >= 1 && slope >= 0);
@@ -203,15 +204,17 @@ class SupportQuery::Search {
 
   template <class Net>
   bool settle(const Net& net, const SceneElement& e, const NetCell& cell, bool& split_u);
-  /// Rounding of a second-order bound, as a share of the weight: coefficients carry 4 rounding
-  /// units and one for each of the p or q averages that a halving takes; second differences add
-  /// four of them, times p (p - 1) / 2, q (q - 1) / 2 and p q.
+  /// Rounding of a second-order bound, as a share of the weight. The coefficients at hand are those
+  /// of a polynomial that differs from the true one by what they carry: 4 rounding units, and one
+  /// for each of the p or q averages that a halving takes. About that polynomial the bound errs by
+  /// the rounding of its second differences, at most 2 units each (3 mixed), times p (p - 1) / 2,
+  /// q (q - 1) / 2 and p q. Twice all that, since g is a difference of two such values.
   double certificate_rounding(const SceneElement& e, const NetCell& cell,
                               const Interval& weight) const {
     const int p = e.shape.p;
     const int q = e.shape.q;
     const double averages = -p * std::log2(cell.size_u) - q * std::log2(cell.size_v);
-    return 2 * (p + q) * (p + q) * (4 + averages) * rounding_unit * e.reach * weight.upper /
+    return 2 * (4 + averages + p * p + q * q + 3 * p * q) * rounding_unit * e.reach * weight.upper /
            weight.lower;
   }
   template <class Net>

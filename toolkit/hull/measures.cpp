@@ -37,16 +37,22 @@ Measures measure(const PolygonMesh& mesh) {
   Sum<double> volume, area;
   Sum<dvec3> moment, surface_moment, squares, products;
   for (const std::vector<int>& polygon : mesh.polygons) {
+    // Triangles of the fan count with the sign that they have in the polygon's plane, so that the
+    // polygon need not be convex.
     const dvec3 a = at(polygon[0]);
+    dvec3 vector_area(0.0);
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+      vector_area += 0.5 * glm::cross(at(polygon[k]) - a, at(polygon[k + 1]) - a);
+    }
+    area.add(glm::length(vector_area));
+    const dvec3 n = unit(vector_area);
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
       const dvec3 b = at(polygon[k]);
       const dvec3 c = at(polygon[k + 1]);
-      const dvec3 normal = glm::cross(b - a, c - a);
       const dvec3 sum = a + b + c;
       const double det = glm::dot(a, glm::cross(b, c));  // six times the tetrahedron's volume
       volume.add(det / 6);
-      area.add(glm::length(normal) / 2);
-      surface_moment.add(glm::length(normal) / 6 * sum);
+      surface_moment.add(glm::dot(glm::cross(b - a, c - a), n) / 6 * sum);
       moment.add(det / 24 * sum);
       // Integral of x y over the tetrahedron (0, a, b, c): det / 120 (sum x sum y + sum of x_i
       // y_i).

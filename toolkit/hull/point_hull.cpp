@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace taut {
 namespace {
@@ -36,9 +37,12 @@ bool PointHull::make_simplex() {
     }
     return best;
   };
-  // Differences of halves, in units of the extent, neither over- nor underflow.
-  const double unit = std::max({extent_.x, extent_.y, extent_.z, 1e-300});
-  const auto from = [&](const dvec3& p, const dvec3& q) { return (0.5 * q - 0.5 * p) / unit; };
+  // Differences of halves, in units of the points' spread, neither over- nor underflow.
+  Box box;
+  for (const dvec3& p : points_) box.include(p);
+  const dvec3 half = 0.5 * box.upper - 0.5 * box.lower;
+  const double spread = std::max({half.x, half.y, half.z, std::numeric_limits<double>::min()});
+  const auto from = [&](const dvec3& p, const dvec3& q) { return (0.5 * q - 0.5 * p) / spread; };
   const dvec3 a = point(0);
   dimension_ = 0;
   const int ib = find([&](const dvec3& p) { return glm::length(from(a, p)); },

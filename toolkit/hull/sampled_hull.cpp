@@ -47,6 +47,12 @@ class Sampler {
     Contact contact;
   };
 
+  struct Span {
+    int dimension;
+    std::vector<dvec3> across;
+  };
+  static Span spanned(const std::vector<dvec3>& points);
+
   static Box inflated(const Scene& scene) {
     const double scale = scene.frame().scale;
     const dvec3 margin(1e-3 * scale * scene.diagonal());
@@ -58,7 +64,6 @@ class Sampler {
 
   void start();
   void add_support_points(const std::vector<dvec3>& directions);
-  void check_not_flat();
   void find_planes();
   void bound_vertices();
   bool refine();
@@ -83,8 +88,6 @@ class Sampler {
 
   /// Rounding of a gap in the scene's frame, where coordinates are at most about two.
   static constexpr double gap_rounding = 16 * rounding_unit;
-
-  static std::vector<dvec3> across(const std::vector<dvec3>& points);
 
   const Scene& scene_;
   const HullOptions& options_;
@@ -121,8 +124,35 @@ void Sampler::add_support_points(const std::vector<dvec3>& directions) {
   hull_.add(points);
 }
 
-/// The support points of 26 directions: axes, and diagonals of faces and of space. Should they lie
-/// in a plane or on a line, those of the directions across it as well.
+/// What the points span, flat_width allowed for, and directions across it.
+Sampler::Span Sampler::spanned(const std::vector<dvec3>& points) {
+  dvec3 line(0.0);
+  for (const dvec3& p : points) {
+    if (glm::length(p - points.front()) > glm::length(line)) line = p - points.front();
+  }
+  if (glm::length(line) < flat_width) return {0, {}};
+  line = unit(line);
+  dvec3 off_line(0.0);
+  for (const dvec3& p : points) {
+    const dvec3 off = p - points.front() - glm::dot(p - points.front(), line) * line;
+    if (glm::length(off) > glm::length(off_line)) off_line = off;
+  }
+  if (glm::length(off_line) < flat_width) {
+    const dvec3 axis = std::abs(line.x) < std::abs(line.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+    const dvec3 a = unit(glm::cross(line, axis));
+    const dvec3 b = glm::cross(line, a);
+    return {1, {a, -a, b, -b, unit(a + b), -unit(a + b), unit(a - b), -unit(a - b)}};
+  }
+  const dvec3 normal = unit(glm::cross(line, off_line));
+  double off_plane = 0;
+  for (const dvec3& p : points) {
+    off_plane = std::max(off_plane, std::abs(glm::dot(p - points.front(), normal)));
+  }
+  return {off_plane < flat_width ? 2 : 3, {normal, -normal}};
+}
+
+/// The support points of 26 directions: axes, and diagonals of faces and of space; and while they
+/// lie in a plane or on a line, those of the directions across it.
 void Sampler::start() {
   std::vector<dvec3> directions;
   for (int k = 0; k < 27; ++k) {
@@ -130,43 +160,14 @@ void Sampler::start() {
     if (d != dvec3(0.0)) directions.push_back(unit(d));
   }
   add_support_points(directions);
-  for (int dimension = hull_.dimension(); dimension < 3; dimension = hull_.dimension()) {
-    directions = across(frame_points_);
-    add_support_points(directions);
-    if (hull_.dimension() <= dimension) break;
-  }
-  check_not_flat();
-}
-
-/// Directions across the points' affine hull, if that is a plane or a line.
-std::vector<dvec3> Sampler::across(const std::vector<dvec3>& points) {
-  dvec3 line(0.0);
-  dvec3 normal(0.0);
-  for (const dvec3& p : points) {
-    const dvec3 d = p - points.front();
-    if (glm::length(d) > glm::length(line)) line = d;
-  }
-  for (const dvec3& p : points) {
-    const dvec3 c = glm::cross(line, p - points.front());
-    if (glm::length(c) > glm::length(normal)) normal = c;
-  }
-  if (normal != dvec3(0.0)) return {unit(normal), -unit(normal)};
-  if (line == dvec3(0.0)) return {};
-  const dvec3 axis = std::abs(line.x) < std::abs(line.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  const dvec3 a = unit(glm::cross(line, axis));
-  const dvec3 b = unit(glm::cross(line, a));
-  return {a, -a, b, -b, unit(a + b), -unit(a + b), unit(a - b), -unit(a - b)};
-}
-
-void Sampler::check_not_flat() {
-  int dimension = hull_.dimension();
-  for (const PointHull::Facet& facet : hull_.facets()) {
-    const dvec3 n = unit(facet.side.normal());
-    if (query_(n).h + query_(-n).h < flat_width) dimension = 2;
-  }
-  if (dimension < 3) {
-    throw InvalidInput("the model is flat: its hull has dimension " + std::to_string(dimension) +
-                       ", and only solid hulls can be computed");
+  for (Span span = spanned(frame_points_); span.dimension < 3;) {
+    add_support_points(span.across);
+    const Span wider = spanned(frame_points_);
+    if (wider.dimension == span.dimension) {
+      throw InvalidInput("the model is flat: its hull has dimension " +
+                         std::to_string(span.dimension) + ", and only solid hulls can be computed");
+    }
+    span = wider;
   }
 }
 

@@ -104,8 +104,6 @@ class Verifier {
   std::vector<DirectedEdge> edges_;
   std::vector<std::array<int, 3>> corners_;  ///< per polygon: three not on a line, or -1
   Verification result_;
-  long euler_ = 0;
-  bool connected_ = false;
 };
 
 void Verifier::check_topology() {
@@ -125,10 +123,11 @@ void Verifier::check_topology() {
   for (const auto& p : mesh_.polygons) {
     for (const int v : p) used[std::size_t(v)] = true;
   }
-  euler_ = std::count(used.begin(), used.end(), true) - edge_count + long(mesh_.polygons.size());
-  connected_ = true;
+  const long euler =
+      std::count(used.begin(), used.end(), true) - edge_count + long(mesh_.polygons.size());
+  result_.topological_sphere = euler == 2;
   for (std::size_t f = 1; f < mesh_.polygons.size(); ++f) {
-    connected_ = connected_ && components.root(f) == components.root(0);
+    if (components.root(f) != components.root(0)) result_.topological_sphere = false;
   }
   check_fans();
   if (result_.oriented) result_.oriented = measure(mesh_).volume > 0;
@@ -184,7 +183,7 @@ void Verifier::find_planes() {
 
 void Verifier::check_convexity() {
   result_.convex = result_.closed && result_.manifold && result_.oriented && result_.no_zero_area &&
-                   connected_ && euler_ == 2;
+                   result_.topological_sphere;
   const auto none_above = [&](int f, int g) {
     const auto& c = corners_[std::size_t(f)];
     return std::all_of(polygon(g).begin(), polygon(g).end(), [&](int v) {

@@ -24,8 +24,10 @@ struct Verification {
   bool manifold = false;
   /// The two polygons at an edge run through it in opposite directions, and the volume is positive.
   bool oriented = false;
+  /// One connected surface of Euler characteristic 2, as the boundary of a convex body is.
+  bool topological_sphere = false;
   /// By exact predicates: every polygon is planar, and no corner of it lies above the plane of a
-  /// neighbour, on a connected surface of Euler characteristic 2 (for which that is convexity).
+  /// neighbour, on a closed topological sphere (for which that is convexity).
   bool convex = false;
   /// No polygon has all its corners on one line, by exact predicates.
   bool no_zero_area = false;
@@ -41,7 +43,7 @@ struct Verification {
   /// The mesh is the model's hull within the tolerance. Files that hold rounded coordinates are not
   /// exactly convex; they pass if they are convex within the tolerance too.
   bool is_hull(double tolerance) const {
-    return closed && manifold && oriented && largest_violation <= tolerance &&
+    return closed && manifold && oriented && topological_sphere && largest_violation <= tolerance &&
            model_outside <= tolerance && mesh_outside <= tolerance;
   }
 };

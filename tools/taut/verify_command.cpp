@@ -44,6 +44,8 @@ std::vector<Check> checks(const Verification& found, double relative, double dia
       {"closed", "closed", "not closed", found.closed},
       {"manifold", "manifold", "not manifold", found.manifold},
       {"oriented", "oriented outward", "not oriented outward", found.oriented},
+      {"topological_sphere", "one closed surface", "not one surface without holes",
+       found.topological_sphere},
       {"convex", "convex", "not convex", found.convex, "largest_violation",
        fraction(found.largest_violation)},
       {"no_zero_area", "no face of zero area", "a face has zero area", found.no_zero_area},
