@@ -180,7 +180,7 @@ std::array<dvec3, 4> CoonsBvh::corners(const CoonsCell& cell) const {
       const double u = (cell.i - std::ldexp(double(leaf.i), below)) * size;
       const double v = (cell.j - std::ldexp(double(leaf.j), below)) * size;
       for (int k = 0; k < 4; ++k) {
-        result[std::size_t(k)] = coons_point(leaf, u + (k / 2) * size, v + (k % 2) * size);
+        result[std::size_t(k)] = coons_point(leaf, k < 2 ? u : u + size, k % 2 ? v + size : v);
       }
       return result;
     }

@@ -34,6 +34,10 @@ constexpr double newton_step_end = 1e-9;
 /// at the end itself is constant between.
 constexpr double flat_length = 1e-3;
 
+/// A second derivative whose determinant is this share of its diagonal's product has no direction
+/// in which the value stays constant.
+constexpr double curved = 1e-6;
+
 /// A rise of the best value, in the scene's frame, that is more than rounding.
 constexpr double gain_worth_taking = 16 * rounding_unit;
 
@@ -240,6 +244,7 @@ class SupportQuery::Search {
   bool best_first_ = false;
   double proof_rounding_ = 0;  ///< of the second-order bounds that the answer rests on
   bool converged_ = false;     ///< Newton's method has ended at the best contact
+  bool curved_ = false;        ///< the value is strictly concave there
 
   std::vector<Entry> stack_;
   std::vector<NetCell> net_cells_;
@@ -507,28 +512,37 @@ void SupportQuery::Search::polish(const Net& net, const SceneElement& e, const N
   };
   double u = best_.u;
   double v = best_.v;
-  double h = value(u, v);
-  bool settled = false;
-  for (int step = 0; step < newton_limit && !settled; ++step) {
+  double h = e.rational ? value(u, v) : -infinity;
+  Contact before = best_;
+  double h_before = -infinity;
+  converged_ = false;
+  for (int step = 0; step < newton_limit && !converged_; ++step) {
     const double* g = N;
     if (e.rational) {
       g_.resize(size);
       for (std::size_t k = 0; k < size; ++k) g_[k] = N[k] - h * W[k];
       g = g_.data();
     }
+    const NetJet jet = net.jet(g, u, v);
+    if (!e.rational) h = jet.g;
+    if (h < h_before - gain_worth_taking) break;  // the step overshot
+    h_before = h;
+    before.u = u;
+    before.v = v;
     ++newton_iterations;
-    double next_u = u;
-    double next_v = v;
-    newton_step(net.jet(g, u, v), next_u, next_v);
-    settled = std::abs(next_u - u) + std::abs(next_v - v) < newton_step_end;
-    const double next_h = value(next_u, next_v);
-    if (next_h < h - gain_worth_taking) break;  // the step overshot
-    u = next_u;
-    v = next_v;
-    h = next_h;
+    newton_step(jet, u, v);
+    converged_ = std::abs(u - before.u) + std::abs(v - before.v) < newton_step_end;
+    curved_ = jet.guu < 0 && jet.guu * jet.gvv - jet.guv * jet.guv > curved * jet.guu * jet.gvv;
+    if (e.rational) h = value(u, v);
   }
-  improve(cell, u, v, h + local(cell.instance).offset);
-  converged_ = settled;
+  // A converged step changes h in second order only; else the last point that was evaluated counts.
+  const bool converged = converged_;
+  if (!converged) {
+    u = before.u;
+    v = before.v;
+  }
+  improve(cell, u, v, h_before + local(cell.instance).offset);
+  converged_ = converged;
 }
 
 void SupportQuery::Search::polish_from(const Contact& contact) {
@@ -608,7 +622,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   for (const Entry& entry : stack_) left = std::max(left, entry.bound);
   const double proven = std::max(best_h_ + support_slack, left);
   assert(best_.instance >= 0);  // the direction is finite
-  finish();
+  if (!converged_ || !curved_) finish();
   return {best_h_, std::max(proven, best_h_) + rounding_ + proof_rounding_, best_,
           scene_.frame_point(best_)};
 }
