@@ -16,33 +16,44 @@ namespace {
 /// Splits item ranges at the median of the longest axis; ties are ordered by item.
 class BoxTreeBuilder {
  public:
-  BoxTreeBuilder(const std::vector<Box>& boxes, std::vector<BoxTree::Node>& nodes)
-      : boxes_(boxes), nodes_(nodes), items_(boxes.size()) {
-    std::iota(items_.begin(), items_.end(), 0);
-  }
+  BoxTreeBuilder(const std::vector<Box>& boxes, BoxTree& tree) : boxes_(boxes), tree_(tree) {}
 
   void build() {
-    nodes_.reserve(2 * items_.size());
-    nodes_.resize(1);
-    fill(0, 0, items_.size());
+    tree_.items.resize(boxes_.size());
+    std::iota(tree_.items.begin(), tree_.items.end(), 0);
+    tree_.nodes.resize(1);
+    fill(0, 0, boxes_.size());
+    for (const int item : tree_.items) {
+      const BoxTree::Node bounds = enclosing(box(item));
+      for (int axis = 0; axis < 3; ++axis) {
+        tree_.center[std::size_t(axis)].push_back(bounds.center[axis]);
+        tree_.half[std::size_t(axis)].push_back(bounds.half[axis]);
+      }
+    }
   }
 
  private:
   const Box& box(int item) const { return boxes_[std::size_t(item)]; }
 
+  /// The half-widths grow by the rounding of centre and half themselves.
+  static BoxTree::Node enclosing(const Box& box) {
+    return {box.center(),
+            0.5 * (box.upper - box.lower) +
+                4 * rounding_unit * (glm::abs(box.lower) + glm::abs(box.upper)),
+            0, 0};
+  }
+
   void fill(std::size_t node, std::size_t begin, std::size_t end) {
+    auto& items = tree_.items;
     Box bounds, centers;
     for (std::size_t k = begin; k < end; ++k) {
-      bounds.include(box(items_[k]));
-      centers.include(box(items_[k]).center());
+      bounds.include(box(items[k]));
+      centers.include(box(items[k]).center());
     }
-    // The half-widths grow by the rounding of centre and half themselves.
-    const dvec3 half = 0.5 * (bounds.upper - bounds.lower) +
-                       4 * rounding_unit * (glm::abs(bounds.lower) + glm::abs(bounds.upper));
-    nodes_[node].center = bounds.center();
-    nodes_[node].half = half;
-    if (end - begin == 1) {
-      nodes_[node].first = -1 - items_[begin];
+    tree_.nodes[node] = enclosing(bounds);
+    if (end - begin <= BoxTree::leaf_size) {
+      tree_.nodes[node].first = std::int32_t(begin);
+      tree_.nodes[node].count = std::int32_t(end - begin);
       return;
     }
     const dvec3 extent = centers.upper - centers.lower;
@@ -51,20 +62,19 @@ class BoxTreeBuilder {
                                                                   : 2;
     const std::size_t middle = begin + (end - begin) / 2;
     const auto position = [&](int item) { return box(item).center()[axis]; };
-    std::nth_element(
-        items_.begin() + std::ptrdiff_t(begin), items_.begin() + std::ptrdiff_t(middle),
-        items_.begin() + std::ptrdiff_t(end),
-        [&](int a, int b) { return std::pair(position(a), a) < std::pair(position(b), b); });
-    const std::size_t child = nodes_.size();
-    nodes_[node].first = std::int32_t(child);
-    nodes_.resize(child + 2);
+    const auto at = [&](std::size_t k) { return items.begin() + std::ptrdiff_t(k); };
+    std::nth_element(at(begin), at(middle), at(end), [&](int a, int b) {
+      return std::pair(position(a), a) < std::pair(position(b), b);
+    });
+    const std::size_t child = tree_.nodes.size();
+    tree_.nodes[node].first = std::int32_t(child);
+    tree_.nodes.resize(child + 2);
     fill(child, begin, middle);
     fill(child + 1, middle, end);
   }
 
   const std::vector<Box>& boxes_;
-  std::vector<BoxTree::Node>& nodes_;
-  std::vector<int> items_;
+  BoxTree& tree_;
 };
 
 SceneNet make_net(const BezierPatch& patch, bool rational) {
@@ -204,7 +214,7 @@ SceneFrame frame_of(const Box& box) {
 }  // namespace
 
 BoxTree::BoxTree(const std::vector<Box>& boxes) {
-  if (!boxes.empty()) BoxTreeBuilder(boxes, nodes).build();
+  if (!boxes.empty()) BoxTreeBuilder(boxes, *this).build();
 }
 
 int Scene::Content::element(const Contact& contact) const {
@@ -335,7 +345,8 @@ SourceContact Scene::source(const Contact& contact) const {
 std::size_t Scene::memory() const {
   std::size_t bytes = content_->tree.nodes.size() * sizeof(BoxTree::Node);
   for (const ScenePart& part : content_->parts) {
-    bytes += part.tree.nodes.size() * sizeof(BoxTree::Node);
+    bytes += part.tree.nodes.size() * sizeof(BoxTree::Node) +
+             part.tree.items.size() * (sizeof(int) + 6 * sizeof(double));
     for (const SceneElement& element : part.elements) {
       bytes += sizeof(element) - sizeof(CoonsBvh) + element.bvh.memory() +
                4 * element.net.x.size() * sizeof(double);

@@ -8,14 +8,16 @@
 
 namespace taut {
 
-/// A binary hierarchy of axis-parallel boxes over numbered items.
+/// A binary hierarchy of axis-parallel boxes over numbered items, with some items a leaf, whose
+/// boxes lie side by side so that one loop bounds them all.
 struct BoxTree {
+  static constexpr int leaf_size = 16;
+
   struct Node {
     dvec3 center;
     dvec3 half;
-    std::int32_t first;  ///< inner: the first of two consecutive children; leaf: -1 - item
-    bool is_leaf() const { return first < 0; }
-    int item() const { return -1 - first; }
+    std::int32_t first;  ///< inner: the first of two consecutive children; leaf: of its items
+    std::int32_t count;  ///< of a leaf's items, 0 for an inner node
     /// Upper bound of x . n over the box, up to rounding.
     double upper_bound(const dvec3& n, const dvec3& abs_n) const {
       return glm::dot(center, n) + glm::dot(half, abs_n);
@@ -23,7 +25,22 @@ struct BoxTree {
   };
   std::vector<Node> nodes;  ///< the root first; empty without items
 
+  /// In the order of the leaves.
+  std::vector<int> items;
+  std::array<std::vector<double>, 3> center, half;  ///< of the items' boxes, by coordinate
+
   explicit BoxTree(const std::vector<Box>& boxes = {});
+
+  /// Upper bounds of x . n over the boxes of a leaf's items, up to rounding.
+  void upper_bounds(const Node& leaf, const dvec3& n, const dvec3& abs_n,
+                    double (&bounds)[leaf_size]) const {
+    const auto first = static_cast<std::size_t>(leaf.first);
+    for (int k = 0; k < leaf.count; ++k) {
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      bounds[k] = center[0][i] * n.x + center[1][i] * n.y + center[2][i] * n.z +
+                  (half[0][i] * abs_n.x + half[1][i] * abs_n.y + half[2][i] * abs_n.z);
+    }
+  }
 };
 
 /// Homogeneous control points in the scene's units about the part's centre, coordinate by

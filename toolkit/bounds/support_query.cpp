@@ -142,12 +142,12 @@ class SupportQuery::Search {
   long cells = 0;
 
  private:
-  enum class Kind : std::int32_t { instance_node, part_node, coons_cell, net_cell };
+  enum class Kind : std::int32_t { instance_node, part_node, cell, coons_cell, net_cell };
   struct Entry {
     double bound;
     Kind kind;
     std::int32_t instance;
-    std::int32_t index;  // node, coons cell or net cell
+    std::int32_t index;  // node, cell of the part, coons cell or net cell
     bool operator<(const Entry& other) const { return bound < other.bound; }
   };
   /// A sub-rectangle of an element with its nets: N, and W where rational, at `slot`.
@@ -191,11 +191,11 @@ class SupportQuery::Search {
     stack_.push_back({bound, kind, instance, index});
     if (best_first_) std::push_heap(stack_.begin(), stack_.end());
   }
-  /// Puts the last two entries in ascending order, if there are two since `size`.
-  void order_last(std::size_t size) {
-    if (!best_first_ && stack_.size() == size + 2 && stack_[size].bound > stack_[size + 1].bound) {
-      std::swap(stack_[size], stack_[size + 1]);
-    }
+  /// Brings the highest of the entries from `first` on to the top of the stack.
+  void highest_last(std::size_t first) {
+    if (best_first_ || stack_.size() < first + 2) return;
+    const auto begin = stack_.begin() + std::ptrdiff_t(first);
+    std::iter_swap(std::max_element(begin, stack_.end()), stack_.end() - 1);
   }
   void open_node(const Entry& entry);
   void open_cell(int instance, int index);
@@ -257,23 +257,28 @@ void SupportQuery::Search::open_node(const Entry& entry) {
   const bool top = entry.kind == Kind::instance_node;
   const BoxTree& tree = top ? scene_.tree : scene_.part_of(entry.instance).tree;
   const BoxTree::Node& node = tree.nodes[std::size_t(entry.index)];
-  if (node.is_leaf()) {
-    if (top) {
-      push(entry.bound, Kind::part_node, node.item(), 0);
-    } else {
-      open_cell(entry.instance, node.item());
-    }
-    return;
-  }
   const dvec3& n = top ? n_ : local(entry.instance).n;
   const dvec3& abs_n = top ? abs_n_ : local(entry.instance).abs_n;
   const double offset = (top ? 0 : local(entry.instance).offset) + rounding_;
   const std::size_t size = stack_.size();
-  for (const int child : {node.first, node.first + 1}) {
-    push(tree.nodes[std::size_t(child)].upper_bound(n, abs_n) + offset, entry.kind, entry.instance,
-         child);
+  if (node.count == 0) {
+    for (const int child : {node.first, node.first + 1}) {
+      push(tree.nodes[std::size_t(child)].upper_bound(n, abs_n) + offset, entry.kind,
+           entry.instance, child);
+    }
+  } else {
+    double bounds[BoxTree::leaf_size];
+    tree.upper_bounds(node, n, abs_n, bounds);
+    for (int k = 0; k < node.count; ++k) {
+      const int item = tree.items[std::size_t(node.first + k)];
+      if (top) {
+        push(bounds[k] + offset, Kind::part_node, item, 0);
+      } else {
+        push(bounds[k] + offset, Kind::cell, entry.instance, item);
+      }
+    }
   }
-  order_last(size);
+  highest_last(size);
 }
 
 void SupportQuery::Search::open_cell(int instance, int index) {
@@ -489,7 +494,7 @@ void SupportQuery::Search::split(const Net& net, const SceneElement& e, NetCell 
   const std::size_t entries = stack_.size();
   push_net(cell, e);
   push_net(upper, e);
-  order_last(entries);
+  highest_last(entries);
 }
 
 void SupportQuery::Search::open_net(const Entry& entry) {
@@ -613,6 +618,9 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
         break;
       case Kind::coons_cell:
         open_coons(entry);
+        break;
+      case Kind::cell:
+        open_cell(entry.instance, entry.index);
         break;
       default:
         open_node(entry);
