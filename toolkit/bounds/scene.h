@@ -47,7 +47,8 @@ struct SceneOptions {
 /// bounding volume hierarchies over the patches of a part and over the instances.
 ///
 /// Everything inside is in a frame of its own, centred and scaled by a power of two to a size
-/// near one, so that models far from the origin, tiny or huge lose nothing. Immutable; safe to
+/// near one, so that models tiny, huge or far from the origin lose nothing (turned instances far
+/// from the origin lose the rounding of their rotation, which bounds account for). Immutable; safe to
 /// query concurrently. Holds the model by value.
 class Scene {
  public:

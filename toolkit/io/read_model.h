@@ -20,7 +20,8 @@ struct ReadOptions {
 /// Nothing that a file says is trusted: counts, indices and numbers are checked before memory is
 /// taken, and the model is unchanged if anything is wrong.
 /// @throws IoError (FILE:LINE: ...) if the file cannot be read or is not what its format says,
-/// InvalidInput (likewise with place) if its numbers are no valid geometry, Cancelled
+/// InvalidInput (likewise with place) if its numbers are no valid geometry, LimitExceeded for files
+/// above 2 GiB or surfaces with more than 2^26 control points once decomposed, Cancelled
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options = {});
 
 }  // namespace taut

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "console.h"
 #include "exit_code.h"
-#include "session.h"
 
 namespace taut::tool {
 
@@ -15,7 +15,7 @@ struct Command {
   CLI::App* app = nullptr;
   std::shared_ptr<CommonOptions> common;
   /// @throws UsageError and all that the toolkit throws
-  std::function<ExitCode(Session&)> run;
+  std::function<ExitCode(Console&)> run;
 };
 
 /// Adds a command; the caller adds its options and sets `run`.

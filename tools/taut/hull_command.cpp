@@ -129,14 +129,14 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
   return text;
 }
 
-ExitCode run(const HullArguments& arguments, Session& session) {
-  check(arguments, session.options().json);
-  const Input input = load(arguments.inputs, session);
+ExitCode run(const HullArguments& arguments, Console& console) {
+  check(arguments, console.options().json);
+  const Input input = load(arguments.inputs, console);
   HullOptions options;
   options.tolerance = tolerance(arguments, input.scene.diagonal());
-  options.threads = session.options().threads;
+  options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
-  options.progress = session.progress();
+  options.progress = console.progress();
   const Outcome outcome = compute(input.scene, options);
 
   Report report = make_report(input, outcome.hull, arguments, options.tolerance);
@@ -147,9 +147,9 @@ ExitCode run(const HullArguments& arguments, Session& session) {
   }
   options.progress.check();
   report.seconds.write = writing.seconds();
-  report.seconds.total = session.seconds();
+  report.seconds.total = console.seconds();
   report.peak_bytes = peak_bytes();
-  report.warnings = session.warnings();
+  report.warnings = console.warnings();
   if (outcome.failure) report.warnings.push_back({"not-converged", outcome.failure->what()});
 
   const std::string json = taut::to_json(report);
@@ -158,10 +158,10 @@ ExitCode run(const HullArguments& arguments, Session& session) {
     write_text(arguments.report, json);
     written.push_back(arguments.report);
   }
-  if (session.options().json || arguments.report == "-") {
-    session.print(json);
-  } else if (!session.options().quiet) {
-    session.print(summary(report, written));
+  if (console.options().json || arguments.report == "-") {
+    console.print(json);
+  } else if (!console.options().quiet) {
+    console.print(summary(report, written));
   }
   if (!outcome.failure) return ExitCode::done;
   throw NotConverged(std::string(outcome.failure->what()) + "; the hull " +
@@ -206,7 +206,7 @@ Command add_hull(CLI::App& parent) {
                   number(long(arguments->max_vertices)));
   app.add_option("--report", arguments->report, "JSON report to write; - is stdout")
       ->type_name("FILE");
-  command.run = [arguments](Session& session) { return run(*arguments, session); };
+  command.run = [arguments](Console& console) { return run(*arguments, console); };
   return command;
 }
 

@@ -127,31 +127,31 @@ std::string text_of(const Contents& file, bool names) {
   return text;
 }
 
-ExitCode run(const std::vector<std::string>& inputs, Session& session) {
+ExitCode run(const std::vector<std::string>& inputs, Console& console) {
   std::vector<Contents> files;
   double seconds_read = 0;
   double seconds_build = 0;
   for (const std::string& file : inputs) {
-    const Input input = load({file}, session);
+    const Input input = load({file}, console);
     files.push_back(contents(input));
     seconds_read += input.seconds_read;
     seconds_build += input.seconds_build;
   }
-  if (session.options().json) {
+  if (console.options().json) {
     Json list = Json::array();
     for (const Contents& file : files) list.push_back(json_of(file));
-    session.print(text(
+    console.print(text(
         Json{{"taut", TAUT_VERSION},
              {"input", to_json(total(files))},
              {"files", std::move(list)},
              {"seconds",
-              {{"read", seconds_read}, {"build", seconds_build}, {"total", session.seconds()}}},
+              {{"read", seconds_read}, {"build", seconds_build}, {"total", console.seconds()}}},
              {"peak_bytes", peak_bytes()},
-             {"warnings", to_json(session.warnings())}}));
+             {"warnings", to_json(console.warnings())}}));
     return ExitCode::done;
   }
-  for (const Contents& file : files) session.print(text_of(file, session.options().verbose));
-  if (files.size() > 1) session.print("all together\n" + sizes_text(total(files)));
+  for (const Contents& file : files) console.print(text_of(file, console.options().verbose));
+  if (files.size() > 1) console.print("all together\n" + sizes_text(total(files)));
   return ExitCode::done;
 }
 
@@ -164,7 +164,7 @@ Command add_info(CLI::App& parent) {
                                 "  taut info a.bpt b.obj --json");
   const auto inputs = std::make_shared<std::vector<std::string>>();
   add_inputs(*command.app, *inputs);
-  command.run = [inputs](Session& session) { return run(*inputs, session); };
+  command.run = [inputs](Console& console) { return run(*inputs, console); };
   return command;
 }
 

@@ -21,11 +21,11 @@ Report::Input Input::summary() const {
   return summary;
 }
 
-Input load(const std::vector<std::string>& files, Session& session) {
+Input load(const std::vector<std::string>& files, Console& console) {
   const Stopwatch reading;
   Model model;
   ReadOptions options;
-  options.progress = session.progress();
+  options.progress = console.progress();
   for (const std::string& file : files) {
     if (file == "-") {
       throw UsageError("a model cannot be read from standard input: give a file's name");
@@ -37,8 +37,8 @@ Input load(const std::vector<std::string>& files, Session& session) {
   }
   const double seconds_read = reading.seconds();
   const Stopwatch building;
-  Scene scene(std::move(model), {session.options().threads, session.progress()});
-  session.note("the scene takes " + number(double(scene.memory()) / 1e6, 3) + " MB");
+  Scene scene(std::move(model), {console.options().threads, console.progress()});
+  console.note("the scene takes " + number(double(scene.memory()) / 1e6, 3) + " MB");
   return {files, std::move(scene), seconds_read, building.seconds()};
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "session.h"
+#include "console.h"
 #include "taut/bounds/scene.h"
 #include "taut/io/report.h"
 
@@ -25,7 +25,7 @@ struct Input {
 
 /// Reads all files into one model and builds its scene.
 /// @throws UsageError for "-", IoError, InvalidInput (also where a file holds no geometry)
-Input load(const std::vector<std::string>& files, Session& session);
+Input load(const std::vector<std::string>& files, Console& console);
 
 /// Adds the positional arguments INPUT...
 void add_inputs(CLI::App& command, std::vector<std::string>& files);

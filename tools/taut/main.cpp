@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "command.h"
+#include "console.h"
 #include "exit_code.h"
 #include "interrupt.h"
 #include "output.h"
-#include "session.h"
 #include "text.h"
 
 namespace taut::tool {
@@ -128,8 +128,8 @@ class CommandLine {
                                       [](const Command& c) { return c.app->parsed(); });
     const Interrupt interrupt;
     try {
-      Session session(*command->common, interrupt.token());
-      return command->run(session);
+      Console console(*command->common, interrupt.token());
+      return command->run(console);
     } catch (...) {
       return fail_with_current_exception(interrupt.exit_code());
     }

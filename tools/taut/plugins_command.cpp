@@ -8,8 +8,8 @@
 namespace taut::tool {
 namespace {
 
-ExitCode run(Session& session) {
-  if (session.options().json) {
+ExitCode run(Console& console) {
+  if (console.options().json) {
     Json list = Json::array();
     for (const Format& format : formats()) {
       list.push_back({{"extension", format.extension},
@@ -18,7 +18,7 @@ ExitCode run(Session& session) {
                       {"reads_mesh", format.reads_mesh},
                       {"writes_mesh", format.writes_mesh}});
     }
-    session.print(
+    console.print(
         text(Json{{"taut", TAUT_VERSION}, {"formats", list}, {"plugins", Json::array()}}));
     return ExitCode::done;
   }
@@ -30,7 +30,7 @@ ExitCode run(Session& session) {
     if (format.writes_mesh) uses.emplace_back("writes meshes");
     table += padded(format.extension, 12) + padded(joined(uses), 44) + format.description + "\n";
   }
-  session.print(table + "no plugins\n");
+  console.print(table + "no plugins\n");
   return ExitCode::done;
 }
 

@@ -75,19 +75,19 @@ std::vector<ModelSupport> answer(const Scene& scene, const std::vector<dvec3>& d
   return answers;
 }
 
-ExitCode run(const SupportOptions& options, Session& session) {
-  const bool json = session.options().json;
-  const Progress progress = session.progress();
-  if (options.directions == "-") session.note("reads directions from standard input");
+ExitCode run(const SupportOptions& options, Console& console) {
+  const bool json = console.options().json;
+  const Progress progress = console.progress();
+  if (options.directions == "-") console.note("reads directions from standard input");
   const auto directions = read_directions(options.directions, progress.stop);
-  const Input input = load(options.inputs, session);
+  const Input input = load(options.inputs, console);
   Counts counts;
   Json answers = Json::array();
   double seconds = 0;
   for (std::size_t begin = 0; begin < directions.size(); begin += block_size) {
     progress.update("support", double(begin) / double(directions.size()));
     const Stopwatch watch;
-    const auto block = answer(input.scene, directions, begin, session.options().threads, counts);
+    const auto block = answer(input.scene, directions, begin, console.options().threads, counts);
     seconds += watch.seconds();
     std::string lines;
     for (std::size_t i = 0; i < block.size(); ++i) {
@@ -97,10 +97,10 @@ ExitCode run(const SupportOptions& options, Session& session) {
         lines += line_of(block[i]);
       }
     }
-    session.print(lines);
+    console.print(lines);
   }
   if (json) {
-    session.print(text(Json{{"taut", TAUT_VERSION},
+    console.print(text(Json{{"taut", TAUT_VERSION},
                             {"input", to_json(input.summary())},
                             {"support", std::move(answers)},
                             {"queries",
@@ -110,9 +110,9 @@ ExitCode run(const SupportOptions& options, Session& session) {
                              {{"read", input.seconds_read},
                               {"build", input.seconds_build},
                               {"support", seconds},
-                              {"total", session.seconds()}}},
+                              {"total", console.seconds()}}},
                             {"peak_bytes", peak_bytes()},
-                            {"warnings", to_json(session.warnings())}}));
+                            {"warnings", to_json(console.warnings())}}));
   }
   return ExitCode::done;
 }
@@ -136,7 +136,7 @@ Command add_support(CLI::App& parent) {
                    "- is standard input")
       ->required()
       ->type_name("FILE");
-  command.run = [options](Session& session) { return run(*options, session); };
+  command.run = [options](Console& console) { return run(*options, console); };
   return command;
 }
 

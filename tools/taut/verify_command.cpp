@@ -97,34 +97,34 @@ std::string faults_of(const std::vector<Check>& checks) {
   return joined(faults);
 }
 
-ExitCode run(const VerifyArguments& arguments, Session& session) {
+ExitCode run(const VerifyArguments& arguments, Console& console) {
   if (arguments.hull == "-") {
     throw UsageError("a mesh cannot be read from standard input: give a file's name");
   }
   const PolygonMesh mesh = read_mesh(arguments.hull);
-  const Input input = load(arguments.inputs, session);
+  const Input input = load(arguments.inputs, console);
   const double diagonal = input.scene.diagonal();
   const Stopwatch watch;
   VerifyOptions options;
-  options.threads = session.options().threads;
-  options.progress = session.progress();
+  options.threads = console.options().threads;
+  options.progress = console.progress();
   const Verification found = verify(mesh, input.scene, options);
   const double seconds = watch.seconds();
 
   const bool is_hull = found.is_hull(arguments.relative() * diagonal);
   const std::vector<Check> results = checks(found, arguments.relative(), diagonal);
-  if (session.options().json) {
+  if (console.options().json) {
     Json json = json_of(results, arguments, found, is_hull);
     json["input"] = to_json(input.summary());
     json["seconds"] = {{"read", input.seconds_read},
                        {"build", input.seconds_build},
                        {"verify", seconds},
-                       {"total", session.seconds()}};
+                       {"total", console.seconds()}};
     json["peak_bytes"] = peak_bytes();
-    json["warnings"] = to_json(session.warnings());
-    session.print(text(json));
-  } else if (!session.options().quiet) {
-    session.print(text_of(results, arguments, found, is_hull));
+    json["warnings"] = to_json(console.warnings());
+    console.print(text(json));
+  } else if (!console.options().quiet) {
+    console.print(text_of(results, arguments, found, is_hull));
   }
   if (is_hull) return ExitCode::done;
   throw CheckFailed(arguments.hull + ": is no convex hull of the model within " +
@@ -148,7 +148,7 @@ Command add_verify(CLI::App& parent) {
   add_positive(*command.app, "--relative", arguments->given_relative,
                "Tolerance as a fraction of the model's diagonal, default 1e-4")
       ->type_name("R");
-  command.run = [arguments](Session& session) { return run(*arguments, session); };
+  command.run = [arguments](Console& console) { return run(*arguments, console); };
   return command;
 }
 

@@ -1,4 +1,4 @@
-#include "session.h"
+#include "console.h"
 
 #include <sys/resource.h>
 
@@ -64,7 +64,7 @@ CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value,
       ->type_name("N");
 }
 
-Progress Session::progress() {
+Progress Console::progress() {
   Progress progress;
   progress.report = [this](std::string_view step, double share) { bar_.update(step, share); };
   progress.warn = [this](std::string_view code, std::string_view text) { warn(code, text); };
@@ -72,21 +72,21 @@ Progress Session::progress() {
   return progress;
 }
 
-void Session::warn(std::string_view code, std::string_view text) {
+void Console::warn(std::string_view code, std::string_view text) {
   warnings_.push_back({std::string(code), std::string(text)});
   if (!options_.quiet) message("taut: warning: " + one_line(text));
 }
 
-void Session::note(std::string_view text) {
+void Console::note(std::string_view text) {
   if (options_.verbose) message("taut: " + one_line(text));
 }
 
-void Session::print(std::string_view text) {
+void Console::print(std::string_view text) {
   bar_.clear();
   write_stdout(text);
 }
 
-void Session::message(const std::string& line) {
+void Console::message(const std::string& line) {
   bar_.clear();
   std::fputs((line + "\n").c_str(), stderr);
 }

@@ -45,13 +45,13 @@ class Stopwatch {
 };
 
 /// One run of a command: its common options, what it says, and whether it should stop.
-class Session {
+class Console {
  public:
-  Session(const CommonOptions& options, std::stop_token stop)
+  Console(const CommonOptions& options, std::stop_token stop)
       : options_(options), stop_(std::move(stop)), bar_(options.progress, options.quiet) {}
 
   const CommonOptions& options() const { return options_; }
-  /// For the toolkit's operations; the session must outlive it.
+  /// For the toolkit's operations; the console must outlive it.
   Progress progress();
 
   /// Keeps the warning for reports, and shows it unless --quiet.
@@ -64,7 +64,7 @@ class Session {
   /// Takes the progress bar away.
   void clear() { bar_.clear(); }
 
-  /// Since the session began.
+  /// Since the console began.
   double seconds() const { return watch_.seconds(); }
 
  private:
