@@ -48,8 +48,8 @@ struct SceneOptions {
 ///
 /// Everything inside is in a frame of its own, centred and scaled by a power of two to a size
 /// near one, so that models tiny, huge or far from the origin lose nothing (turned instances far
-/// from the origin lose the rounding of their rotation, which bounds account for). Immutable; safe to
-/// query concurrently. Holds the model by value.
+/// from the origin lose the rounding of their rotation, which bounds account for). Immutable; safe
+/// to query concurrently. Holds the model by value.
 class Scene {
  public:
   /// @throws InvalidInput if the model holds no geometry
