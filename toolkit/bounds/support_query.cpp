@@ -24,6 +24,10 @@ constexpr int patience = 2'000;
 /// A cell is split where its curvature exceeds the other direction's by more than this.
 constexpr double compactness = 16;
 
+/// A bound, in the scene's frame, that even the vanishing of all slopes leaves so high is not worth
+/// the evaluation that would complete it.
+constexpr double hopeless_bound = 0.01;
+
 /// Newton steps within one cell; convergence is quadratic, more would mean a bad start.
 constexpr int newton_limit = 12;
 
@@ -433,7 +437,7 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
   if (inside && converged_ && !concave) {
     const SecondOrderBound b = second_order_bound({}, curvature, u, v);
     choose_split(curvature, b);
-    if (b.bound > 0.01) return false;
+    if (b.bound > hopeless_bound) return false;
   }
   for (int step = 0; step < newton_limit; ++step) {
     NetJet jet = net.jet(g, u, v);
