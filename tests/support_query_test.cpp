@@ -109,7 +109,7 @@ TEST(SupportQuery, ExtremeWeights) {
     const BezierPatch patch = random_patch(random, pick(random, 1, 4), pick(random, 1, 4), weights);
     const Scene scene = make_scene(of_patch(patch));
     // Bounds stay bounds whatever the weights; how close they are is promised up to 1e3.
-    const double excess = weights <= 1e3 ? 1e-9 : std::numeric_limits<double>::infinity();
+    const double excess = weights <= 1e3 ? 1e-11 : std::numeric_limits<double>::infinity();
     expect_support(scene, reference(scene), random_directions(random, 5),
                    "weights up to " + std::to_string(weights), 0, excess);
   }

@@ -20,6 +20,11 @@ inline constexpr double smooth_join_angle = 1e-3;
 /// parts and take short sides of long ones for points.
 inline constexpr double join_distance = 1e-7;
 
+/// Largest entry by which R^T R of a rotation may differ from the identity, and its determinant
+/// from one. Files write matrices to nine digits or more; an error of this size scales a model by
+/// half of it, invisibly in what the files themselves promise.
+inline constexpr double rotation_tolerance = 1e-9;
+
 /// A support query stops when nothing can exceed the value found by more than this fraction of the
 /// scene's size (2^-43, about 1.1e-13), rounding apart.
 ///

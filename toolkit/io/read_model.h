@@ -3,13 +3,14 @@
 #include <filesystem>
 
 #include "taut/core/progress.h"
+#include "taut/core/tolerances.h"
 #include "taut/surface/model.h"
 
 namespace taut {
 
 struct ReadOptions {
   /// Borders whose tangent planes differ by less are smooth joins; radians.
-  double smooth_angle = 1e-3;
+  double smooth_angle = smooth_join_angle;
   /// Receives a warning for each part of a file that is named but not supported.
   Progress progress;
 };

@@ -92,26 +92,6 @@ auto euclidean_derivatives(const BezierPatch& patch, double u, double v) {
   return quotient<Order>(homogeneous_derivatives<Order>(patch, u, v));
 }
 
-void validate_points(const std::vector<dvec4>& points, const std::string& name) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const dvec4& p = points[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z) || !std::isfinite(p.w)) {
-      throw InvalidInput(name + ": control point " + std::to_string(i) + " is not finite");
-    }
-    if (!(p.w > 0)) {
-      throw InvalidInput(name + ": weight " + std::to_string(p.w) + " of control point " +
-                         std::to_string(i) + " is not positive");
-    }
-  }
-}
-
-void validate_degree(int degree, const std::string& name) {
-  if (degree < 1 || degree > max_degree) {
-    throw InvalidInput(name + ": degree " + std::to_string(degree) + " is not between 1 and " +
-                       std::to_string(max_degree));
-  }
-}
-
 /// Control points of the part over [0, t] by de Casteljau, in place.
 void keep_left(dvec4* p, int degree, std::ptrdiff_t stride, double t) {
   for (int r = 1; r <= degree; ++r) {
@@ -201,6 +181,26 @@ class NormalNoise {
 bool is_polynomial(const std::vector<dvec4>& points) {
   return std::all_of(points.begin(), points.end(),
                      [&](const dvec4& p) { return p.w == points.front().w; });
+}
+
+void validate_points(const std::vector<dvec4>& points, const std::string& name) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const dvec4& p = points[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z) || !std::isfinite(p.w)) {
+      throw InvalidInput(name + ": control point " + std::to_string(i) + " is not finite");
+    }
+    if (!(p.w > 0)) {
+      throw InvalidInput(name + ": the weight of control point " + std::to_string(i) +
+                         " is not positive");
+    }
+  }
+}
+
+void validate_degree(int degree, const std::string& name) {
+  if (degree < 1 || degree > max_degree) {
+    throw InvalidInput(name + ": degree " + std::to_string(degree) + " is not between 1 and " +
+                       std::to_string(max_degree));
+  }
 }
 
 void validate(const BezierCurve& curve, const std::string& name) {

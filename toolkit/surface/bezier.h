@@ -50,6 +50,9 @@ bool is_polynomial(const std::vector<dvec4>& points);
 /// match, or a number is not finite or a weight not positive; `name` begins the message
 void validate(const BezierCurve& curve, const std::string& name);
 void validate(const BezierPatch& patch, const std::string& name);
+/// The parts of it that B-splines share: the degree, and the numbers of homogeneous points.
+void validate_degree(int degree, const std::string& name);
+void validate_points(const std::vector<dvec4>& points, const std::string& name);
 
 /// @name Evaluation
 /// Points and derivatives with respect to the parameters, at any (u, v) in [0, 1]^2.

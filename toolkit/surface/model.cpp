@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "taut/core/error.h"
+#include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
@@ -26,13 +27,13 @@ void validate_extent(const Box& box, const std::string& name) {
 
 /// @throws InvalidInput
 void validate(const RigidMotion& pose, const std::string& name) {
-  constexpr double tolerance = 1e-9;
   const dmat3 residual = glm::transpose(pose.rotation) * pose.rotation - dmat3(1.0);
   // Asked in a form that NaN fails.
-  bool rotation = std::abs(glm::determinant(pose.rotation) - 1) <= tolerance;
+  bool rotation = std::abs(glm::determinant(pose.rotation) - 1) <= rotation_tolerance;
   bool translation = true;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) rotation = rotation && std::abs(residual[i][j]) <= tolerance;
+    for (int j = 0; j < 3; ++j)
+      rotation = rotation && std::abs(residual[i][j]) <= rotation_tolerance;
     translation = translation && std::isfinite(pose.translation[i]);
   }
   if (!rotation) {

@@ -152,8 +152,8 @@ class Model {
   /// Returns the part's index. @throws LimitExceeded as add_instance() does
   int add_part(Part part, double smooth_angle);
   /// Places a part once more. @throws InvalidInput if the index is out of range, the rotation is
-  /// not orthogonal with determinant 1 within 1e-9 or the translation is not finite; LimitExceeded
-  /// if sources or patches no longer could be numbered by an int
+  /// not orthogonal with determinant 1 within rotation_tolerance or the translation is not finite;
+  /// LimitExceeded if sources or patches no longer could be numbered by an int
   void add_instance(int part, const RigidMotion& pose);
   /// Takes the instances out (those at rest too), to be placed anew.
   void clear_instances();

@@ -13,13 +13,6 @@ namespace {
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-void validate_degree(int degree, const std::string& name) {
-  if (degree < 1 || degree > max_degree) {
-    throw InvalidInput(name + ": degree " + std::to_string(degree) + " is not between 1 and " +
-                       std::to_string(max_degree));
-  }
-}
-
 /// @pre the degree is valid
 void validate_knot_count(std::size_t count, int degree, const std::string& name) {
   const std::size_t least = 2 * to_size(degree + 1);
@@ -57,19 +50,6 @@ void validate_knots(const std::vector<double>& knots, int degree, const std::str
     if (knots[i - order] == knots[i]) {
       throw InvalidInput(name + ": the multiplicity of knot " + std::to_string(i) +
                          " is above degree + 1");
-    }
-  }
-}
-
-void validate_points(const std::vector<dvec4>& points, const std::string& name) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const dvec4& p = points[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z) || !std::isfinite(p.w)) {
-      throw InvalidInput(name + ": control point " + std::to_string(i) + " is not finite");
-    }
-    if (!(p.w > 0)) {
-      throw InvalidInput(name + ": the weight of control point " + std::to_string(i) +
-                         " is not positive");
     }
   }
 }
