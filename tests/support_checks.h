@@ -92,10 +92,6 @@ inline void check_support(const taut::Scene& scene, const Truth& truth, const dv
 /// Largest permitted share of the diagonal by which a support value may be wrong.
 inline constexpr double support_accuracy = 1e-12;
 
-/// Largest share by which a bound may exceed the truth for random patches of degrees up to 7 with
-/// weights within [1/30, 30].
-inline constexpr double random_bound_excess = 1e-12;
-
 /// `model_error`: by how much the control points as rounded may differ from the truth's shape.
 /// `bound_excess`: largest share of the diagonal by which the bound may exceed the truth.
 /// `contact_error`: what the check of the contact, in long double, may be off itself.

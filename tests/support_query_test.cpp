@@ -98,7 +98,7 @@ TEST(SupportQuery, RandomPatches) {
     const BezierPatch patch = random_patch(random, 1 + k % 7, pick(random, 1, 7), weights);
     const Scene scene = make_scene(of_patch(patch));
     expect_support(scene, reference(scene), random_directions(random, 10),
-                   "patch " + std::to_string(k), 0, random_bound_excess);
+                   "patch " + std::to_string(k));
   }
 }
 

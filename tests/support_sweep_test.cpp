@@ -99,8 +99,7 @@ TEST(SupportSweep, RationalPatchesOfDegreesOneToSeven) {
         }
         sweep(scene, reference(scene), tried,
               "degrees " + std::to_string(p) + " x " + std::to_string(q) + ", weights up to " +
-                  std::to_string(weights),
-              0, random_bound_excess);
+                  std::to_string(weights));
       }
     }
   }
