@@ -102,7 +102,7 @@ inline rvec3 source_point(const Model& model, int id, double u, double v) {
     return t >= i.lower && t <= i.upper;
   };
   if (source.kind == taut::SourceKind::vertex) {
-    x = rvec3(part.vertices()[index].point);
+    x = rvec3(part.vertices()[index]);
   } else if (source.kind == taut::SourceKind::edge) {
     const taut::Edge& edge = part.edges()[index];
     for (int k = 0; k < edge.piece_count; ++k) {

@@ -277,9 +277,8 @@ ReferenceSupport::ReferenceSupport(const taut::Model& model, const dvec3& origin
       if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
       add(piece.bezier.degree(), 0, piece.bezier.points);
     }
-    for (const taut::Vertex& vertex : part.vertices()) {
-      if (!vertex.free) continue;
-      add(0, 0, {taut::homogeneous(vertex.point)});
+    for (int k = 0; k < part.point_count(); ++k) {
+      add(0, 0, {taut::homogeneous(part.vertices()[std::size_t(k)])});
     }
   }
 }

@@ -133,9 +133,7 @@ std::vector<Contact> contacts(const Scene& scene, Random& random) {
       const auto edge = std::size_t(part.pieces()[std::size_t(k)].edge);
       if (part.edges()[edge].faces.empty()) places(SourceKind::edge, k, false);
     }
-    for (int k = 0; k < int(part.vertices().size()); ++k) {
-      if (part.vertices()[std::size_t(k)].free) result.push_back({i, SourceKind::vertex, k, 0, 0});
-    }
+    for (int k = 0; k < part.point_count(); ++k) result.push_back({i, SourceKind::vertex, k, 0, 0});
   }
   return result;
 }
@@ -234,7 +232,7 @@ TEST(Scene, SourcesOfAPatchByHand) {
   const SourceContact corner = scene.source({0, SourceKind::face, 0, 0, 1});
   EXPECT_EQ(corner.kind, SourceKind::vertex);
   const Source vertex = model.source(corner.source);
-  EXPECT_EQ(model.parts()[0].vertices()[std::size_t(vertex.index)].point, dvec3(-1, 1, -1));
+  EXPECT_EQ(model.parts()[0].vertices()[std::size_t(vertex.index)], dvec3(-1, 1, -1));
 }
 
 TEST(Scene, ParametersOfMultiplePatchesAreTheFaces) {

@@ -54,7 +54,7 @@ inline rvec3 contact_point(const taut::Scene& scene, const taut::Contact& contac
       x = reference_point(part.pieces().at(element).bezier, contact.u);
       break;
     case taut::SourceKind::vertex:
-      x = rvec3(part.vertices().at(element).point);
+      x = rvec3(part.vertices().at(element));
       break;
   }
   const rvec3 shift = rvec3(instance.pose.translation) - rvec3(scene.frame().center);

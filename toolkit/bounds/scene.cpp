@@ -141,10 +141,9 @@ Candidates candidates(const Part& part) {
     result.elements.emplace_back(SourceKind::edge, int(i));
     result.patches.push_back({piece.bezier.degree(), 0, piece.bezier.points});
   }
-  for (std::size_t i = 0; i < part.vertices().size(); ++i) {
-    if (!part.vertices()[i].free) continue;
+  for (std::size_t i = 0; i < std::size_t(part.point_count()); ++i) {
     result.elements.emplace_back(SourceKind::vertex, int(i));
-    result.patches.push_back({0, 0, {homogeneous(part.vertices()[i].point)}});
+    result.patches.push_back({0, 0, {homogeneous(part.vertices()[i])}});
   }
   return result;
 }

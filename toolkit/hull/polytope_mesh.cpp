@@ -65,7 +65,7 @@ class SurfaceWalk {
       const CurveJet curve = jet(part(c).pieces()[std::size_t(c.element)].bezier, u);
       j = {curve.c, curve.ct, dvec3(0.0)};
     } else {
-      j = {part(c).vertices()[std::size_t(c.element)].point, dvec3(0.0), dvec3(0.0)};
+      j = {part(c).vertices()[std::size_t(c.element)], dvec3(0.0), dvec3(0.0)};
     }
     return {scale_ * j.S, scale_ * j.Su, scale_ * j.Sv};
   }

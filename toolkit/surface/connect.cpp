@@ -217,7 +217,7 @@ struct Arc {
 class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,
-            std::vector<Vertex>& vertices, const Box& box, double smooth_angle)
+            std::vector<dvec3>& vertices, const Box& box, double smooth_angle)
       : patches_(patches),
         pieces_(pieces),
         edges_(edges),
@@ -264,7 +264,7 @@ class Connector {
   std::vector<Patch>& patches_;
   std::vector<EdgePiece>& pieces_;
   std::vector<Edge>& edges_;
-  std::vector<Vertex>& vertices_;
+  std::vector<dvec3>& vertices_;
   const Box box_;
   const double tolerance_;
   const double chord_;  // of the smooth angle
@@ -449,7 +449,7 @@ void Connector::place_vertices() {
   for (std::size_t point = 0; point < has_vertex.size(); ++point) {
     if (!has_vertex[point]) continue;
     vertex_of_[point] = to_int(vertices_.size());
-    vertices_.push_back({point_at(to_int(point)), false});
+    vertices_.push_back(point_at(to_int(point)));
   }
 }
 
@@ -566,6 +566,7 @@ void Part::connect(double smooth_angle) {
     throw InvalidInput(name + ": the smooth angle " + std::to_string(smooth_angle) +
                        " is not between 0 and pi/2");
   }
+  point_count_ = to_int(vertices_.size());
   Connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle).run();
   connected_ = true;
 }

@@ -42,8 +42,10 @@ void validate(const RigidMotion& pose, const std::string& name) {
   if (!translation) throw InvalidInput(name + ": the translation is not finite");
 }
 
+std::size_t face_count_of(const Part& part) { return part.faces().size() + part.polygons().size(); }
+
 std::size_t source_count_of(const Part& part) {
-  return part.faces().size() + part.edges().size() + part.vertices().size();
+  return face_count_of(part) + part.edges().size() + part.vertices().size();
 }
 
 template <class Count>
@@ -57,16 +59,23 @@ int sum_over_instances(const Model& model, const Count& count) {
 
 }  // namespace
 
-void Part::add_surface(const NurbsSurface& surface, std::string face_name) {
+void Part::add_surface(const NurbsSurface& surface, std::string face_name,
+                       std::vector<TrimLoop> loops) {
   assert(!connected_);
   validate(surface, face_name);
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const std::string loop_name = face_name + ": trim loop " + std::to_string(i);
+    if (loops[i].curves.empty()) throw InvalidInput(loop_name + " has no curves");
+    for (const NurbsCurve& curve : loops[i].curves) validate(curve, loop_name);
+  }
   std::vector<PatchPiece> pieces = decompose(surface);
   Box box = box_;
   for (const PatchPiece& piece : pieces) include(box, piece.bezier.points);
   validate_extent(box, face_name);
 
   const int face = to_int(faces_.size());
-  faces_.push_back({std::move(face_name), to_int(patches_.size()), to_int(pieces.size())});
+  faces_.push_back(
+      {std::move(face_name), to_int(patches_.size()), to_int(pieces.size()), std::move(loops)});
   for (PatchPiece& piece : pieces) {
     Patch patch;
     patch.bezier = std::move(piece.bezier);
@@ -98,17 +107,47 @@ void Part::add_curve(const NurbsCurve& curve, std::string edge_name) {
   box_ = box;
 }
 
-void Part::add_point(const dvec3& point) {
+void Part::add_point(const dvec3& point) { add_points({&point, 1}); }
+
+void Part::add_points(std::span<const dvec3> points) {
   assert(!connected_);
-  const std::string point_name = name + ": point " + std::to_string(vertices_.size());
-  for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(point[i])) throw InvalidInput(point_name + " is not finite");
+  const auto name_of = [&](std::size_t i) {
+    return name + (name.empty() ? "" : ": ") + "point " + std::to_string(vertices_.size() + i);
+  };
+  if (points.size() > std::size_t(std::numeric_limits<int>::max()) - vertices_.size()) {
+    throw LimitExceeded(name + ": more than " + std::to_string(std::numeric_limits<int>::max()) +
+                        " points");
   }
   Box box = box_;
-  box.include(point);
-  validate_extent(box, point_name);
-  vertices_.push_back({point, true});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!std::isfinite(points[i][k])) throw InvalidInput(name_of(i) + " is not finite");
+    }
+    box.include(points[i]);
+  }
+  if (!points.empty()) validate_extent(box, name_of(0));
+  vertices_.insert(vertices_.end(), points.begin(), points.end());
   box_ = box;
+}
+
+void Part::add_polygons(const PolygonMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.polygons.size(); ++i) {
+    const std::vector<int>& polygon = mesh.polygons[i];
+    const std::string polygon_name = "polygon " + std::to_string(i);
+    if (polygon.size() < 3) throw InvalidInput(polygon_name + " has fewer than three corners");
+    for (const int v : polygon) {
+      if (v < 0 || to_size(v) >= mesh.points.size()) {
+        throw InvalidInput(polygon_name + ": there is no point " + std::to_string(v));
+      }
+    }
+  }
+  const int first = to_int(vertices_.size());
+  add_points(mesh.points);
+  polygons_.insert(polygons_.end(), mesh.polygons.begin(), mesh.polygons.end());
+  if (first == 0) return;
+  for (std::size_t i = polygons_.size() - mesh.polygons.size(); i < polygons_.size(); ++i) {
+    for (int& v : polygons_[i]) v += first;
+  }
 }
 
 int Model::add_part(Part part, double smooth_angle) {
@@ -159,7 +198,7 @@ Source Model::source(int id) const {
   source.instance = to_int(static_cast<std::size_t>(next - first_source_.begin())) - 1;
   source.index = id - first_source_[to_size(source.instance)];
   const Part& part = parts_[to_size(instances_[to_size(source.instance)].part)];
-  const int faces = to_int(part.faces().size());
+  const int faces = to_int(face_count_of(part));
   const int edges = to_int(part.edges().size());
   if (source.index < faces) return source;
   source.index -= faces;
@@ -173,13 +212,23 @@ Source Model::source(int id) const {
 int Model::source_id(const Source& source) const {
   const Part& part = parts_[to_size(instances_[to_size(source.instance)].part)];
   int id = first_source_[to_size(source.instance)] + source.index;
-  if (source.kind != SourceKind::face) id += to_int(part.faces().size());
+  if (source.kind != SourceKind::face) id += to_int(face_count_of(part));
   if (source.kind == SourceKind::vertex) id += to_int(part.edges().size());
   return id;
 }
 
+bool Model::polyhedral() const {
+  return std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.polyhedral(); });
+}
+
+bool Model::empty() const {
+  return std::all_of(instances_.begin(), instances_.end(), [&](const Instance& instance) {
+    return parts_[to_size(instance.part)].control_box().empty();
+  });
+}
+
 int Model::face_count() const {
-  return sum_over_instances(*this, [](const Part& part) { return part.faces().size(); });
+  return sum_over_instances(*this, [](const Part& part) { return face_count_of(part); });
 }
 int Model::edge_count() const {
   return sum_over_instances(*this, [](const Part& part) { return part.edges().size(); });

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "taut/surface/nurbs.h"
+#include "taut/surface/polygon_mesh.h"
 
 namespace taut {
 
@@ -58,11 +60,20 @@ struct EdgePiece {
   std::array<int, 2> end_neighbor = {-1, -1};
 };
 
+/// A closed loop of curves in a face's parameters, each beginning where the one before it ends.
+/// Their control points are (w u, w v, 0, w). The face lies to the left: outer loops run
+/// counter-clockwise, those around holes clockwise.
+struct TrimLoop {
+  std::vector<NurbsCurve> curves;
+};
+
 /// What the input calls a face: one surface. Its patches are consecutive in Part::patches.
 struct Face {
   std::string name;
   int first_patch = 0;
   int patch_count = 0;
+  /// The loops that bound it; none where the whole surface counts.
+  std::vector<TrimLoop> loops;
 };
 
 /// A curve where the surface is not smooth or ends, or a free curve; its pieces are consecutive in
@@ -76,13 +87,6 @@ struct Edge {
   std::vector<int> faces;
 };
 
-/// A corner, the end of an edge, or a free point.
-struct Vertex {
-  dvec3 point;
-  /// A free point, on no face and no edge.
-  bool free = false;
-};
-
 /// Geometry in a frame of its own, placed any number of times by instances.
 class Part {
  public:
@@ -90,9 +94,16 @@ class Part {
 
   /// Each call validates what it is given; one that throws changes nothing.
   /// @pre not connected @throws InvalidInput
-  void add_surface(const NurbsSurface& surface, std::string face_name);
+  /// Loops are checked as curves, not for how they lie.
+  void add_surface(const NurbsSurface& surface, std::string face_name,
+                   std::vector<TrimLoop> loops = {});
   void add_curve(const NurbsCurve& curve, std::string edge_name);
   void add_point(const dvec3& point);
+  void add_points(std::span<const dvec3> points);
+  /// The mesh's points, used or not, and its polygons, each a face: of a polygon that is not
+  /// planar any surface within the convex hull of its corners. Throws also for indices out of range
+  /// and polygons of fewer than three corners, and LimitExceeded beyond 2^31 points.
+  void add_polygons(const PolygonMesh& mesh);
 
   /// Finds how the patches meet: fills borders, edges and vertices. Call once after the last add.
   ///
@@ -111,9 +122,17 @@ class Part {
   void connect(double smooth_angle);
   bool connected() const { return connected_; }
 
+  /// The surfaces.
   const std::vector<Face>& faces() const { return faces_; }
+  /// Corners as indices into vertices(). As sources of contacts they are numbered behind faces().
+  const std::vector<std::vector<int>>& polygons() const { return polygons_; }
   const std::vector<Edge>& edges() const { return edges_; }
-  const std::vector<Vertex>& vertices() const { return vertices_; }
+  /// Points that were added, alone or with polygons, and behind these the corners of surfaces and
+  /// the ends of edges.
+  const std::vector<dvec3>& vertices() const { return vertices_; }
+  int point_count() const { return connected_ ? point_count_ : int(vertices_.size()); }
+  /// Points and polygons are all there is, so that its hull is a polytope.
+  bool polyhedral() const { return patches_.empty() && pieces_.empty(); }
   const std::vector<Patch>& patches() const { return patches_; }
   const std::vector<EdgePiece>& pieces() const { return pieces_; }
   /// Box of the control points, which contains the geometry.
@@ -121,8 +140,10 @@ class Part {
 
  private:
   std::vector<Face> faces_;
+  std::vector<std::vector<int>> polygons_;
   std::vector<Edge> edges_;
-  std::vector<Vertex> vertices_;
+  std::vector<dvec3> vertices_;
+  int point_count_ = 0;
   std::vector<Patch> patches_;
   std::vector<EdgePiece> pieces_;
   Box box_;
@@ -135,11 +156,11 @@ struct Instance {
   RigidMotion pose;
 };
 
-/// A source of contacts: a face, edge or vertex of one instance.
+/// A source of contacts: a face (a surface or polygon), edge or vertex of one instance.
 struct Source {
   SourceKind kind = SourceKind::face;
   int instance = 0;
-  int index = 0;  ///< into the part's faces, edges or vertices
+  int index = 0;  ///< into the part's faces and then polygons, its edges or its vertices
 };
 
 /// Faces, edges and vertices, in parts that are placed by instances.
@@ -165,6 +186,10 @@ class Model {
   /// @pre 0 <= id < source_count()
   Source source(int id) const;
   int source_id(const Source& source) const;
+  /// All parts are: the hull is a polytope.
+  bool polyhedral() const;
+  /// Nothing is there, or only empty parts.
+  bool empty() const;
 
   /// Numbers over all instances.
   int face_count() const;

@@ -37,7 +37,7 @@ Contents contents(const Input& input) {
       ++contents.free_pieces[{piece.bezier.degree(), 0}];
       contents.rational += is_polynomial(piece.bezier.points) ? 0 : 1;
     }
-    for (const Vertex& vertex : part.vertices()) contents.free_vertices += vertex.free ? 1 : 0;
+    contents.free_vertices += part.point_count();
     for (const Face& face : part.faces()) contents.face_names.push_back(face.name);
   }
   return contents;
