@@ -20,6 +20,7 @@ class MeshSupport {
  public:
   MeshSupport(const taut::PolygonMesh& mesh, const dvec3& origin) : neighbors_(mesh.points.size()) {
     for (const dvec3& p : mesh.points) points_.push_back(p - origin);
+    if (mesh.polygons.empty() && mesh.points.size() == 2) neighbors_ = {{1}, {0}};  // a segment
     for (const auto& polygon : mesh.polygons) {
       for (std::size_t k = 0; k < polygon.size(); ++k) {
         neighbors_[std::size_t(polygon[k])].push_back(polygon[(k + 1) % polygon.size()]);
@@ -142,7 +143,7 @@ inline taut::Hull expect_sampled(const taut::Scene& scene, double tolerance, con
     ADD_FAILURE() << error.what();
     return hull;
   }
-  EXPECT_EQ(hull.dimension, 3);
+  EXPECT_EQ(hull.kind, taut::HullKind::solid);
   EXPECT_GT(hull.distance_bound, 0);
   EXPECT_LE(hull.distance_bound, tolerance * scene.diagonal());
   EXPECT_GT(hull.statistics.support_queries, 0);

@@ -274,37 +274,66 @@ TEST(SampledHull, KindsOfFaces) {
   EXPECT_LT(facet, 0.05);
 }
 
-TEST(SampledHull, RefusesFlatModels) {
-  const auto expect_refused = [](const Shape& shape, const std::string& name) {
-    for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
-      for (const dvec3& shift : {dvec3(0.0), dvec3(0.1, 0.7, -3), dvec3(1e4, 1e4, 3)}) {
-        const Scene scene = make_scene(mapped(shape, turn, shift));
-        const double tolerance = std::max(1e-3 * scene.diagonal(), 1e-3);
-        EXPECT_THROW(sampled_hull(scene, {.tolerance = tolerance, .threads = 1, .progress = {}}),
-                     InvalidInput)
-            << name << ", moved by " << shift.z;
+/// The kind at any place and in any position, and a certificate that holds.
+void expect_kind(HullKind kind, const Shape& shape, const std::string& name) {
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    for (const dvec3& shift : {dvec3(0.0), dvec3(0.1, 0.7, -3), dvec3(1e4, 1e4, 3)}) {
+      SCOPED_TRACE(name + ", moved by " + std::to_string(shift.z));
+      const Scene scene = make_scene(mapped(shape, turn, shift));
+      const Hull hull = sampled_hull(scene, {.relative = 1e-4, .threads = 1, .progress = {}});
+      EXPECT_EQ(hull.kind, kind);
+      EXPECT_LE(hull.distance_bound, 1e-4 * scene.diagonal() + 1e-11);
+      if (kind == HullKind::planar) {
+        const MeshFacts facts = mesh_facts(polygons(hull.mesh));
+        EXPECT_TRUE(facts.closed_manifold);
+        EXPECT_EQ(facts.euler, 2);
+        EXPECT_EQ(hull.mesh.n_faces(), 2U);
+      } else {
+        EXPECT_EQ(hull.mesh.n_vertices(), kind == HullKind::segment ? 2U : 1U);
+        EXPECT_EQ(hull.mesh.n_edges(), kind == HullKind::segment ? 1U : 0U);
       }
+      EXPECT_LE(gaps(scene, polygons(hull.mesh), 1000).highest, hull.distance_bound);
     }
-  };
-  expect_refused({{}, {}, {{1, 2, 3}}}, "point");
-  expect_refused({{}, {}, {{1, 2, 3}, {1, 2, 3}}}, "point twice");
-  expect_refused({{}, {}, {{1, 2, 3}, {4, 1, 0}}}, "two points");
-  expect_refused({{}, {}, {{1, 2, 3}, {4, 1, 0}, {1, 0, 2}}}, "three points");
-  expect_refused({{}, {segment({1, 2, 3}, {4, 1, 0})}, {}}, "segment");
-  expect_refused({{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})}, {}}, "circle");
-  expect_refused({{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1e-3, 0})}, {}}, "ellipse");
+  }
+}
+
+TEST(SampledHull, FlatModelsHaveTheirKind) {
+  const dmat3 onto_plane(1, 0, 0, 0, 1, 0, 0, 0, 0);
+  const dmat3 onto_line(1, 0, 0, 0, 0, 0, 0, 0, 0);
+  const NurbsCurve unit_circle = circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0});
+  expect_kind(HullKind::point, {{}, {}, {{1, 2, 3}}}, "point");
+  expect_kind(HullKind::point, {{}, {}, {{1, 2, 3}, {1, 2, 3}}}, "point twice");
+  expect_kind(HullKind::segment, {{}, {}, {{1, 2, 3}, {4, 1, 0}}}, "two points");
+  expect_kind(HullKind::planar, {{}, {}, {{1, 2, 3}, {4, 1, 0}, {1, 0, 2}}}, "three points");
+  expect_kind(HullKind::segment, {{}, {segment({1, 2, 3}, {4, 1, 0})}, {}}, "segment");
+  expect_kind(HullKind::planar, {{}, {unit_circle}, {}}, "circle");
+  expect_kind(HullKind::planar, {{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1e-3, 0})}, {}}, "ellipse");
+  expect_kind(HullKind::planar, {{}, {unit_circle}, {{4, 1, 0}, {0.5, 0, 0}}}, "circle and points");
   Shape face = box(1, 2, 3);
   face.surfaces.resize(1);
-  expect_refused(face, "one flat face");
+  expect_kind(HullKind::planar, face, "one flat face");
   Random random(5);
-  Shape patch = of_patch(random_patch(random, 3, 4, 2));
-  expect_refused(mapped(patch, dmat3(1, 0, 0, 0, 1, 0, 0, 0, 0)), "flat patch");
-  expect_refused(mapped(patch, dmat3(1, 0, 0, 0, 0, 0, 0, 0, 0)), "patch on a line");
+  const Shape patch = of_patch(random_patch(random, 3, 4, 2));
+  expect_kind(HullKind::planar, mapped(patch, onto_plane), "flat patch");
+  expect_kind(HullKind::segment, mapped(patch, onto_line), "patch on a line");
+  expect_kind(HullKind::point, mapped(patch, dmat3(0.0)), "patch in a point");
+}
+
+TEST(SampledHull, OutlineOfACircleConverges) {
+  const Scene scene =
+      make_scene(mapped({{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})}, {}}, skew_rotation()));
+  for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    const Hull hull = sampled_hull(scene, {.tolerance = tolerance, .threads = 1, .progress = {}});
+    EXPECT_LE(hull.distance_bound, tolerance);
+    // Both sides; the sagitta of a chord of n is 1 - cos(pi / n).
+    EXPECT_NEAR(measure(polygons(hull.mesh)).area, 2 * pi, 4 * pi * tolerance);
+    EXPECT_LE(double(hull.mesh.n_vertices()), 2.5 * pi / std::sqrt(2 * tolerance));
+  }
 }
 
 TEST(SampledHull, RefusesTolerancesThatAreNone) {
   const Scene scene = make_scene(sphere());
-  for (const double tolerance : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double tolerance : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW(sampled_hull(scene, {.tolerance = tolerance, .threads = 1, .progress = {}}),
                  InvalidInput);
   }

@@ -348,10 +348,14 @@ TEST(Verify, FlatMeshes) {
   // Two-sided: closed, but without volume.
   const PolygonMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
   const Verification v = verified(mesh, make_scene(points_of(mesh)));
-  expect_flags(v, "11001", "flat");
+  expect_flags(v, "11111", "flat");
   EXPECT_LE(v.model_outside, 1e-12);
   const PolygonMesh single = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   expect_flags(verified(single, make_scene(points_of(single))), "01001", "one triangle");
+  const PolygonMesh segment = {{{0, 0, 0}, {1, 2, 3}}, {}};
+  expect_flags(verified(segment, make_scene(points_of(segment))), "11111", "segment");
+  const Verification half = verified({{{0, 0, 0}}, {}}, make_scene(points_of(segment)));
+  EXPECT_GT(half.model_outside, 3.7);
 }
 
 TEST(Verify, RefusesMeshesThatAreNone) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
+#include <type_traits>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/support_query.h"
@@ -13,27 +15,38 @@
 namespace taut {
 namespace {
 
-/// Splits item ranges at the median of the longest axis; ties are ordered by item.
+const Box& box_of(const Box& box) { return box; }
+Box box_of(const dvec3& point) { return {point, point}; }
+
+/// Splits ranges of items, boxes or points, at the median of the longest axis; ties are ordered by
+/// item.
+template <class Item>
 class BoxTreeBuilder {
  public:
-  BoxTreeBuilder(const std::vector<Box>& boxes, BoxTree& tree) : boxes_(boxes), tree_(tree) {}
+  BoxTreeBuilder(std::span<const Item> items, BoxTree& tree) : boxes_(items), tree_(tree) {}
 
   void build() {
     tree_.items.resize(boxes_.size());
     std::iota(tree_.items.begin(), tree_.items.end(), 0);
     tree_.nodes.resize(1);
     fill(0, 0, boxes_.size());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      tree_.center[axis].reserve(boxes_.size());
+      if (is_box) tree_.half[axis].reserve(boxes_.size());
+    }
     for (const int item : tree_.items) {
       const BoxTree::Node bounds = enclosing(box(item));
       for (int axis = 0; axis < 3; ++axis) {
         tree_.center[std::size_t(axis)].push_back(bounds.center[axis]);
-        tree_.half[std::size_t(axis)].push_back(bounds.half[axis]);
+        if (is_box) tree_.half[std::size_t(axis)].push_back(bounds.half[axis]);
       }
     }
   }
 
  private:
-  const Box& box(int item) const { return boxes_[std::size_t(item)]; }
+  static constexpr bool is_box = std::is_same_v<Item, Box>;
+
+  decltype(auto) box(int item) const { return box_of(boxes_[std::size_t(item)]); }
 
   /// The half-widths grow by the rounding of centre and half themselves.
   static BoxTree::Node enclosing(const Box& box) {
@@ -73,7 +86,7 @@ class BoxTreeBuilder {
     fill(child + 1, middle, end);
   }
 
-  const std::vector<Box>& boxes_;
+  std::span<const Item> boxes_;
   BoxTree& tree_;
 };
 
@@ -122,7 +135,7 @@ void add_cells(const SceneElement& element, int index, const BezierPatch& patch,
   boxes.push_back(box);
 }
 
-/// What of a part is queried: its patches, the pieces of free curves and the free points. Borders
+/// What of a part is queried besides its points: its patches and the pieces of free curves. Borders
 /// and their ends lie in the closed patches already.
 struct Candidates {
   std::vector<std::pair<SourceKind, int>> elements;
@@ -140,10 +153,6 @@ Candidates candidates(const Part& part) {
     if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
     result.elements.emplace_back(SourceKind::edge, int(i));
     result.patches.push_back({piece.bezier.degree(), 0, piece.bezier.points});
-  }
-  for (std::size_t i = 0; i < std::size_t(part.point_count()); ++i) {
-    result.elements.emplace_back(SourceKind::vertex, int(i));
-    result.patches.push_back({0, 0, {homogeneous(part.vertices()[i])}});
   }
   return result;
 }
@@ -168,18 +177,21 @@ ScenePart make_part(const Part& part, double scale, int threads) {
   });
   result.element_of_patch.assign(part.patches().size(), -1);
   result.element_of_piece.assign(part.pieces().size(), -1);
-  result.element_of_vertex.assign(part.vertices().size(), -1);
   std::vector<Box> boxes;
   for (std::size_t k = 0; k < built.size(); ++k) {
     const auto [kind, index] = found.elements[k];
-    auto& table = kind == SourceKind::face   ? result.element_of_patch
-                  : kind == SourceKind::edge ? result.element_of_piece
-                                             : result.element_of_vertex;
+    auto& table = kind == SourceKind::face ? result.element_of_patch : result.element_of_piece;
     table[std::size_t(index)] = int(k);
     add_cells(*built[k], int(k), found.patches[k], built[k]->bvh.root(), result.cells, boxes);
     result.elements.push_back(std::move(*built[k]));
   }
   result.tree = BoxTree(boxes);
+  std::vector<dvec3> points;
+  points.reserve(std::size_t(part.point_count()));
+  for (int i = 0; i < part.point_count(); ++i) {
+    points.push_back(scale * (part.vertices()[std::size_t(i)] - result.center));
+  }
+  result.point_tree = BoxTree(points);
   return result;
 }
 
@@ -188,6 +200,23 @@ ScenePart make_part(const Part& part, double scale, int threads) {
 /// are halved up to 40 times.
 double value_rounding(const SceneElement& e) {
   return 2 * (16 + 40.0 * (e.shape.p + e.shape.q)) * rounding_unit * e.reach;
+}
+
+/// The same over points in the box, about its centre: three products and sums.
+double value_rounding(const Box& box) {
+  const dvec3 half = box.upper - box.center();
+  return 16 * rounding_unit * (half.x + half.y + half.z);
+}
+
+/// @throws InvalidInput
+void refuse_trimmed(const Model& model) {
+  for (const Part& part : model.parts()) {
+    for (const Face& face : part.faces()) {
+      if (face.loops.empty()) continue;
+      throw InvalidInput(part.name + ": the face \"" + face.name +
+                         "\" is trimmed, and trimmed faces cannot be evaluated yet");
+    }
+  }
 }
 
 /// Box of the part's control box under a rigid motion.
@@ -212,29 +241,47 @@ SceneFrame frame_of(const Box& box) {
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<Box>& boxes) {
+BoxTree::BoxTree(std::span<const Box> boxes) {
   if (!boxes.empty()) BoxTreeBuilder(boxes, *this).build();
 }
 
-int Scene::Content::element(const Contact& contact) const {
-  const ScenePart& part = part_of(contact.instance);
-  const auto& table = contact.kind == SourceKind::face   ? part.element_of_patch
-                      : contact.kind == SourceKind::edge ? part.element_of_piece
-                                                         : part.element_of_vertex;
-  return table[std::size_t(contact.element)];
+BoxTree::BoxTree(std::span<const dvec3> points) {
+  if (!points.empty()) BoxTreeBuilder(points, *this).build();
 }
 
-dvec3 Scene::Content::frame_point(const Contact& contact) const {
-  const SceneInstance& instance = instances[std::size_t(contact.instance)];
-  const SceneElement& element =
-      parts[std::size_t(instance.part)].elements[std::size_t(this->element(contact))];
+int Scene::Content::element(const Contact& contact) const {
+  if (contact.kind == SourceKind::vertex) return -1;
+  const ScenePart& part = part_of(contact.instance);
+  const bool is_face = contact.kind == SourceKind::face;
+  return (is_face ? part.element_of_patch : part.element_of_piece)[std::size_t(contact.element)];
+}
+
+bool Scene::Content::can_support(const Contact& contact) const {
+  if (contact.kind != SourceKind::vertex) return element(contact) >= 0;
+  const int part = instances[std::size_t(contact.instance)].part;
+  return contact.element < model.parts()[std::size_t(part)].point_count();
+}
+
+dvec3 Scene::Content::local_point(const Contact& contact) const {
+  const int part_index = instances[std::size_t(contact.instance)].part;
+  const ScenePart& part = parts[std::size_t(part_index)];
+  if (contact.kind == SourceKind::vertex) {
+    const Part& source = model.parts()[std::size_t(part_index)];
+    return frame.scale * (source.vertices()[std::size_t(contact.element)] - part.center);
+  }
+  const SceneElement& element = part.elements[std::size_t(this->element(contact))];
   const SceneNet& b = element.net;
-  const dvec3 local = with_scalar_net(element.shape, [&](const auto& net) {
+  return with_scalar_net(element.shape, [&](const auto& net) {
     const auto value = [&](const std::vector<double>& c) {
       return net.value(c.data(), contact.u, contact.v);
     };
     return dvec3(value(b.x), value(b.y), value(b.z)) / (element.rational ? value(b.w) : 1.0);
   });
+}
+
+dvec3 Scene::Content::frame_point(const Contact& contact) const {
+  const SceneInstance& instance = instances[std::size_t(contact.instance)];
+  const dvec3 local = local_point(contact);
   return (instance.rotated ? instance.rotation * local : local) + instance.translation;
 }
 
@@ -245,17 +292,24 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
   std::vector<Box> boxes;
   for (const Instance& instance : c.model.instances()) {
     const Part& part = c.model.parts()[std::size_t(instance.part)];
-    if (part.control_box().empty()) throw InvalidInput("part \"" + part.name + "\" is empty");
-    boxes.push_back(moved(part.control_box(), instance.pose));
+    boxes.push_back(part.control_box().empty() ? Box() : moved(part.control_box(), instance.pose));
     control.include(boxes.back());
   }
   if (control.empty()) throw InvalidInput("the model holds no geometry");
+  refuse_trimmed(c.model);
+  // An empty part lies anywhere: nothing is found in it.
+  for (Box& box : boxes) {
+    if (box.empty()) box = {control.center(), control.center()};
+  }
   c.frame = frame_of(control);
   for (const Part& part : c.model.parts()) {
     options.progress.check();
     c.parts.push_back(make_part(part, c.frame.scale, options.threads));
     for (const SceneElement& e : c.parts.back().elements) {
       c.rounding = std::max(c.rounding, value_rounding(e));
+    }
+    if (part.point_count() > 0) {
+      c.rounding = std::max(c.rounding, c.frame.scale * value_rounding(part.control_box()));
     }
   }
   double pose_rounding = 0;
@@ -346,6 +400,8 @@ std::size_t Scene::memory() const {
   for (const ScenePart& part : content_->parts) {
     bytes += part.tree.nodes.size() * sizeof(BoxTree::Node) +
              part.tree.items.size() * (sizeof(int) + 6 * sizeof(double));
+    bytes += part.point_tree.nodes.size() * sizeof(BoxTree::Node) +
+             part.point_tree.items.size() * (sizeof(int) + 3 * sizeof(double));
     for (const SceneElement& element : part.elements) {
       bytes += sizeof(element) - sizeof(CoonsBvh) + element.bvh.memory() +
                4 * element.net.x.size() * sizeof(double);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "taut/bounds/coons_bvh.h"
@@ -8,8 +9,8 @@
 
 namespace taut {
 
-/// A binary hierarchy of axis-parallel boxes over numbered items, with some items a leaf, whose
-/// boxes lie side by side so that one loop bounds them all.
+/// A binary hierarchy of axis-parallel boxes over numbered boxes or points, with some of them a
+/// leaf, which lie side by side so that one loop bounds them all.
 struct BoxTree {
   static constexpr int leaf_size = 16;
 
@@ -27,9 +28,12 @@ struct BoxTree {
 
   /// In the order of the leaves.
   std::vector<int> items;
-  std::array<std::vector<double>, 3> center, half;  ///< of the items' boxes, by coordinate
+  /// Of the items' boxes, by coordinate; points have no half-widths.
+  std::array<std::vector<double>, 3> center, half;
 
-  explicit BoxTree(const std::vector<Box>& boxes = {});
+  BoxTree() = default;
+  explicit BoxTree(std::span<const Box> boxes);
+  explicit BoxTree(std::span<const dvec3> points);
 
   /// Upper bounds of x . n over the boxes of a leaf's items, up to rounding.
   void upper_bounds(const Node& leaf, const dvec3& n, const dvec3& abs_n,
@@ -49,11 +53,11 @@ struct SceneNet {
   std::vector<double> x, y, z, w;
 };
 
-/// What queries run over: a patch of a face, a piece of a free curve (degrees (p, 0)) or a free
-/// point (degrees (0, 0)).
+/// What queries run over, points apart: a patch of a face or a piece of a free curve (degrees
+/// (p, 0)).
 struct SceneElement {
   SourceKind kind;
-  int index;  ///< into the part's patches, pieces or vertices
+  int index;  ///< into the part's patches or pieces
   NetShape shape;
   bool rational;
   double reach;  ///< largest |x| + |y| + |z| of the control points
@@ -73,8 +77,9 @@ struct ScenePart {
   dvec3 center;
   std::vector<SceneElement> elements;
   std::vector<SceneCell> cells;
-  std::vector<int> element_of_patch, element_of_piece, element_of_vertex;  ///< -1: not queried
-  BoxTree tree;                                                            ///< over the cells
+  std::vector<int> element_of_patch, element_of_piece;  ///< -1: not queried
+  BoxTree tree;                                         ///< over the cells
+  BoxTree point_tree;  ///< over the part's points, in the part's units
 };
 
 struct SceneInstance {
@@ -97,7 +102,12 @@ struct Scene::Content {
   const ScenePart& part_of(int instance) const {
     return parts[std::size_t(instances[std::size_t(instance)].part)];
   }
+  /// Index among the part's elements; -1 for points and for borders, which lie in patches.
   int element(const Contact& contact) const;
+  /// Whether the contact is one that queries look for: no border, no corner of a surface.
+  bool can_support(const Contact& contact) const;
+  /// The contact's point in the scene's units, about the part's centre.
+  dvec3 local_point(const Contact& contact) const;
   /// The contact's point in the scene's frame.
   dvec3 frame_point(const Contact& contact) const;
 };

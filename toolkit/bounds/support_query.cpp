@@ -68,12 +68,19 @@ class SupportQuery::Search {
   long cells = 0;
 
  private:
-  enum class Kind : std::int32_t { instance_node, part_node, cell, coons_cell, net_cell };
+  enum class Kind : std::int32_t {
+    instance_node,
+    part_node,
+    point_node,
+    cell,
+    coons_cell,
+    net_cell
+  };
   struct Entry {
     double bound;
     Kind kind;
     std::int32_t instance;
-    std::int32_t index;  // node, cell of the part, coons cell or net cell
+    std::int32_t index;  // node of a tree, cell of the part, coons cell or net cell
     bool operator<(const Entry& other) const { return bound < other.bound; }
   };
   /// A sub-rectangle of an element with its nets: N, and W where rational, at `slot`.
@@ -123,7 +130,14 @@ class SupportQuery::Search {
     const auto begin = stack_.begin() + std::ptrdiff_t(first);
     std::iter_swap(std::max_element(begin, stack_.end()), stack_.end() - 1);
   }
+  const BoxTree& tree_of(const Entry& entry) const {
+    if (entry.kind == Kind::instance_node) return scene_.tree;
+    const ScenePart& part = scene_.part_of(entry.instance);
+    return entry.kind == Kind::part_node ? part.tree : part.point_tree;
+  }
   void open_node(const Entry& entry);
+  void open_points(const BoxTree& tree, const BoxTree::Node& leaf, int instance);
+  void take_point(int instance, int vertex, double h);
   void open_cell(int instance, int index);
   void open_coons(const Entry& entry);
   void push_coons(int instance, const CoonsEntry& entry, const SceneElement& e);
@@ -181,7 +195,7 @@ class SupportQuery::Search {
 
 void SupportQuery::Search::open_node(const Entry& entry) {
   const bool top = entry.kind == Kind::instance_node;
-  const BoxTree& tree = top ? scene_.tree : scene_.part_of(entry.instance).tree;
+  const BoxTree& tree = tree_of(entry);
   const BoxTree::Node& node = tree.nodes[std::size_t(entry.index)];
   const dvec3& n = top ? n_ : local(entry.instance).n;
   const dvec3& abs_n = top ? abs_n_ : local(entry.instance).abs_n;
@@ -192,19 +206,41 @@ void SupportQuery::Search::open_node(const Entry& entry) {
       push(tree.nodes[std::size_t(child)].upper_bound(n, abs_n) + offset, entry.kind,
            entry.instance, child);
     }
+  } else if (entry.kind == Kind::point_node) {
+    open_points(tree, node, entry.instance);
   } else {
     double bounds[BoxTree::leaf_size];
     tree.upper_bounds(node, n, abs_n, bounds);
     for (int k = 0; k < node.count; ++k) {
       const int item = tree.items[std::size_t(node.first + k)];
       if (top) {
-        push(bounds[k] + offset, Kind::part_node, item, 0);
+        const ScenePart& part = scene_.part_of(item);
+        if (!part.tree.nodes.empty()) push(bounds[k] + offset, Kind::part_node, item, 0);
+        if (!part.point_tree.nodes.empty()) push(bounds[k] + offset, Kind::point_node, item, 0);
       } else {
         push(bounds[k] + offset, Kind::cell, entry.instance, item);
       }
     }
   }
   highest_last(size);
+}
+
+void SupportQuery::Search::open_points(const BoxTree& tree, const BoxTree::Node& leaf,
+                                       int instance) {
+  const LocalDirection& d = local(instance);
+  const auto first = std::size_t(leaf.first);
+  for (std::size_t i = first; i < first + std::size_t(leaf.count); ++i) {
+    const double h =
+        tree.center[0][i] * d.n.x + tree.center[1][i] * d.n.y + tree.center[2][i] * d.n.z;
+    if (h + d.offset > best_h_) take_point(instance, tree.items[i], h + d.offset);
+  }
+}
+
+void SupportQuery::Search::take_point(int instance, int vertex, double h) {
+  best_h_ = h;
+  best_ = {instance, SourceKind::vertex, vertex, 0, 0};
+  best_element_ = -1;
+  converged_ = curved_ = true;  // there is nothing to polish
 }
 
 void SupportQuery::Search::open_cell(int instance, int index) {
@@ -337,7 +373,7 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
   }
 
   double h = best_h_ - offset;
-  if (best_element_ < 0) {
+  if (best_h_ == -infinity) {
     h = e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
     improve(cell, u, v, h + offset);
   }
@@ -477,6 +513,12 @@ void SupportQuery::Search::polish(const Net& net, const SceneElement& e, const N
 }
 
 void SupportQuery::Search::polish_from(const Contact& contact) {
+  if (contact.kind == SourceKind::vertex) {
+    const LocalDirection& d = local(contact.instance);
+    take_point(contact.instance, contact.element,
+               glm::dot(scene_.local_point(contact), d.n) + d.offset);
+    return;
+  }
   best_ = contact;
   const int index = scene_.element(contact);
   const SceneElement& e = element(contact.instance, index);
@@ -526,7 +568,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   net_cells_.clear();
   coons_cells_.clear();
   nets_.clear();
-  if (hint.instance >= 0 && scene_.element(hint) >= 0) polish_from(hint);
+  if (hint.instance >= 0 && scene_.can_support(hint)) polish_from(hint);
 
   stack_.push_back({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {

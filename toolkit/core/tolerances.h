@@ -33,6 +33,28 @@ inline constexpr double rotation_tolerance = 1e-9;
 /// the last bits.
 inline constexpr double support_slack = 1024 * rounding_unit;
 
+/// What the rounding of a set of points may do to the plane of some of them, as a fraction of the
+/// sum of the largest coordinates' sizes (2^-49).
+///
+/// A coordinate that was turned and moved in double precision has gone through some six roundings,
+/// each of at most half a unit of the largest intermediate sum; twice that, for both the plane's
+/// corners and the point above it, is 12 rounding units.
+inline constexpr double coordinate_rounding = 16 * rounding_unit;
+
+/// Largest share of the diagonal that is ever put down to rounding (2^-33, about 1.2e-10): points
+/// that are nearly as close as their rounding mean what they say.
+inline constexpr double spurious_share = 1048576 * rounding_unit;
+
+/// A freeform scene thinner than this in some direction, as a fraction of its size, is flat: below
+/// it, facet normals are rounding noise (support values are proven to about 1e-13).
+inline constexpr double flat_width = 1e-11;
+
+/// Far from the origin, one that is thinner than this fraction of the sum of its largest
+/// coordinates' sizes, unless that is more than flat_width_limit of its size: control points are
+/// stored times their weights, which rounds them twice.
+inline constexpr double flat_coordinate_width = 4 * rounding_unit;
+inline constexpr double flat_width_limit = 1e-6;
+
 /// Highest degree of a curve or surface in either direction. Exchange formats in use stop at 25.
 inline constexpr int max_degree = 31;
 

@@ -8,8 +8,10 @@ namespace taut {
 
 /// How convex_hull works and how close it comes.
 struct HullOptions {
-  /// Largest distance of the mesh from the true hull, in model units. Must be positive.
+  /// Largest distance of the mesh from the true hull, in model units. Zero: `relative` counts.
   double tolerance = 0;
+  /// The same as a fraction of the diagonal of the model's box.
+  double relative = 1e-4;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;
   /// Vertices after which refinement gives up (NotConverged is thrown with what was reached). Each
@@ -26,27 +28,63 @@ struct HullStatistics {
   double seconds_mesh = 0;
 };
 
+/// What a convex hull is. The value is its dimension.
+enum class HullKind { empty = -1, point, segment, planar, solid };
+
 /// A convex hull with its certificate.
 struct Hull {
-  /// 3 for a solid. (Lower dimensions are refused with InvalidInput.)
-  int dimension = 3;
+  HullKind kind = HullKind::empty;
   HullMesh mesh;
   /// Proven upper bound of the Hausdorff distance between the mesh and the true convex hull, in
   /// model units, rounding included.
   double distance_bound = 0;
   HullStatistics statistics;
+
+  int dimension() const { return static_cast<int>(kind); }
 };
+
+/// Convex hull of a model: polyhedral_hull() where it is made of points and polygons alone,
+/// sampled_hull() otherwise. A model without geometry has the empty hull.
+/// @throws as these do
+Hull convex_hull(const Model& model, const HullOptions& options = {});
+/// The same of a scene that is there already.
+Hull convex_hull(const Scene& scene, const HullOptions& options = {});
+
+/// Convex hull of points and polygons: its vertices are points of the input as they stand.
+///
+/// Exact up to the rounding that the input's coordinates carry: of points that stick out less than
+/// coordinate_rounding (tolerances.h), and no farther than spurious_share of the diagonal, only
+/// enough are kept that no others reach farther than that above any facet, and distance_bound says
+/// how far that is. A turned cube of points so has twelve triangles or six squares and a turned
+/// polygon is planar, whatever rounding did to them. Where nothing of the kind is there, and always
+/// where the points are as close as their rounding, the hull is exact. It is exactly convex and has
+/// no face of zero area in any case. The tolerance does not matter.
+///
+/// Duplicates, points within and empty parts change nothing. Same bits for any number of threads.
+/// Faces carry the first polygon that lies in them and touches one of their corners as source.
+/// @pre model.polyhedral() @throws InvalidInput if the tolerance is not valid, Cancelled
+Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 
 /// Convex hull of a scene as a polytope of points sampled on the model (method `sampled`).
 ///
 /// The mesh's vertices are support points of the model, rounded to double; the mesh is closed and
 /// exactly convex (every orientation predicate holds on the coordinates as stored), has no face of
-/// zero area, and its Hausdorff distance from the true hull is at most distance_bound <=
-/// options.tolerance. Same bits for any number of threads. Safe to call concurrently.
+/// zero area, and its Hausdorff distance from the true hull is at most distance_bound, which is at
+/// most the tolerance, rounding apart. Same bits for any number of threads. Safe to call
+/// concurrently.
 ///
-/// @throws InvalidInput if the tolerance is not positive or the scene is flat, NotConverged if the
-/// tolerance is below what double precision can certify for this scene (about 1e-12 of its size)
-/// or max_vertices was met, Cancelled
-Hull sampled_hull(const Scene& scene, const HullOptions& options);
+/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a segment or a
+/// point; its corners are support points too, and a planar outline is convex as seen along the
+/// axis that foreshortens it least.
+///
+/// @throws InvalidInput if the tolerance is not valid, NotConverged if it is below what double
+/// precision can certify for this scene (about 1e-12 of its size) or max_vertices was met,
+/// Cancelled
+Hull sampled_hull(const Scene& scene, const HullOptions& options = {});
+
+/// The tolerance that the options ask for, in model units; positive where the diagonal is.
+/// @throws InvalidInput if the tolerance is negative or no number, or counts and the relative one
+/// is not positive and finite, or leaves the range of doubles
+double tolerance_for(const HullOptions& options, double diagonal);
 
 }  // namespace taut

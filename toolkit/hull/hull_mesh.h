@@ -2,6 +2,7 @@
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/Traits.hh>
+#include <vector>
 
 #include "taut/core/geometry.h"
 #include "taut/surface/polygon_mesh.h"
@@ -48,12 +49,23 @@ struct HullMeshTraits : public OpenMesh::DefaultTraitsDouble {
 
 /// A convex hull as a half-edge mesh: closed, outward, vertices numbered from 0 without gaps.
 /// Coplanar facets are polygons.
+///
+/// A planar hull is its outline, one polygon each side; a segment two vertices and an edge; a point
+/// one vertex.
 using HullMesh = OpenMesh::PolyMesh_ArrayKernelT<HullMeshTraits>;
 
 inline dvec3 position(const HullMesh& mesh, OpenMesh::VertexHandle v) {
   const auto& p = mesh.point(v);
   return {p[0], p[1], p[2]};
 }
+
+/// The mesh of these vertices and polygons, unlabelled; without polygons, two vertices are joined
+/// by an edge. @pre the polygons bound a surface @throws BackendError if OpenMesh refuses a polygon
+HullMesh make_hull_mesh(const std::vector<dvec3>& vertices,
+                        const std::vector<std::vector<int>>& polygons);
+
+/// The smallest float that is not below x.
+float float_above(double x);
 
 /// The bare polygons.
 PolygonMesh polygons(const HullMesh& mesh);

@@ -8,6 +8,9 @@
 namespace taut {
 namespace {
 
+/// Insertions between two looks at whether to stop.
+constexpr long progress_interval = 4096;
+
 int next3(int k) { return k == 2 ? 0 : k + 1; }
 
 /// Which side of the facet borders on `other`.
@@ -48,12 +51,14 @@ bool PointHull::make_simplex() {
   const int ib = find([&](const dvec3& p) { return glm::length(from(a, p)); },
                       [&](const dvec3& p) { return p != a; });
   if (ib < 0) return false;
+  simplex_[1] = ib;
   const dvec3 b = point(ib);
   const dvec3 ab = from(a, b);
   dimension_ = 1;
   const int ic = find([&](const dvec3& p) { return glm::length(glm::cross(ab, from(a, p))); },
                       [&](const dvec3& p) { return !collinear(a, b, p); });
   if (ic < 0) return false;
+  simplex_[2] = ic;
   const dvec3 c = point(ic);
   const dvec3 normal = glm::cross(ab, from(a, c));
   dimension_ = 2;
@@ -61,6 +66,7 @@ bool PointHull::make_simplex() {
   const int id = find([&](const dvec3& p) { return std::abs(glm::dot(normal, from(a, p))); },
                       [&](const dvec3& p) { return plane.side(p) != Sign::zero; });
   if (id < 0) return false;
+  simplex_[3] = id;
   dimension_ = 3;
 
   int v[4] = {0, ib, ic, id};
@@ -174,7 +180,7 @@ bool PointHull::insert(const dvec3& p, int facet) {
   return true;
 }
 
-void PointHull::add(std::span<const dvec3> points) {
+void PointHull::add(std::span<const dvec3> points, const Progress& progress) {
   std::size_t first = points_.size();
   points_.insert(points_.end(), points.begin(), points.end());
   next_.resize(points_.size(), -1);
@@ -188,9 +194,11 @@ void PointHull::add(std::span<const dvec3> points) {
     if (facets_[f].alive) all.push_back(int(f));
   }
   for (std::size_t p = first; p < points_.size(); ++p) assign(int(p), all);
+  progress.check();
 
   std::vector<int> pending = all;
   std::vector<int> orphans;
+  long inserted = 0;
   while (!pending.empty()) {
     const int f = pending.back();
     const int apex = facets_[std::size_t(f)].alive ? waiting_[std::size_t(f)].first : -1;
@@ -198,6 +206,7 @@ void PointHull::add(std::span<const dvec3> points) {
       pending.pop_back();
       continue;
     }
+    if (++inserted % progress_interval == 0) progress.check();
     waiting_[std::size_t(f)].first = next_[std::size_t(apex)];
     collect_visible(point(apex), f);
     orphans.clear();

@@ -6,6 +6,7 @@
 
 #include "taut/core/geometry.h"
 #include "taut/core/predicates.h"
+#include "taut/core/progress.h"
 
 namespace taut {
 
@@ -33,7 +34,8 @@ class PointHull {
 
   /// Adds points, numbered on from points().size(). Until the points span space there are no
   /// facets; then all points added so far count.
-  void add(std::span<const dvec3> points);
+  /// @throws Cancelled, after which the hull is of no more use
+  void add(std::span<const dvec3> points, const Progress& progress = {});
 
   /// Adds one point that is to lie strictly above the facet. False, and nothing changes, if it does
   /// not. @pre dimension() == 3, the facet is alive
@@ -41,6 +43,8 @@ class PointHull {
 
   /// Dimension of the points' affine hull: -1 without points, else 0 to 3. Exact.
   int dimension() const { return dimension_; }
+  /// Points, by number, that span the affine hull: the first dimension() + 1.
+  const std::array<int, 4>& simplex() const { return simplex_; }
 
   const std::vector<dvec3>& points() const { return points_; }
   const dvec3& point(int i) const { return points_[std::size_t(i)]; }
@@ -81,6 +85,7 @@ class PointHull {
 
   dvec3 extent_;
   int dimension_ = -1;
+  std::array<int, 4> simplex_ = {0, -1, -1, -1};
   int alive_ = 0;
   std::vector<dvec3> points_;
   std::vector<Facet> facets_;

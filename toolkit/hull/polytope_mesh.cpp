@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "taut/core/error.h"
 
 namespace taut {
 namespace {
@@ -113,38 +110,6 @@ class SurfaceWalk {
   double distance_bound_;
 };
 
-float rounded_up(double x) {
-  const auto f = static_cast<float>(x);
-  return f < x ? std::nextafterf(f, std::numeric_limits<float>::infinity()) : f;
-}
-
-HullMesh bare_mesh(const PointHull& hull, double scale, const PointHull::Polygons& polygons,
-                   std::vector<int>& point_of) {
-  HullMesh mesh;
-  std::vector<int> vertex_of(hull.points().size(), -1);
-  for (const std::vector<int>& loop : polygons.loops) {
-    for (const int p : loop) {
-      if (vertex_of[std::size_t(p)] >= 0) continue;
-      vertex_of[std::size_t(p)] = int(point_of.size());
-      point_of.push_back(p);
-    }
-  }
-  mesh.reserve(point_of.size(), 3 * point_of.size(), polygons.loops.size());
-  for (const int p : point_of) {
-    const dvec3 x = hull.point(p) / scale;  // exactly the coordinates that were scaled
-    mesh.add_vertex({x.x, x.y, x.z});
-  }
-  std::vector<OpenMesh::VertexHandle> handles;
-  for (const std::vector<int>& loop : polygons.loops) {
-    handles.clear();
-    for (const int p : loop) handles.emplace_back(vertex_of[std::size_t(p)]);
-    if (!mesh.add_face(handles).is_valid()) {
-      throw BackendError("OpenMesh refused a face of the hull");
-    }
-  }
-  return mesh;
-}
-
 void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
                     const std::vector<double>& bounds, const std::vector<int>& point_of,
                     HullMesh& mesh) {
@@ -155,7 +120,7 @@ void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
     data.source = c.source;
     data.u = c.u;
     data.v = c.v;
-    data.quality = rounded_up(bounds[p]);
+    data.quality = float_above(bounds[p]);
     mesh.set_normal(v, {samples[p].n.x, samples[p].n.y, samples[p].n.z});
   }
 }
@@ -221,6 +186,24 @@ void number_hull_faces(HullMesh& mesh) {
 }
 
 }  // namespace
+
+HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons polygons,
+                   std::vector<int>& point_of) {
+  std::vector<int> vertex_of(hull.points().size(), -1);
+  std::vector<dvec3> vertices;
+  for (std::vector<int>& loop : polygons.loops) {
+    for (int& p : loop) {
+      int& vertex = vertex_of[std::size_t(p)];
+      if (vertex < 0) {
+        vertex = int(point_of.size());
+        point_of.push_back(p);
+        vertices.push_back(hull.point(p) / scale);  // exactly the coordinates that were scaled
+      }
+      p = vertex;
+    }
+  }
+  return make_hull_mesh(vertices, polygons.loops);
+}
 
 HullMesh polytope_mesh(const Scene& scene, const PointHull& hull,
                        const std::vector<Sample>& samples, const std::vector<double>& gaps,

@@ -14,6 +14,12 @@ struct Sample {
   Contact contact;
 };
 
+/// The mesh of a polytope, unlabelled: coplanar facets as polygons, extreme points only. The
+/// polytope's coordinates are the mesh's times `scale`, a power of two; `point_of` becomes, for
+/// each vertex of the mesh, its number among the hull's points.
+HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons polygons,
+                   std::vector<int>& point_of);
+
 /// The mesh of a polytope whose vertices are samples of a scene, with the origin of every vertex
 /// and face.
 ///

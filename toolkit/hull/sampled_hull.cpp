@@ -6,14 +6,12 @@
 #include <span>
 #include <string>
 
-#include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/certificate.h"
-#include "taut/hull/convex_hull.h"
 #include "taut/hull/point_hull.h"
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sampled_start.h"
 
 namespace taut {
 namespace {
@@ -24,18 +22,17 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// A scene thinner than this in some direction, in its frame, is flat: below it, facet normals are
-/// rounding noise (support values are proven to about 1e-13). Starting points closer than this
-/// count as one.
-constexpr double flat_width = 1e-11;
-
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
  public:
-  Sampler(const Scene& scene, const HullOptions& options)
-      : scene_(scene), options_(options), query_(scene), hull_(inflated(scene)) {}
+  Sampler(const Scene& scene, const HullOptions& options, double tolerance)
+      : scene_(scene),
+        options_(options),
+        hull_(inflated(scene)),
+        tolerance_(tolerance * scene.frame().scale) {}
 
-  Hull run();
+  /// @pre the start spans space
+  Hull run(SampledStart start);
 
  private:
   /// What is known of a facet: its supporting plane.
@@ -47,12 +44,6 @@ class Sampler {
     Contact contact;
   };
 
-  struct Span {
-    int dimension;
-    std::vector<dvec3> across;
-  };
-  static Span spanned(const std::vector<dvec3>& points);
-
   static Box inflated(const Scene& scene) {
     const double scale = scene.frame().scale;
     const dvec3 margin(1e-3 * scale * scene.diagonal());
@@ -62,8 +53,7 @@ class Sampler {
   /// that its decisions hold for the coordinates as stored and never leave the range of doubles.
   dvec3 scaled(const dvec3& point) const { return scene_.frame().scale * point; }
 
-  void start();
-  void add_support_points(const std::vector<dvec3>& directions);
+  void begin(SampledStart start);
   void find_planes();
   void bound_vertices();
   bool refine();
@@ -78,27 +68,15 @@ class Sampler {
     return depth > 0 ? gap / depth : std::numeric_limits<double>::infinity();
   }
   HullMesh make_mesh();
-  /// How far rounding may move a support point out of the hull, in model units: half a unit in the
-  /// last place of each stored coordinate, and the evaluation in the frame.
-  double vertex_rounding() const {
-    const dvec3 largest = glm::max(glm::abs(scene_.box().lower), glm::abs(scene_.box().upper));
-    return rounding_unit * (largest.x + largest.y + largest.z) +
-           scene_.frame().length_to_model(gap_rounding);
-  }
-
-  /// Rounding of a gap in the scene's frame, where coordinates are at most about two.
-  static constexpr double gap_rounding = 16 * rounding_unit;
-
   const Scene& scene_;
   const HullOptions& options_;
-  SupportQuery query_;
   PointHull hull_;
   std::vector<Sample> samples_;        // per vertex
   std::vector<dvec3> frame_points_;    // per vertex
   std::vector<double> vertex_gaps_;    // per vertex: the largest gap of its facets
   std::vector<double> vertex_depths_;  // per vertex: cone_depth() of its facets' normals
   std::vector<Plane> planes_;          // per facet
-  double tolerance_ = 0;               // in the scene's frame
+  double tolerance_;                   // in the scene's frame
   double bound_ = 0;
   HullStatistics statistics_;
 };
@@ -108,67 +86,12 @@ void Sampler::remember(const dvec3& n, const Contact& contact, const dvec3& poin
   frame_points_.push_back(scene_.frame().to_frame(point));
 }
 
-void Sampler::add_support_points(const std::vector<dvec3>& directions) {
+void Sampler::begin(SampledStart start) {
+  samples_ = std::move(start.samples);
+  frame_points_ = std::move(start.frame_points);
   std::vector<dvec3> points;
-  for (const dvec3& n : directions) {
-    const Support s = query_(n);
-    const dvec3 point = scene_.frame().to_model(s.point);
-    const dvec3 frame_point = scene_.frame().to_frame(point);
-    const bool near_another = std::any_of(
-        frame_points_.begin(), frame_points_.end(),
-        [&](const dvec3& other) { return glm::distance(other, frame_point) < flat_width; });
-    if (near_another) continue;
-    points.push_back(scaled(point));
-    remember(n, s.contact, point);
-  }
+  for (const dvec3& p : start.points) points.push_back(scaled(p));
   hull_.add(points);
-}
-
-/// What the points span, flat_width allowed for, and directions across it.
-Sampler::Span Sampler::spanned(const std::vector<dvec3>& points) {
-  dvec3 line(0.0);
-  for (const dvec3& p : points) {
-    if (glm::length(p - points.front()) > glm::length(line)) line = p - points.front();
-  }
-  if (glm::length(line) < flat_width) return {0, {}};
-  line = unit(line);
-  dvec3 off_line(0.0);
-  for (const dvec3& p : points) {
-    const dvec3 off = p - points.front() - glm::dot(p - points.front(), line) * line;
-    if (glm::length(off) > glm::length(off_line)) off_line = off;
-  }
-  if (glm::length(off_line) < flat_width) {
-    const dvec3 axis = std::abs(line.x) < std::abs(line.y) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-    const dvec3 a = unit(glm::cross(line, axis));
-    const dvec3 b = glm::cross(line, a);
-    return {1, {a, -a, b, -b, unit(a + b), -unit(a + b), unit(a - b), -unit(a - b)}};
-  }
-  const dvec3 normal = unit(glm::cross(line, off_line));
-  double off_plane = 0;
-  for (const dvec3& p : points) {
-    off_plane = std::max(off_plane, std::abs(glm::dot(p - points.front(), normal)));
-  }
-  return {off_plane < flat_width ? 2 : 3, {normal, -normal}};
-}
-
-/// The support points of 26 directions: axes, and diagonals of faces and of space; and while they
-/// lie in a plane or on a line, those of the directions across it.
-void Sampler::start() {
-  std::vector<dvec3> directions;
-  for (int k = 0; k < 27; ++k) {
-    const dvec3 d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    if (d != dvec3(0.0)) directions.push_back(unit(d));
-  }
-  add_support_points(directions);
-  for (Span span = spanned(frame_points_); span.dimension < 3;) {
-    add_support_points(span.across);
-    const Span wider = spanned(frame_points_);
-    if (wider.dimension == span.dimension) {
-      throw InvalidInput("the model is flat: its hull has dimension " +
-                         std::to_string(span.dimension) + ", and only solid hulls can be computed");
-    }
-    span = wider;
-  }
 }
 
 /// Queries the supporting plane of every facet that has none yet, in parallel; each query starts
@@ -291,11 +214,9 @@ HullMesh Sampler::make_mesh() {
   return polytope_mesh(scene_, hull_, samples_, gaps, flat_width, bounds);
 }
 
-Hull Sampler::run() {
-  if (!(options_.tolerance > 0)) throw InvalidInput("the tolerance must be positive");
+Hull Sampler::run(SampledStart start) {
   const auto start_time = Clock::now();
-  tolerance_ = options_.tolerance * scene_.frame().scale;
-  start();
+  begin(std::move(start));
   for (;;) {
     find_planes();
     bound_vertices();
@@ -312,14 +233,13 @@ Hull Sampler::run() {
     }
   }
   Hull result;
-  statistics_.support_queries += query_.queries();
-  statistics_.newton_iterations += query_.newton_iterations();
+  result.kind = HullKind::solid;
   statistics_.seconds_sample = seconds_since(start_time);
   const auto mesh_time = Clock::now();
   options_.progress.update("mesh", 0);
   result.mesh = make_mesh();
   statistics_.seconds_mesh = seconds_since(mesh_time);
-  result.distance_bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding());
+  result.distance_bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
   result.statistics = statistics_;
   return result;
 }
@@ -327,7 +247,20 @@ Hull Sampler::run() {
 }  // namespace
 
 Hull sampled_hull(const Scene& scene, const HullOptions& options) {
-  return Sampler(scene, options).run();
+  const double tolerance = tolerance_for(options, scene.diagonal());
+  const auto start_time = Clock::now();
+  SupportQuery query(scene);
+  SampledStart start = sampled_start(scene, query);
+  Hull hull;
+  if (start.span.dimension == 3) {
+    hull = Sampler(scene, options, tolerance).run(std::move(start));
+  } else {
+    hull = flat_sampled_hull(scene, options, tolerance, std::move(start), query);
+    hull.statistics.seconds_sample = seconds_since(start_time);
+  }
+  hull.statistics.support_queries += query.queries();
+  hull.statistics.newton_iterations += query.newton_iterations();
+  return hull;
 }
 
 }  // namespace taut

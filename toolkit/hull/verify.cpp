@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -12,8 +13,10 @@
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
 #include "taut/core/predicates.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/measures.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/polytope_support.h"
 
 namespace taut {
 namespace {
@@ -130,7 +133,9 @@ void Verifier::check_topology() {
     if (components.root(f) != components.root(0)) result_.topological_sphere = false;
   }
   check_fans();
-  if (result_.oriented) result_.oriented = measure(mesh_).volume > 0;
+  // The two sides of a planar hull hold no volume, up to rounding.
+  const Measures measures = measure(mesh_);
+  if (result_.oriented) result_.oriented = measures.volume > -flat_width * measures.area;
 }
 
 /// The polygon corners about a vertex are one fan iff edges join them all.
@@ -199,49 +204,22 @@ void Verifier::check_convexity() {
   });
 }
 
-/// The support function of points, by climbing over their hull's edges.
+/// The support function of points, each query started from the answer to the last one.
 class PointSupport {
  public:
-  explicit PointSupport(const std::vector<dvec3>& points) : hull_(box_of(points)) {
+  explicit PointSupport(const std::vector<dvec3>& points) : points_(points), hull_(box_of(points)) {
     hull_.add(points);
-    if (hull_.dimension() < 3) {
-      all_ = points;
-      return;
-    }
-    std::vector<std::pair<int, int>> edges;
-    for (const PointHull::Facet& f : hull_.facets()) {
-      if (!f.alive) continue;
-      for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(f.vertex[k], f.vertex[(k + 1) % 3]);
-    }
-    std::sort(edges.begin(), edges.end());
-    first_.assign(points.size() + 1, 0);
-    for (const auto& [a, b] : edges) ++first_[std::size_t(a) + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    for (const auto& [a, b] : edges) neighbors_.push_back(b);
-    start_ = edges.front().first;
+    if (hull_.dimension() == 3) climb_.emplace(hull_);
   }
 
-  double value(const dvec3& n, const dvec3& origin) const {
-    if (!all_.empty()) {
-      double h = -std::numeric_limits<double>::infinity();
-      for (const dvec3& p : all_) h = std::max(h, glm::dot(p - origin, n));
-      return h;
+  /// max (p - origin) . n; `near` is the vertex where it was attained last, -1 at first.
+  double value(const dvec3& n, const dvec3& origin, int& near) const {
+    if (climb_) {
+      near = near < 0 ? (*climb_)(n) : (*climb_)(n, near);
+      return glm::dot(hull_.point(near) - origin, n);
     }
-    int v = start_;
-    double h = glm::dot(hull_.point(v) - origin, n);
-    for (bool climbing = true; climbing;) {
-      climbing = false;
-      const int now = v;
-      for (int k = first_[std::size_t(now)]; k < first_[std::size_t(now) + 1]; ++k) {
-        const int other = neighbors_[std::size_t(k)];
-        const double value = glm::dot(hull_.point(other) - origin, n);
-        if (value > h) {
-          h = value;
-          v = other;
-          climbing = true;
-        }
-      }
-    }
+    double h = -std::numeric_limits<double>::infinity();
+    for (const dvec3& p : points_) h = std::max(h, glm::dot(p - origin, n));
     return h;
   }
 
@@ -252,10 +230,9 @@ class PointSupport {
     return box;
   }
 
+  const std::vector<dvec3>& points_;
   PointHull hull_;
-  std::vector<dvec3> all_;  ///< where the points do not span space
-  std::vector<int> first_, neighbors_;
-  int start_ = 0;
+  std::optional<PolytopeSupport> climb_;  ///< where the points span space
 };
 
 /// Facet normals, vertex normals (which look for what a corner may hide) and random directions.
@@ -287,8 +264,9 @@ void Verifier::measure_distances() {
     normals[f] = unit(glm::cross(point(c[1]) - point(c[0]), point(c[2]) - point(c[0])));
   }
   const PointSupport mesh_support(mesh_.points);
+  int top = -1;
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const double above = mesh_support.value(normals[f], point(mesh_.polygons[f][0]));
+    const double above = mesh_support.value(normals[f], point(mesh_.polygons[f][0]), top);
     result_.largest_violation = std::max(result_.largest_violation, above);
   }
 
@@ -298,11 +276,12 @@ void Verifier::measure_distances() {
   parallel_for(tried.size(), 256, options_.threads, [&](std::size_t begin, std::size_t end) {
     SupportQuery query(scene_);
     Contact near;
+    int near_vertex = -1;
     for (std::size_t k = begin; k < end; ++k) {
       options_.progress.check();
       const Support s = query(tried[k], near);
       near = s.contact;
-      difference[k] = s.h - mesh_support.value(tried[k], center);
+      difference[k] = s.h - mesh_support.value(tried[k], center, near_vertex);
     }
   });
   for (const double d : difference) {
@@ -321,9 +300,15 @@ Verification Verifier::run() {
     if (p.size() < 3) throw InvalidInput("a polygon has fewer than three corners");
   }
   if (mesh_.points.empty()) throw InvalidInput("the mesh has no vertices");
-  check_topology();
-  find_planes();
-  check_convexity();
+  if (mesh_.polygons.empty() && mesh_.points.size() <= 2) {
+    // A point or a segment has no boundary that could be wrong.
+    result_.closed = result_.manifold = result_.oriented = result_.topological_sphere = true;
+    result_.no_zero_area = result_.convex = true;
+  } else {
+    check_topology();
+    find_planes();
+    check_convexity();
+  }
   measure_distances();
   for (double* length :
        {&result_.largest_violation, &result_.model_outside, &result_.mesh_outside}) {

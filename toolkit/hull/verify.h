@@ -22,7 +22,8 @@ struct Verification {
   bool closed = false;
   /// Every edge has at most two polygons and the polygons about every vertex form one fan.
   bool manifold = false;
-  /// The two polygons at an edge run through it in opposite directions, and the volume is positive.
+  /// The two polygons at an edge run through it in opposite directions, and the volume is not
+  /// negative.
   bool oriented = false;
   /// One connected surface of Euler characteristic 2, as the boundary of a convex body is.
   bool topological_sphere = false;
@@ -50,7 +51,8 @@ struct Verification {
 
 /// Checks any mesh against a model's convex hull: topology, exact convexity, and both one-sided
 /// distances measured by support functions in the directions of all facets and vertices and in
-/// random ones. A measurement, hence a lower bound of the true distances.
+/// random ones. Up to two points without polygons are a point or a segment, in perfect order. A
+/// measurement, hence a lower bound of the true distances.
 Verification verify(const PolygonMesh& mesh, const Scene& scene, const VerifyOptions& options = {});
 
 }  // namespace taut

@@ -87,7 +87,7 @@ Report make_report(const Input& input, const Hull& hull, const HullArguments& ar
   Report report;
   report.input = input.summary();
   report.method = arguments.method;
-  report.dimension = hull.dimension;
+  report.dimension = hull.dimension();
   report.hull.gap_bound = hull.distance_bound;
   report.mesh.vertices = long(hull.mesh.n_vertices());
   report.mesh.edges = long(hull.mesh.n_edges());

@@ -1,0 +1,233 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "hull_checks.h"
+#include "taut/core/error.h"
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models and checks
+
+using Points = std::vector<dvec3>;
+
+Model model_of(const Points& points) {
+  Part part;
+  part.add_points(points);
+  Model model;
+  model.add_part(std::move(part), smooth_join_angle);
+  return model;
+}
+
+Hull hull_of(const Points& points) { return polyhedral_hull(model_of(points)); }
+
+/// Side n, along the axes, n^3 points.
+Points grid(int n) {
+  Points points;
+  for (int k = 0; k < n * n * n; ++k) points.emplace_back(k % n, k / n % n, k / n / n);
+  return points;
+}
+
+Points mapped(Points points, const dmat3& turn, const dvec3& shift = dvec3(0.0)) {
+  for (dvec3& p : points) p = turn * p + shift;
+  return points;
+}
+
+/// Exactly convex and closed, corners are points of the input, and none of these reaches out
+/// farther than the bound (in long double, whose own rounding is allowed for).
+void expect_hull_of(const Points& points, const Hull& hull) {
+  const PolygonMesh mesh = polygons(hull.mesh);
+  ASSERT_EQ(hull.kind, HullKind::solid);
+  EXPECT_TRUE(mesh_facts(mesh).is_convex_polytope());
+  std::set<std::array<double, 3>> known;
+  for (const dvec3& p : points) known.insert({p.x, p.y, p.z});
+  for (const dvec3& p : mesh.points) EXPECT_TRUE(known.contains({p.x, p.y, p.z}));
+  real highest = 0;
+  for (const auto& polygon : mesh.polygons) {
+    const rvec3 a(mesh.points[std::size_t(polygon[0])]);
+    rvec3 normal{};
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+      normal += glm::cross(rvec3(mesh.points[std::size_t(polygon[k])]) - a,
+                           rvec3(mesh.points[std::size_t(polygon[k + 1])]) - a);
+    }
+    normal = glm::normalize(normal);
+    for (const dvec3& p : points) highest = std::max(highest, glm::dot(rvec3(p) - a, normal));
+  }
+  Box box;
+  for (const dvec3& p : points) box.include(p);
+  EXPECT_LE(highest, hull.distance_bound + 1e-17 * diagonal(box));
+}
+
+TEST(PolyhedralHull, CubeIsExact) {
+  const Points cube = grid(2);
+  const Hull hull = hull_of(cube);
+  expect_hull_of(cube, hull);
+  EXPECT_EQ(hull.distance_bound, 0);
+  EXPECT_EQ(hull.mesh.n_vertices(), 8U);
+  EXPECT_EQ(hull.mesh.n_faces(), 6U);
+}
+
+TEST(PolyhedralHull, GridsAreCubesAnyWay) {
+  for (const int n : {20, 50}) {
+    for (const dvec3& shift : {dvec3(0.0), dvec3(100.3, -0.7, 1234.5)}) {
+      for (const dmat3& turn : {dmat3(1.0), skew_rotation(), 0.1 * skew_rotation()}) {
+        const Points points = mapped(grid(n), turn, shift);
+        const Hull hull = hull_of(points);
+        expect_hull_of(points, hull);
+        EXPECT_EQ(hull.mesh.n_vertices(), 8U);
+        EXPECT_LE(hull.mesh.n_faces(), 12U);
+        EXPECT_GE(hull.mesh.n_faces(), 6U);
+        EXPECT_LE(hull.distance_bound, 1e-11);
+      }
+    }
+  }
+}
+
+TEST(PolyhedralHull, TypedResults) {
+  EXPECT_EQ(convex_hull(Model()).kind, HullKind::empty);
+  EXPECT_EQ(polyhedral_hull(Model()).mesh.n_vertices(), 0U);
+  for (const dvec3& at : {dvec3(0.0), dvec3(1, 2, 3), dvec3(1e300, -1e300, 1e-300)}) {
+    const Hull point = hull_of(Points(7, at));
+    EXPECT_EQ(point.kind, HullKind::point);
+    ASSERT_EQ(point.mesh.n_vertices(), 1U);
+    EXPECT_EQ(position(point.mesh, OpenMesh::VertexHandle(0)), at);
+    EXPECT_EQ(point.distance_bound, 0);
+  }
+  const Points line = {{1, 1, 1}, {3, 3, 3}, {2, 2, 2}, {1, 1, 1}, {-4, -4, -4}};
+  const Hull segment = hull_of(line);
+  EXPECT_EQ(segment.kind, HullKind::segment);
+  EXPECT_EQ(segment.mesh.n_vertices(), 2U);
+  EXPECT_EQ(segment.mesh.n_edges(), 1U);
+  EXPECT_EQ(segment.distance_bound, 0);
+  // A grid in a plane, askew but exact: only its four corners are left.
+  Points plane;
+  for (int i = 0; i < 100; ++i) plane.emplace_back(i % 10, i / 10, 2 * (i % 10) - 3 * (i / 10));
+  const Hull planar = hull_of(plane);
+  EXPECT_EQ(planar.kind, HullKind::planar);
+  EXPECT_EQ(planar.mesh.n_vertices(), 4U);
+  EXPECT_EQ(planar.mesh.n_faces(), 2U);
+  EXPECT_EQ(planar.distance_bound, 0);
+  EXPECT_EQ(mesh_facts(polygons(planar.mesh)).euler, 2);
+}
+
+TEST(PolyhedralHull, RoundedPlanesAndLinesAreFlat) {
+  Points plane, line;
+  for (int i = 0; i < 400; ++i) {
+    plane.emplace_back(i % 20, i / 20, 0);
+    line.emplace_back(i, 0, 0);
+  }
+  for (const dvec3& shift : {dvec3(0.0), dvec3(10, -200, 3000)}) {
+    const Hull planar = hull_of(mapped(plane, skew_rotation(), shift));
+    EXPECT_EQ(planar.kind, HullKind::planar);
+    EXPECT_EQ(planar.mesh.n_vertices(), 4U);
+    EXPECT_LE(planar.distance_bound, 2e-11);
+    EXPECT_EQ(hull_of(mapped(line, skew_rotation(), shift)).kind, HullKind::segment);
+  }
+}
+
+TEST(PolyhedralHull, PointsOneUlpApartAreAHull) {
+  const double ulp = std::numeric_limits<double>::epsilon();
+  for (const double at : {1.0, 8e5, 1e15}) {
+    Points points;
+    for (const dvec3& p : grid(5)) points.push_back(at * (dvec3(1.0) + 2 * ulp * p));
+    const Hull hull = hull_of(points);
+    expect_hull_of(points, hull);
+    EXPECT_EQ(hull.mesh.n_vertices(), 8U);
+    EXPECT_EQ(hull.distance_bound, 0);
+  }
+}
+
+TEST(PolyhedralHull, AnySizeAndPlace) {
+  Random random(3);
+  Points ball;
+  for (int i = 0; i < 500; ++i) ball.push_back(random_point(random));
+  const std::size_t vertices = hull_of(ball).mesh.n_vertices();
+  for (const double size : {1e-300, 1e-150, 1e-6, 1e6, 1e150, 1e300}) {
+    Points points = ball;
+    for (dvec3& p : points) p *= size;
+    const Hull hull = hull_of(points);
+    EXPECT_EQ(hull.mesh.n_vertices(), vertices) << size;
+    EXPECT_TRUE(mesh_facts(polygons(hull.mesh)).is_convex_polytope()) << size;
+  }
+  for (const double far : {1e8, 1e15}) {
+    Points points = ball;
+    for (dvec3& p : points) p = 10. * p + far;
+    expect_hull_of(points, hull_of(points));
+  }
+  const Points needle = mapped(grid(2), dmat3(1e6, 0, 0, 0, 1, 0, 0, 0, 1));
+  expect_hull_of(needle, hull_of(needle));
+  expect_hull_of(mapped(needle, skew_rotation()), hull_of(mapped(needle, skew_rotation())));
+}
+
+TEST(PolyhedralHull, CoplanarAndCocircularPoints) {
+  // A drum of two regular 3,000-gons, and a pyramid over points all over a square.
+  Points drum, pyramid = {{0.5, 0.5, 1}};
+  for (int k = 0; k < 6000; ++k) {
+    const double t = 2 * std::numbers::pi * (k / 2) / 3000;
+    drum.emplace_back(std::cos(t), std::sin(t), k % 2);
+  }
+  Random random(8);
+  for (int k = 0; k < 5000; ++k)
+    pyramid.emplace_back(uniform(random, 0, 1), uniform(random, 0, 1), 0);
+  for (const Points& points : {drum, pyramid}) {
+    for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+      const Points moved = mapped(points, turn);
+      const Hull hull = hull_of(moved);
+      expect_hull_of(moved, hull);
+    }
+  }
+}
+
+TEST(PolyhedralHull, InstancesDuplicatesAndNestedParts) {
+  const Points cube = grid(3);
+  Model model = model_of(cube);
+  model.add_instance(0, {});
+  model.add_instance(0, {dmat3(1.0), {5, 0, 0}});
+  Part inner;
+  inner.add_points(mapped(grid(2), 0.5 * dmat3(1.0), {0.5, 0.5, 0.5}));
+  model.add_part(std::move(inner), smooth_join_angle);
+  model.add_part(Part(), smooth_join_angle);
+  const Hull hull = polyhedral_hull(model);
+  EXPECT_EQ(hull.mesh.n_vertices(), 8U);
+  EXPECT_EQ(hull.mesh.n_faces(), 6U);
+  EXPECT_NEAR(measure(polygons(hull.mesh)).volume, 28, 1e-12);
+  // The same by sampling, where support queries find the points.
+  const Hull sampled = sampled_hull(Scene(model), {.threads = 1, .progress = {}});
+  EXPECT_EQ(sampled.mesh.n_vertices(), 8U);
+}
+
+TEST(PolyhedralHull, FacesNameThePolygonsThatLieInThem) {
+  PolygonMesh box = {grid(2), {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7}}};
+  Part part;
+  part.add_polygons(box);
+  Model model;
+  model.add_part(std::move(part), smooth_join_angle);
+  EXPECT_EQ(model.face_count(), 4);
+  const Hull hull = convex_hull(model);
+  std::multiset<int> sources;
+  for (const auto f : hull.mesh.faces()) sources.insert(hull.mesh.data(f).source);
+  EXPECT_EQ(sources, (std::multiset<int>{-1, -1, 0, 1, 2, 3}));
+  for (const auto v : hull.mesh.vertices()) {
+    const Source source = model.source(hull.mesh.data(v).source);
+    EXPECT_EQ(source.kind, SourceKind::vertex);
+    EXPECT_EQ(model.parts()[0].vertices()[std::size_t(source.index)], position(hull.mesh, v));
+  }
+}
+
+TEST(PolyhedralHull, RefusesWrongTolerancesAndCanBeCancelled) {
+  const Model model = model_of(grid(2));
+  EXPECT_THROW(polyhedral_hull(model, {.tolerance = -1, .progress = {}}), InvalidInput);
+  EXPECT_THROW(convex_hull(model, {.relative = 0, .progress = {}}), InvalidInput);
+  std::stop_source stop;
+  stop.request_stop();
+  HullOptions options;
+  options.progress.stop = stop.get_token();
+  EXPECT_THROW(polyhedral_hull(model, options), Cancelled);
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,158 @@
+#include "taut/hull/coarse_hull.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "taut/hull/affine_span.h"
+#include "taut/hull/certificate.h"
+#include "taut/hull/polytope_support.h"
+
+namespace taut {
+namespace {
+
+dvec3 normal_of(const PointHull& hull, int facet) { return unit(hull.facet(facet).side.normal()); }
+
+/// Turned by so much, a direction in which a whole face or edge is highest has one of its corners
+/// highest, by far more than noise.
+constexpr double tie_break = 1e-6;
+
+/// Along no edge, and across no face, of anything that people make.
+const dvec3 skew(0.67123, 0.31798, 0.66957);
+
+/// Grows the coarse hull from the points highest in skew directions: the point highest above each
+/// facet goes in while it is above the width.
+class Coarsener {
+ public:
+  Coarsener(const PointHull& fine, const std::array<int, 4>& spanning, double width)
+      : fine_(fine), support_(fine), width_(width), result_{PointHull(box_of(fine)), {}, 0} {
+    for (const dvec3& n : directions_across({})) {
+      add(support_(unit(n + 0.1 * dvec3(skew.y, skew.z, skew.x) * n.x + 0.1 * skew)));
+    }
+    if (result_.hull.dimension() < 3) {
+      for (const int p : spanning)
+        add(support_(unit(skew + fine.point(p) - fine.point(spanning[0])), p));
+      for (const int p : spanning) add(p);
+    }
+  }
+
+  CoarseHull run(const Progress& progress) {
+    while (grow()) progress.check();
+    bound_distance();
+    return std::move(result_);
+  }
+
+ private:
+  struct Candidate {
+    double height;
+    int facet, point;
+    std::array<int, 3> vertex;  ///< tells whether the facet has been replaced
+  };
+
+  static Box box_of(const PointHull& hull) {
+    Box box;
+    for (const PointHull::Facet& f : hull.facets()) {
+      for (const int v : f.vertex) box.include(hull.point(v));
+    }
+    return box;
+  }
+
+  void add(int point) {
+    result_.original.push_back(point);
+    result_.hull.add({&fine_.point(point), 1});
+  }
+  /// One round over the facets not yet known to be final. False when none grows any more.
+  bool grow();
+  void bound_distance();
+
+  const PointHull& fine_;
+  PolytopeSupport support_;
+  double width_;
+  CoarseHull result_;
+  std::vector<double> heights_;  ///< per facet: of the highest point above it; -1: not known
+};
+
+bool Coarsener::grow() {
+  PointHull& hull = result_.hull;
+  heights_.resize(hull.facets().size(), -1);
+  std::vector<Candidate> candidates;
+  for (std::size_t f = 0; f < heights_.size(); ++f) {
+    const PointHull::Facet& facet = hull.facet(int(f));
+    if (!facet.alive || heights_[f] >= 0) continue;
+    const dvec3 n = normal_of(hull, int(f));
+    const auto height_of = [&](int p) {
+      return glm::dot(fine_.point(p) - hull.point(facet.vertex[0]), n);
+    };
+    int top = support_(n, result_.original[std::size_t(facet.vertex[0])]);
+    double height = height_of(top);
+    heights_[f] = std::max(height, 0.0);
+    const int corner = support_(unit(n + tie_break * skew), top);
+    if (height_of(corner) > std::max(width_, 0.5 * height)) {
+      top = corner;
+      height = height_of(corner);
+    }
+    if (height > width_) candidates.push_back({height, int(f), top, facet.vertex});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.height != b.height ? a.height > b.height : a.facet < b.facet;
+  });
+  bool grown = false;
+  for (const Candidate& c : candidates) {
+    const PointHull::Facet& facet = hull.facet(c.facet);
+    if (!facet.alive || facet.vertex != c.vertex) continue;
+    if (!hull.insert(fine_.point(c.point), c.facet)) continue;
+    result_.original.push_back(c.point);
+    heights_.resize(hull.facets().size(), -1);
+    for (const int f : hull.created()) heights_[std::size_t(f)] = -1;
+    grown = true;
+  }
+  return grown;
+}
+
+/// As for sampled hulls (certificate.h).
+void Coarsener::bound_distance() {
+  const PointHull& hull = result_.hull;
+  std::vector<std::vector<int>> facets(hull.points().size());
+  for (std::size_t f = 0; f < heights_.size(); ++f) {
+    if (!hull.facet(int(f)).alive) continue;
+    for (const int v : hull.facet(int(f)).vertex) facets[std::size_t(v)].push_back(int(f));
+  }
+  std::vector<dvec3> normals;
+  for (const std::vector<int>& fan : facets) {
+    if (fan.empty()) continue;
+    normals.clear();
+    double highest = 0;
+    for (const int f : fan) {
+      normals.push_back(normal_of(hull, f));
+      highest = std::max(highest, heights_[std::size_t(f)]);
+    }
+    const double depth = cone_depth(normals);
+    const double bound = depth > 0 ? highest / depth : std::numeric_limits<double>::infinity();
+    result_.distance_bound = std::max(result_.distance_bound, bound);
+  }
+}
+
+}  // namespace
+
+bool has_nearly_flat_edges(const PointHull& hull, double width) {
+  for (std::size_t f = 0; f < hull.facets().size(); ++f) {
+    const PointHull::Facet& facet = hull.facet(int(f));
+    if (!facet.alive) continue;
+    const dvec3 n = normal_of(hull, int(f));
+    for (const int g : facet.neighbor) {
+      for (const int v : hull.facet(g).vertex) {
+        if (std::find(facet.vertex.begin(), facet.vertex.end(), v) != facet.vertex.end()) continue;
+        const double height = glm::dot(hull.point(v) - hull.point(facet.vertex[0]), n);
+        if (height > -width && facet.side.side(hull.point(v)) == Sign::negative) return true;
+      }
+    }
+  }
+  return false;
+}
+
+CoarseHull coarse_hull(const PointHull& hull, const std::array<int, 4>& spanning, double width,
+                       const Progress& progress) {
+  return Coarsener(hull, spanning, width).run(progress);
+}
+
+}  // namespace taut

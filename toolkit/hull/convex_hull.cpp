@@ -1,0 +1,41 @@
+#include "taut/hull/convex_hull.h"
+
+#include <cmath>
+#include <string>
+
+#include "taut/core/error.h"
+
+namespace taut {
+
+Hull convex_hull(const Model& model, const HullOptions& options) {
+  if (model.empty()) {
+    tolerance_for(options, 0);
+    return {};
+  }
+  if (model.polyhedral()) return polyhedral_hull(model, options);
+  const Scene scene(model, {options.threads, options.progress});
+  return sampled_hull(scene, options);
+}
+
+Hull convex_hull(const Scene& scene, const HullOptions& options) {
+  return scene.model().polyhedral() ? polyhedral_hull(scene.model(), options)
+                                    : sampled_hull(scene, options);
+}
+
+double tolerance_for(const HullOptions& options, double diagonal) {
+  // Asked in forms that NaN fails.
+  if (!(options.tolerance >= 0)) {
+    throw InvalidInput("the tolerance must be positive");
+  }
+  if (options.tolerance > 0) return options.tolerance;
+  if (!(options.relative > 0 && std::isfinite(options.relative))) {
+    throw InvalidInput("the relative tolerance must be positive");
+  }
+  const double tolerance = options.relative * diagonal;
+  if (diagonal > 0 && !(tolerance > 0 && std::isfinite(tolerance))) {
+    throw InvalidInput("the relative tolerance times the diagonal leaves the range of doubles");
+  }
+  return tolerance;
+}
+
+}  // namespace taut

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "taut/core/error.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/certificate.h"
+#include "taut/hull/outline.h"
+#include "taut/hull/sampled_start.h"
+
+namespace taut {
+namespace {
+
+/// Refines the outline of a scene in a plane as sampled_hull() refines a polytope, or measures one
+/// on a line or in a point.
+class FlatSampler {
+ public:
+  FlatSampler(const Scene& scene, const HullOptions& options, double tolerance, SampledStart start,
+              SupportQuery& query)
+      : scene_(scene),
+        options_(options),
+        tolerance_(tolerance * scene.frame().scale),
+        start_(std::move(start)),
+        query_(query) {}
+
+  Hull run();
+
+ private:
+  struct Side {
+    dvec3 n;
+    Support support;
+  };
+
+  double gap(const Support& s, const dvec3& n, int sample) const {
+    return s.h_bound - glm::dot(n, start_.frame_points[std::size_t(sample)]) + gap_rounding;
+  }
+  int add(const dvec3& n, const Support& s);
+  const Side& side(int from, int to);
+  std::vector<int> line_ends();
+  void refine_outline();
+  std::vector<int> outline(const PlaneView& view) const {
+    return convex_outline(start_.points, view);
+  }
+  double certify(const std::vector<int>& corners);
+  double across_bound(int sample);
+  Hull make_hull(HullKind kind, const std::vector<int>& corners);
+
+  const Scene& scene_;
+  const HullOptions& options_;
+  double tolerance_;  ///< in the scene's frame
+  SampledStart start_;
+  SupportQuery& query_;
+  std::map<std::pair<int, int>, Side> sides_;  ///< by their ends' samples
+  std::vector<double> bounds_;                 ///< per corner of the outline
+  double bound_ = 0;
+};
+
+int FlatSampler::add(const dvec3& n, const Support& s) {
+  start_.samples.push_back({n, s.contact});
+  start_.points.push_back(scene_.frame().to_model(s.point));
+  start_.frame_points.push_back(scene_.frame().to_frame(start_.points.back()));
+  return int(start_.points.size()) - 1;
+}
+
+/// The supporting line along a side of the outline, in the span's plane.
+const FlatSampler::Side& FlatSampler::side(int from, int to) {
+  const auto [found, is_new] = sides_.try_emplace({from, to});
+  if (is_new) {
+    const dvec3 along =
+        start_.frame_points[std::size_t(to)] - start_.frame_points[std::size_t(from)];
+    found->second.n = unit(glm::cross(along, start_.span.normal));
+    found->second.support = query_(found->second.n, start_.samples[std::size_t(from)].contact);
+  }
+  return found->second;
+}
+
+/// How far the scene leaves the span's line or plane, or its point, in the frame.
+double FlatSampler::across_bound(int sample) {
+  double bound = 0;
+  for (const dvec3& n : directions_across(start_.span)) {
+    bound = std::max(bound, gap(query_(n), n, sample));
+  }
+  // Every direction across lies in a cone of neighbouring ones of at least this depth.
+  constexpr std::array depth = {0.8, 0.9, 1.0};
+  return bound / depth[std::size_t(start_.span.dimension)];
+}
+
+/// The certificate of certificate.h, in the plane.
+double FlatSampler::certify(const std::vector<int>& corners) {
+  const std::size_t count = corners.size();
+  double largest = 0;
+  bounds_.assign(count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Side in = side(corners[(k + count - 1) % count], corners[k]);
+    const Side out = side(corners[k], corners[(k + 1) % count]);
+    const double depth = cone_depth(std::array{in.n, out.n});
+    const double highest =
+        std::max(gap(in.support, in.n, corners[k]), gap(out.support, out.n, corners[k]));
+    bounds_[k] = depth > 0 ? highest / depth : std::numeric_limits<double>::infinity();
+    largest = std::max(largest, bounds_[k]);
+  }
+  return largest;
+}
+
+std::vector<int> FlatSampler::line_ends() {
+  std::vector<int> ends;
+  for (const dvec3& n : {-start_.span.line, start_.span.line}) {
+    const Support s = query_(n);
+    ends.push_back(add(n, s));
+    bounds_.push_back(gap(s, n, ends.back()));
+    bound_ = std::max(bound_, bounds_.back());
+  }
+  return ends;
+}
+
+Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
+  const double across = across_bound(corners.front());
+  Hull hull;
+  hull.kind = kind;
+  std::vector<dvec3> points;
+  std::vector<int> loop(corners.size());
+  std::iota(loop.begin(), loop.end(), 0);
+  for (const int c : corners) points.push_back(start_.points[std::size_t(c)]);
+  std::vector<std::vector<int>> polygons;
+  if (kind == HullKind::planar) polygons = {loop, {loop.rbegin(), loop.rend()}};
+  hull.mesh = make_hull_mesh(points, polygons);
+  const auto bound_in_model = [&](double bound) {
+    return std::max(scene_.frame().length_to_model(bound + across), vertex_rounding(scene_));
+  };
+  for (const auto v : hull.mesh.vertices()) {
+    const auto k = std::size_t(v.idx());
+    const Sample& sample = start_.samples[std::size_t(corners[k])];
+    const SourceContact contact = scene_.source(sample.contact);
+    auto& data = hull.mesh.data(v);
+    data.source = contact.source;
+    data.u = contact.u;
+    data.v = contact.v;
+    data.quality = float_above(bound_in_model(bounds_.empty() ? 0 : bounds_[k]));
+    const dvec3& n = kind == HullKind::planar ? start_.span.normal : sample.n;
+    hull.mesh.set_normal(v, {n.x, n.y, n.z});
+  }
+  for (const auto f : hull.mesh.faces()) hull.mesh.data(f).hull_face = f.idx();
+  for (const auto e : hull.mesh.edges()) hull.mesh.data(e).feature = true;
+  hull.distance_bound = bound_in_model(bound_);
+  return hull;
+}
+
+Hull FlatSampler::run() {
+  if (start_.span.dimension == 0) return make_hull(HullKind::point, {0});
+  if (start_.span.dimension == 1) return make_hull(HullKind::segment, line_ends());
+
+  const auto& w = start_.span.witnesses;
+  const auto witness = [&](std::size_t k) { return start_.points[std::size_t(w[k])]; };
+  const PlaneView view(witness(0), witness(1), witness(2));
+  for (;;) {
+    const std::vector<int> corners = outline(view);
+    bound_ = certify(corners);
+    options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
+    if (bound_ <= tolerance_) return make_hull(HullKind::planar, corners);
+
+    const std::size_t before = start_.points.size();
+    const bool full = int(before) >= options_.max_vertices;
+    for (std::size_t k = 0; k < corners.size() && !full; ++k) {
+      const std::size_t next = (k + 1) % corners.size();
+      if (bounds_[k] <= tolerance_ && bounds_[next] <= tolerance_) continue;
+      const Side s = side(corners[k], corners[next]);
+      const dvec3 up = s.support.point - start_.frame_points[std::size_t(corners[k])];
+      if (glm::dot(s.n, up) > gap_rounding) add(s.n, s.support);
+    }
+    // Samples that do not change the outline bring nothing more.
+    if (full || start_.points.size() == before || outline(view) == corners) {
+      throw NotConverged(full ? "the limit of vertices was met before the tolerance"
+                              : "the tolerance is below what double precision can certify here",
+                         std::min(scene_.frame().length_to_model(bound_), scene_.diagonal()));
+    }
+  }
+}
+
+}  // namespace
+
+Hull flat_sampled_hull(const Scene& scene, const HullOptions& options, double tolerance,
+                       SampledStart start, SupportQuery& query) {
+  return FlatSampler(scene, options, tolerance, std::move(start), query).run();
+}
+
+}  // namespace taut

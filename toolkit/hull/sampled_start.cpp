@@ -1,0 +1,57 @@
+#include "taut/hull/sampled_start.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// Below which distances in the scene's frame mean nothing (tolerances.h).
+double width_of(const Scene& scene) {
+  const dvec3 reach = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
+  const double noise = flat_coordinate_width * (reach.x + reach.y + reach.z);
+  if (scene.diagonal() <= noise) return std::numeric_limits<double>::infinity();
+  return std::max(flat_width, std::min(noise * scene.frame().scale, flat_width_limit));
+}
+
+void add(const Scene& scene, SupportQuery& query, const std::vector<dvec3>& directions,
+         double width, SampledStart& start) {
+  for (const dvec3& n : directions) {
+    const Support s = query(n);
+    const dvec3 point = scene.frame().to_model(s.point);
+    const dvec3 frame_point = scene.frame().to_frame(point);
+    const bool near_another =
+        std::any_of(start.frame_points.begin(), start.frame_points.end(),
+                    [&](const dvec3& other) { return glm::distance(other, frame_point) < width; });
+    if (near_another) continue;
+    start.samples.push_back({n, s.contact});
+    start.points.push_back(point);
+    start.frame_points.push_back(frame_point);
+  }
+}
+
+}  // namespace
+
+SampledStart sampled_start(const Scene& scene, SupportQuery& query) {
+  const double width = width_of(scene);
+  SampledStart start;
+  add(scene, query, directions_across({}), width, start);
+  start.span = affine_span(start.frame_points, width);
+  while (start.span.dimension < 3) {
+    const int dimension = start.span.dimension;
+    add(scene, query, directions_across(start.span), width, start);
+    start.span = affine_span(start.frame_points, width);
+    if (start.span.dimension == dimension) break;
+  }
+  return start;
+}
+
+double vertex_rounding(const Scene& scene) {
+  const dvec3 largest = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
+  return rounding_unit * (largest.x + largest.y + largest.z) +
+         scene.frame().length_to_model(gap_rounding);
+}
+
+}  // namespace taut

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/affine_span.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/polytope_mesh.h"
+
+namespace taut {
+
+/// Support points from which the sampling of a scene starts, none twice.
+struct SampledStart {
+  std::vector<Sample> samples;
+  std::vector<dvec3> points;        ///< per sample, in model coordinates
+  std::vector<dvec3> frame_points;  ///< the same in the scene's frame
+  /// What the scene spans, by these; what is thinner than tolerances.h tells is flat.
+  AffineSpan span;
+};
+
+/// The support points of 26 directions: axes, and diagonals of faces and of space; and while they
+/// lie in a plane or on a line, those of the directions across it.
+SampledStart sampled_start(const Scene& scene, SupportQuery& query);
+
+/// How far rounding may move a support point out of the hull, in model units: half a unit in the
+/// last place of each stored coordinate, and the evaluation in the frame.
+double vertex_rounding(const Scene& scene);
+
+/// Rounding of a gap in the scene's frame, where coordinates are at most about two.
+inline constexpr double gap_rounding = 16 * rounding_unit;
+
+/// The hull of a scene that spans less than space. `tolerance` in model units.
+/// @pre start.span.dimension < 3 @throws NotConverged, Cancelled as sampled_hull()
+Hull flat_sampled_hull(const Scene& scene, const HullOptions& options, double tolerance,
+                       SampledStart start, SupportQuery& query);
+
+}  // namespace taut
