@@ -192,7 +192,7 @@ double TextScanner::number(const Word& word, std::string_view expected) const {
   const char* const end = text.data() + text.size();
   double value = 0;
   const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (rest != end && !is_microsoft_nonfinite(text)) {
+  if (text.empty() || (rest != end && !is_microsoft_nonfinite(text))) {
     fail(word.line, std::string(expected) + " expected, found " + in_quotes(word.text));
   }
   if (rest != end || !std::isfinite(value)) {
