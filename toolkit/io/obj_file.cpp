@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "taut/core/tolerances.h"
+#include "taut/io/obj_reference.h"
 
 namespace taut {
 namespace {
@@ -52,7 +53,6 @@ class Parser {
   void require_no_body(const Statement& s) const;
   void require_body(const Statement& s) const;
   Interval read_range(const Statement& s, std::size_t first) const;
-  std::size_t earlier(const Word& word, std::size_t count, const std::string& kind) const;
   void warn_once(std::string_view code, const Word& keyword, const std::string& what);
 
   TextScanner& scanner_;
@@ -178,7 +178,8 @@ void Parser::read_loop(const Statement& s) {
   loop.line = s[0].line;
   for (std::size_t i = 1; i < s.size(); i += 3) {
     const Interval range = read_range(s, i);
-    loop.curves.push_back({earlier(s[i + 2], file_.parameter_curves.size(), "curv2"), range});
+    loop.curves.push_back(
+        {earlier_obj_index(scanner_, s[i + 2], file_.parameter_curves.size(), "a curv2"), range});
   }
 }
 
@@ -273,7 +274,8 @@ void Parser::begin_parameter_curve(const Statement& s) {
   begin_body(s);
   if (s.size() < 3) scanner_.fail(s[0].line, "curv2 takes two parameter points or more");
   for (std::size_t i = 1; i < s.size(); ++i) {
-    element_.vertices.push_back(earlier(s[i], file_.parameter_points.size(), "parameter point"));
+    element_.vertices.push_back(
+        earlier_obj_index(scanner_, s[i], file_.parameter_points.size(), "a parameter point"));
   }
 }
 
@@ -325,14 +327,6 @@ Interval Parser::read_range(const Statement& s, std::size_t first) const {
   return range;
 }
 
-/// The index of something that must stand before it is referred to.
-std::size_t Parser::earlier(const Word& word, std::size_t count, const std::string& kind) const {
-  const std::size_t index = obj_index(scanner_, word, count, kind);
-  if (index < count) return index;
-  scanner_.refuse(word.line, kind + " " + std::to_string(index + 1) + " is referred to, but " +
-                                 std::to_string(count) + " came before");
-}
-
 void Parser::warn_once(std::string_view code, const Word& keyword, const std::string& what) {
   // What is no OBJ file at all could name any number of statements.
   constexpr std::size_t most_kinds = 20;
@@ -341,66 +335,10 @@ void Parser::warn_once(std::string_view code, const Word& keyword, const std::st
                               in_quotes(keyword.text) + ": " + what);
 }
 
-bool is_index_part(char c) { return ('0' <= c && c <= '9') || c == '-' || c == '/'; }
-
 }  // namespace
 
 ObjFile parse_obj(TextScanner& scanner, const Progress& progress) {
   return Parser(scanner, progress).parse();
-}
-
-int ObjReferences::add(const TextScanner& scanner, const Word& word, std::size_t count) {
-  const std::size_t index = obj_index(scanner, word, count);
-  if (index >= most_) {
-    most_ = index + 1;
-    line_ = word.line;
-  }
-  return static_cast<int>(index);
-}
-
-void ObjReferences::check(const TextScanner& scanner, std::size_t count) const {
-  if (most_ <= count) return;
-  scanner.refuse(line_, "vertex " + std::to_string(most_) + " is referred to, but there are " +
-                            std::to_string(count));
-}
-
-std::size_t obj_index(const TextScanner& scanner, const Word& word, std::size_t count,
-                      const std::string& kind) {
-  const std::size_t slash = std::min(word.text.find('/'), word.text.size());
-  const std::string_view rest = word.text.substr(slash);
-  if (!std::all_of(rest.begin(), rest.end(), is_index_part)) {
-    scanner.fail(word.line, "a " + kind + " expected, found " + in_quotes(word.text));
-  }
-  const long number = scanner.integer({word.text.substr(0, slash), word.line}, "a " + kind);
-  if (number > 0) return static_cast<std::size_t>(number) - 1;
-  // Compared without turning the sign, which the smallest long would not survive.
-  if (number == 0 || number < -static_cast<long>(count)) {
-    scanner.refuse(word.line, kind + " " + std::to_string(number) + " is referred to, but " +
-                                  std::to_string(count) + " came before");
-  }
-  return count - static_cast<std::size_t>(-number);
-}
-
-dvec3 obj_point(const TextScanner& scanner, const std::vector<Word>& statement) {
-  if (statement.size() < 4) scanner.fail(statement[0].line, "v takes three coordinates");
-  dvec3 p;
-  for (int i = 0; i < 3; ++i) {
-    p[i] = scanner.number(statement[static_cast<std::size_t>(i) + 1], "a coordinate");
-  }
-  return p;
-}
-
-void add_obj_polygon(const TextScanner& scanner, const std::vector<Word>& statement,
-                     std::size_t count, ObjReferences& references,
-                     std::vector<std::vector<int>>& polygons) {
-  if (statement.size() < 4) {
-    scanner.refuse(statement[0].line, "a face has fewer than three vertices");
-  }
-  std::vector<int>& polygon = polygons.emplace_back();
-  polygon.reserve(statement.size() - 1);
-  for (std::size_t i = 1; i < statement.size(); ++i) {
-    polygon.push_back(references.add(scanner, statement[i], count));
-  }
 }
 
 }  // namespace taut

@@ -51,20 +51,6 @@ struct ObjElement {
   long line = 0;
 };
 
-/// The vertices that polygons and points refer to. They may follow later, so that indices can be
-/// checked at the end only.
-class ObjReferences {
- public:
-  /// The index of obj_index(), noted. @throws as that does
-  int add(const TextScanner& scanner, const Word& word, std::size_t count);
-  /// @throws InvalidInput if one is not below the number of vertices
-  void check(const TextScanner& scanner, std::size_t count) const;
-
- private:
-  std::size_t most_ = 0;
-  long line_ = 0;
-};
-
 /// What an OBJ file holds of geometry, in the file's own terms.
 struct ObjFile {
   std::vector<ObjVertex> vertices;
@@ -80,19 +66,5 @@ struct ObjFile {
 /// Reads all statements; checks numbers and the order of statements, not what they mean together.
 /// @throws IoError, InvalidInput with place; Cancelled
 ObjFile parse_obj(TextScanner& scanner, const Progress& progress);
-
-/// The index of a reference "v", "v/vt" or "v/vt/vn", counted from 0; `count` things of its kind
-/// were read before it, from the last of which negative references count.
-/// @throws IoError if it is no such reference, InvalidInput if it lies before the first
-std::size_t obj_index(const TextScanner& scanner, const Word& word, std::size_t count,
-                      const std::string& kind = "vertex");
-
-/// The coordinates of a `v` statement. @throws IoError, InvalidInput with place
-dvec3 obj_point(const TextScanner& scanner, const std::vector<Word>& statement);
-
-/// Adds the polygon of an `f` statement. @throws IoError, InvalidInput with place
-void add_obj_polygon(const TextScanner& scanner, const std::vector<Word>& statement,
-                     std::size_t count, ObjReferences& references,
-                     std::vector<std::vector<int>>& polygons);
 
 }  // namespace taut

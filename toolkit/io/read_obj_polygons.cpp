@@ -1,5 +1,5 @@
 #include "taut/io/mesh_readers.h"
-#include "taut/io/obj_file.h"
+#include "taut/io/obj_reference.h"
 #include "taut/io/text_scanner.h"
 
 namespace taut {
