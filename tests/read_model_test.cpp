@@ -14,6 +14,7 @@
 
 #include "taut/io/formats.h"
 #include "taut/io/read_mesh.h"
+#include "taut/io/text_scanner.h"
 #include "temporary_folder.h"
 
 namespace {
@@ -721,6 +722,71 @@ TEST_F(ReadModel, ObjTrimLoopsAreTurnedToTheirSense) {
   EXPECT_EQ(loop_points(loops[1]).front(), taut::dvec3(0.5, 0.5, 1));
   EXPECT_EQ(loop_points(loops[1])[3], taut::dvec3(1, 1.25, 2));
   EXPECT_EQ(loops[1].curves[1].knots, (std::vector<double>{3, 3, 3, 5, 5, 5}));
+}
+
+/// The point of a curve in parameter space.
+taut::dvec3 curve_point(const taut::NurbsCurve& curve, double t) {
+  for (const taut::CurvePiece& piece : taut::decompose(curve)) {
+    if (piece.t.lower <= t && t <= piece.t.upper) {
+      return taut::point(piece.bezier, (t - piece.t.lower) / (piece.t.upper - piece.t.lower));
+    }
+  }
+  ADD_FAILURE() << "no piece covers " << t;
+  return {};
+}
+
+TEST_F(ReadModel, ObjTrimLoopTurnedIsTheSameCurve) {
+  // A closed B-spline on knots that are not clamped, once as the outer loop, once as a hole.
+  const Part part = this->part(
+      "a.obj", vertices(4) +
+                   "vp .2 .2\nvp .8 .3 2\nvp .7 .8\nvp .3 .7 .5\ncstype rat bspline\ndeg 3\n"
+                   "curv2 1 2 3 4 1 2 3\nparm u -3 -2 -1 0 1 2.5 3 4 5 6.5 7\nend\n"
+                   "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\ntrim 0 4 1\nhole 0 4 1\nend\n");
+  const taut::NurbsCurve& outer = part.faces()[0].loops[0].curves[0];
+  const taut::NurbsCurve& hole = part.faces()[0].loops[1].curves[0];
+  EXPECT_EQ(outer.knots, (std::vector<double>{-3, -2, -1, 0, 1, 2.5, 3, 4, 5, 6.5, 7}));
+  EXPECT_EQ(hole.domain().lower, 0);
+  EXPECT_EQ(hole.domain().upper, 4);
+  for (int i = 0; i <= 32; ++i) {
+    const double t = i / 8.0;
+    EXPECT_LT(glm::length(curve_point(outer, t) - curve_point(hole, 4 - t)), 1e-15) << t;
+  }
+}
+
+TEST_F(ReadModel, ObjTrimSenseAtAllSizesAndAngles) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution(a, b)(random);
+  };
+  for (int k = 0; k < 300; ++k) {
+    // A thin star about a far point, in either sense.
+    const double size = std::pow(10, uniform(-150, 150));
+    const double far = uniform(0, 100), thin = std::pow(10, uniform(-6, 0));
+    const double angle = uniform(0, 7);
+    const int corners = 3 + k % 6;
+    const int sense = random() % 2 == 0 ? 1 : -1;
+    std::string text = vertices(4);
+    for (int i = 0; i < corners; ++i) {
+      const double a = sense * 6.283185307179586 * (i + uniform(0, 0.4)) / corners;
+      const double r = uniform(0.5, 1), x = r * std::cos(a), y = thin * r * std::sin(a);
+      text += "vp " + taut::shortest(size * (far + x * std::cos(angle) - y * std::sin(angle))) +
+              " " + taut::shortest(size * (x * std::sin(angle) + y * std::cos(angle))) + "\n";
+    }
+    text += "cstype bspline\ndeg 1 1\ncurv2" + numbers(1, corners) + " 1\nparm u 0" +
+            numbers(0, corners) + " " + std::to_string(corners) + "\nend\ncstype bezier\n" +
+            "surf 0 1 0 1 1 2 3 4\ntrim 0 " + std::to_string(corners) + " 1\nend\n";
+    const taut::NurbsCurve curve = part("a.obj", text).faces()[0].loops[0].curves[0];
+    long double area = 0;
+    for (std::size_t i = 1; i + 2 < curve.points.size(); ++i) {
+      const taut::dvec3 o(curve.points[0]), p(curve.points[i]), q(curve.points[i + 1]);
+      const long double px = p.x - static_cast<long double>(o.x),
+                        py = p.y - static_cast<long double>(o.y);
+      const long double qx = q.x - static_cast<long double>(o.x),
+                        qy = q.y - static_cast<long double>(o.y);
+      area += px * qy - py * qx;
+    }
+    EXPECT_GT(area, 0) << text;
+  }
 }
 
 TEST_F(ReadModel, ObjTrimCurvesOverTheirRange) {
