@@ -42,6 +42,7 @@ const std::vector<Home> homes = {
     {"OpenMesh", std::regex("OpenMesh/.*"), {"toolkit/hull/", "toolkit/io/"}},
     {"OSMesa", std::regex("(GL|EGL|GLES[0-9])/.*|.*osmesa.*"), {"toolkit/envelope/"}},
     {"Embree", std::regex("embree.*"), {"toolkit/containment/"}},
+    {"pugixml", std::regex("pug(ixml|iconfig)\\..*"), {"toolkit/io/"}},
     {"OpenCASCADE", std::regex(".*\\.hxx|opencascade/.*"), {"plugins/occt/"}},
 };
 
@@ -214,6 +215,7 @@ TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
       {"<OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>", "toolkit/hull"},
       {"<GL/osmesa.h>", "toolkit/envelope"},
       {"<embree3/rtcore.h>", "toolkit/containment"},
+      {"<pugixml.hpp>", "toolkit/io"},
       {"<STEPControl_Reader.hxx>", "plugins/occt"},
   };
   std::vector<std::string> folders = {"plugins/occt", "plugins/irit"};

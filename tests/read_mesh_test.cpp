@@ -185,6 +185,45 @@ TEST_F(ReadMesh, PlyBinaryTypes) {
   }
 }
 
+/// The sample in one of the three encodings, its coordinates as floats or doubles.
+template <class Number>
+std::string encoded_ply(const std::string& encoding, const std::string& number) {
+  std::string text = "ply\nformat " + encoding + " 1.0\nelement vertex 5\nproperty " + number +
+                     " x\nproperty " + number + " y\nproperty " + number +
+                     " z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  if (encoding == "ascii") return text + ascii_points + "4 0 1 2 3\n3 0 3 4\n";
+  Bytes bytes(encoding == "binary_big_endian");
+  for (const dvec3& p : points) {
+    for (int i = 0; i < 3; ++i) bytes << static_cast<Number>(p[i]);
+  }
+  for (const auto& polygon : polygons) {
+    bytes << static_cast<std::uint8_t>(polygon.size());
+    for (const int corner : polygon) bytes << std::int32_t{corner};
+  }
+  return text + bytes.str();
+}
+
+TEST_F(ReadMesh, PlyInEachEncodingAndPrecision) {
+  for (const std::string encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    expect_sample(read("a.ply", encoded_ply<double>(encoding, "double")));
+  }
+  // What the file's text says in full; floats where they are bytes. (1.8e308 is no float.)
+  expect_sample(read("a.ply", encoded_ply<float>("ascii", "float")));
+  const std::vector<dvec3> rounded = {{0.1F, 1.0F / 3, -1e22F}, {1e-38F, 3e38F, 16777217.0F}};
+  for (const bool big : {false, true}) {
+    Bytes bytes(big);
+    for (const dvec3& p : rounded) {
+      for (int i = 0; i < 3; ++i) bytes << static_cast<float>(p[i]);
+    }
+    const std::string text =
+        std::string("ply\nformat binary_") + (big ? "big" : "little") +
+        "_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "end_header\n" +
+        bytes.str();
+    EXPECT_EQ(read("a.ply", text).points, rounded);
+  }
+}
+
 TEST_F(ReadMesh, PlyFacesMayComeFirst) {
   expect_sample(read("a.ply", "ply\nformat ascii 1.0\n" + ply_faces + ply_vertices +
                                   "end_header\n4 0 1 2 3\n3 0 3 4\n" + ascii_points));
@@ -417,9 +456,16 @@ const std::string ascii_stl =
     "vertex 0 1 -0\nendloop\nendfacet\n  FACET NORMAL 0 0 1\n  OUTER LOOP\n  VERTEX 0 1 0\n"
     "  VERTEX 1.0 0 5e-1\n  VERTEX 1 1 0.25\n  ENDLOOP\n  ENDFACET\nendsolid my part\n";
 
+std::string with_carriage_returns(std::string text) {
+  for (std::size_t i = 0; (i = text.find('\n', i)) != text.npos; i += 2) text.insert(i, 1, '\r');
+  return text;
+}
+
 TEST_F(ReadMesh, Stl) {
   for (const std::string& text :
-       {binary_stl("part"), binary_stl("solid part"), ascii_stl, "\n " + ascii_stl}) {
+       {binary_stl("part"), binary_stl("solid part"), binary_stl("solid part") + "more", ascii_stl,
+        "\n " + ascii_stl, "\xEF\xBB\xBF" + ascii_stl, "SOLID" + ascii_stl.substr(5),
+        with_carriage_returns(ascii_stl)}) {
     const PolygonMesh mesh = read("a.stl", text);
     EXPECT_EQ(mesh.points, stl_points);
     EXPECT_EQ(mesh.polygons, stl_triangles);
@@ -450,6 +496,10 @@ TEST_F(ReadMesh, StlMalformed) {
   EXPECT_EQ(message<InvalidInput>(
                 "a.stl", std::string(80, ' ') + (Bytes() << std::uint32_t{4294967295U}).str()),
             ":byte 80: 4294967295 triangles announced, more than the remaining 0 bytes can hold");
+  // "solid" alone does not make it text.
+  const std::string solid = binary_stl("solid part");
+  EXPECT_EQ(message<InvalidInput>("a.stl", solid.substr(0, solid.size() - 1)),
+            ":byte 80: 2 triangles announced, more than the remaining 99 bytes can hold");
   std::string nan = good;
   nan.replace(84 + 12 + 4, 4, (Bytes() << std::numeric_limits<float>::quiet_NaN()).str());
   EXPECT_EQ(message<InvalidInput>("a.stl", nan),
@@ -457,6 +507,17 @@ TEST_F(ReadMesh, StlMalformed) {
 }
 
 // ---------------------------------------------------------------- any
+
+TEST_F(ReadMesh, FromMemory) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(taut::read_mesh(obj, "standard input", ".obj").polygons, (Polygons{{0, 1, 2}}));
+  EXPECT_EQ(taut::read_mesh(binary_stl("part"), "-", ".stl").points, stl_points);
+  expect_sample(taut::read_mesh(binary_ply(true), "-", ".ply"));
+  EXPECT_EQ(message_of<IoError>([&] { taut::read_mesh("v 0 0\n", "standard input", ".obj"); }),
+            "standard input:1: v takes three coordinates");
+  EXPECT_EQ(message_of<IoError>([&] { taut::read_mesh(obj, "-", ".xyz"); }),
+            "-: no format of meshes has the extension \".xyz\"; known are .obj, .off, .ply, .stl");
+}
 
 TEST_F(ReadMesh, UnknownExtension) {
   EXPECT_EQ(message<IoError>("a.step", ""),

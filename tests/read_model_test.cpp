@@ -1,4 +1,4 @@
-// Readers of models: .bpt and the free-form statements of .obj.
+// Readers of models: .bpt, .obj, and the polygons of other formats as models.
 
 #include "taut/io/read_model.h"
 
@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "taut/io/formats.h"
+#include "taut/io/read_mesh.h"
+#include "taut/io/text_scanner.h"
 #include "temporary_folder.h"
 
 namespace {
@@ -208,12 +210,11 @@ TEST_F(ReadModel, FilesThatCannotBeRead) {
             path("none.bpt").string() + ": cannot be opened: No such file or directory");
   std::filesystem::create_directory(path("folder.bpt"));
   EXPECT_EQ(message(path("folder.bpt")), path("folder.bpt").string() + ": is a directory");
+  const std::string known = "; known are .bpt, .mlp, .obj, .off, .ply, .stl, .xyz";
   EXPECT_EQ(message(file("a.step", "")),
-            path("a.step").string() +
-                ": no format of models has the extension \".step\"; known are .bpt, .obj");
-  EXPECT_EQ(
-      message(file("a", "")),
-      path("a").string() + ": no format of models has the extension \"\"; known are .bpt, .obj");
+            path("a.step").string() + ": no format of models has the extension \".step\"" + known);
+  EXPECT_EQ(message(file("a", "")),
+            path("a").string() + ": no format of models has the extension \"\"" + known);
   EXPECT_TRUE(model.parts().empty());
 }
 
@@ -228,6 +229,10 @@ TEST_F(ReadModel, ExtensionInAnyCase) {
   EXPECT_EQ(part("A.BPT", "1 1 1 0 0 0 1 0 0 0 1 0 1 1 0").faces().size(), 1U);
   EXPECT_EQ(taut::extension("folder.x/A.Ply"), ".ply");
   EXPECT_EQ(taut::extension("folder.x/a"), "");
+  EXPECT_EQ(taut::extension("folder.x/a.b.JSON"), ".json");
+  EXPECT_EQ(taut::extension("a.b.Taut.json"), ".taut.json");
+  EXPECT_EQ(taut::extension("a.taut.cbor"), ".taut.cbor");
+  EXPECT_EQ(taut::extension("a.hull.json"), ".hull.json");
 }
 
 TEST_F(ReadModel, AddsOnePartPerFile) {
@@ -469,20 +474,15 @@ TEST_F(ReadModel, ObjPassesOverWhatIsNoGeometry) {
 
 TEST_F(ReadModel, ObjWarnsOfWhatIsLeftOut) {
   collect_warnings();
-  const Part part = this->part(
-      "a.obj", vertices(4) +
-                   "vp 0 0\nvp 1 0\nvp 0 1\nf 1 2 3\nf 2 3 4\nwhat 1\nl 1 2\nwhat 2\n"
-                   "cstype bezier\ndeg 1 1\ncurv2 -3 -2\nparm u 0 1\nend\ncurv2 1 3\nend\n"
-                   "surf 0 1 0 1 1 2 3 4\nsp 1\nend\n");
+  const Part part = this->part("a.obj", vertices(4) +
+                                            "what 1\nwhat 2\ncstype bezier\ndeg 1 1\ncdc 1\n"
+                                            "surf 0 1 0 1 1 2 3 4\nscrv 0 1 1\nsp 1\nsp 1\nend\n");
   EXPECT_EQ(part.faces().size(), 1U);
   EXPECT_EQ(part.edges().size(), 4U);  // the surface's borders
-  EXPECT_EQ(warnings_,
-            (std::vector<std::string>{"unknown-statement", "unknown-statement", "parameter-curve",
-                                      "special-geometry", "polygons-left-out"}));
-  ASSERT_EQ(warning_texts_.size(), 5U);
-  const std::string name = path("a.obj").string();
-  EXPECT_EQ(warning_texts_[0], name + ":10: \"what\": is not known and left out");
-  EXPECT_NE(warning_texts_[4].find("2 polygons"), std::string::npos);
+  EXPECT_EQ(warnings_, (std::vector<std::string>{"unknown-statement", "unknown-statement",
+                                                 "special-geometry", "special-geometry"}));
+  ASSERT_EQ(warning_texts_.size(), 4U);
+  EXPECT_EQ(warning_texts_[0], path("a.obj").string() + ":5: \"what\": is not known and left out");
 }
 
 TEST_F(ReadModel, ObjWarnsOfFewKindsOnly) {
@@ -498,10 +498,6 @@ TEST_F(ReadModel, ObjThatIsNotItsFormat) {
   const std::string type = v4 + "cstype bezier\ndeg 1 1\n";
   const std::string spline = v4 + "cstype bspline\ndeg 1 1\n";
   for (const auto& [text, expected] : std::vector<Malformed>{
-           {"", ": holds no free-form curves or surfaces"},
-           {v4 + "f 1 2 3\n",
-            ": holds no free-form curves or surfaces, only 1 polygons, which are not supported as "
-            "part of a model yet"},
            {"v 1 2\n", ":1: v takes three coordinates"},
            {"v 1 2 zwei\n", ":1: a coordinate expected, found \"zwei\""},
            {"cstype\n", ":1: cstype takes a type, perhaps after the word rat"},
@@ -565,10 +561,6 @@ TEST_F(ReadModel, ObjThatIsNoGeometry) {
            {type + "surf 0 1 0 1 5 2 3 4\nend\n", ":7: vertex 5 is referred to, but there are 4"},
            {type + "surf 0 1 0 1 9223372036854775807 2 3 4\nend\n",
             ":7: vertex 9223372036854775807 is referred to, but there are 4"},
-           {type + "surf 0 1 0 1 1 2 3 4\ntrim 0 1 1\nend\n",
-            ":8: trimmed surfaces are not supported yet"},
-           {type + "surf 0 1 0 1 1 2 3 4\nhole 0 1 1\nend\n",
-            ":8: trimmed surfaces are not supported yet"},
            {type + "surf 1 1 0 1 1 2 3 4\nend\n",
             ":7: the range of parameters is empty: \"1\" to \"1\""},
            {type + "surf nan 1 0 1 1 2 3 4\nend\n", ":7: a parameter is not finite: \"nan\""},
@@ -583,8 +575,8 @@ TEST_F(ReadModel, ObjThatIsNoGeometry) {
            {"v 0 0 0 0\nv 1 0 0 -1\ncstype rat bezier\ndeg 1\ncurv 0 1 1 2\nend\n",
             ":1: the weight of vertex 1 is not positive, and the rational element of line 5 uses "
             "it"},
-           {"vp 0 0\ncurv2 1 2\nend\n",
-            ":2: parameter point \"2\" is referred to, but 1 came before"}}) {
+           {"vp 0 0\ncstype bezier\ndeg 1\ncurv2 1 2\nend\n",
+            ":4: parameter point 2 is referred to, but 1 came before"}}) {
     EXPECT_EQ(message<InvalidInput>("a.obj", text), expected) << text;
   }
   const std::string what =
@@ -599,6 +591,374 @@ TEST_F(ReadModel, ObjWhosePiecesWouldFillMemory) {
   text += "\nparm u" + numbers(0, 331) + "\nparm v" + numbers(0, 331) + "\nend\n";
   EXPECT_EQ(message<taut::LimitExceeded>("a.obj", text),
             ":4: the Bezier pieces of this file have more than 67108864 control points");
+}
+
+TEST_F(ReadModel, ObjPolygonsPointsAndPolylines) {
+  collect_warnings();
+  // Vertices 1, 4 and 9 are used by nothing; 8 by a point only.
+  const Part part = this->part("a.obj",
+                               "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 9 9 9\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
+                               "v 2 0 0\nv 9 9 9\nf 2/1 3//2 5 6\nf 2 2 2\nfo 2 3 -3\n"
+                               "g wire\nl 3 7/1 6\ng\nl -3 2\np 8 2\np 2\n");
+  EXPECT_EQ(part.point_count(), 6);
+  const std::vector<taut::dvec3> expected = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0},
+                                             {0, 1, 0}, {0, 0, 1}, {2, 0, 0}};
+  EXPECT_EQ(std::vector(part.vertices().begin(), part.vertices().begin() + 6), expected);
+  EXPECT_EQ(part.polygons(), (std::vector<std::vector<int>>{{0, 1, 2, 3}, {0, 0, 0}, {0, 1, 4}}));
+  EXPECT_EQ(part.control_box().upper, taut::dvec3(2, 1, 1));
+  ASSERT_EQ(part.edges().size(), 2U);
+  EXPECT_EQ(part.edges()[0].name, "wire");
+  EXPECT_EQ(part.edges()[0].piece_count, 2);
+  EXPECT_EQ(part.pieces()[1].t.upper, 2);
+  EXPECT_EQ(taut::point(part.pieces()[0].bezier, 0.5), taut::dvec3(0.5, 0, 0.5));
+  EXPECT_EQ(part.edges()[1].name, "curve 2");
+  EXPECT_EQ(part.edges()[1].piece_count, 1);
+  EXPECT_TRUE(part.faces().empty());
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(ReadModel, ObjPolygonsBesideSurfaces) {
+  const Part part = this->part(
+      "a.obj",
+      vertices(4) + "v 0 0 9\nf 1 2 5\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n");
+  EXPECT_EQ(part.faces().size(), 1U);
+  EXPECT_EQ(part.polygons().size(), 1U);
+  EXPECT_EQ(part.point_count(), 3);
+}
+
+TEST_F(ReadModel, ObjSubdivisionTagsAndSchemes) {
+  const std::string cage =
+      vertices(4) + "s off\nf 1 2 3 4\nt crease 2/1/0 0 1 1.5\nt corner 1/1/0\n";
+  const std::string said =
+      "subdivision cages are not evaluated yet: --scheme bilinear takes the polygons themselves";
+  EXPECT_EQ(message<IoError>("a.obj", cage), ":7: " + said);
+  const std::string off = "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2";
+  EXPECT_EQ(read("a.off", off).face_count(), 1);
+  for (const taut::Scheme scheme : {taut::Scheme::catmark, taut::Scheme::loop}) {
+    options_.scheme = scheme;
+    EXPECT_EQ(message<IoError>("a.obj", cage), ":6: " + said);
+    EXPECT_EQ(message<IoError>("a.off", off), ": " + said);
+    // What has no polygons has no cage.
+    EXPECT_EQ(read("a.obj", vertices(4) + "p 1 2\nt crease 1\n").vertex_count(), 2);
+    EXPECT_EQ(read("a.off", "OFF 1 0 0 1 2 3").vertex_count(), 1);
+    EXPECT_EQ(read("a.xyz", "1 2 3").vertex_count(), 1);
+  }
+  options_.scheme = taut::Scheme::bilinear;
+  EXPECT_EQ(part("a.obj", cage).polygons().size(), 1U);
+}
+
+TEST_F(ReadModel, ObjCageFromElsewhere) {
+  const char* folder = std::getenv("TAUT_MODELS");
+  if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS is not set";
+  const auto path = std::filesystem::path(folder) / "A15_osd_car_creases_boundary.obj";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  Model model;
+  EXPECT_NE(message_of<IoError>([&] { taut::read_model(path, model); }).find("--scheme bilinear"),
+            std::string::npos);
+  options_.scheme = taut::Scheme::bilinear;
+  taut::read_model(path, model, options_);
+  const std::size_t polygons = model.parts()[0].polygons().size();
+  EXPECT_GT(polygons, 100U);
+  EXPECT_EQ(polygons, taut::read_mesh(path).polygons.size());
+}
+
+/// The control points of a loop's curves, (w u, w v, w).
+std::vector<taut::dvec3> loop_points(const taut::TrimLoop& loop) {
+  std::vector<taut::dvec3> points;
+  for (const taut::NurbsCurve& curve : loop.curves) {
+    for (const taut::dvec4& p : curve.points) {
+      EXPECT_EQ(p.z, 0);
+      points.emplace_back(p.x, p.y, p.w);
+    }
+  }
+  return points;
+}
+
+const std::string trim_curves =
+    "vp 0.25 0.25\nvp 0.75 0.25 9\nvp 0.75 0.75\nvp .5 .5\nvp 0.5 0.625 2\nvp .625 .5\n"
+    "cstype bspline\ndeg 1\ncurv2 1 2 3\nparm u 0 0 1 2 2\nend\n"
+    "cstype bezier\ncurv2 -4 1\nend\n"
+    "cstype rat bezier\ndeg 2\ncurv2 4 5 6\nparm u 3 5\nend\ncstype bezier\ndeg 1 1\n"
+    "curv2 6 4\nparm u 0 1\nend\n";
+
+TEST_F(ReadModel, ObjTrimLoops) {
+  collect_warnings();
+  const Part part =
+      this->part("a.obj", vertices(4) + trim_curves +
+                              "surf 0 1 0 1 1 2 3 4\ntrim 0 2 1 0 1 2\nhole 3 5 3 0 1 -1\nend\n"
+                              "surf 0 1 0 1 1 2 3 4\nend\n");
+  EXPECT_TRUE(warnings_.empty());
+  ASSERT_EQ(part.faces().size(), 2U);
+  EXPECT_TRUE(part.faces()[1].loops.empty());
+  EXPECT_TRUE(part.edges().size() == 4U || part.edges().size() == 8U);  // no curv2 among them
+  const std::vector<taut::TrimLoop>& loops = part.faces()[0].loops;
+  ASSERT_EQ(loops.size(), 2U);
+  ASSERT_EQ(loops[0].curves.size(), 2U);
+  EXPECT_EQ(loops[0].curves[0].degree, 1);
+  EXPECT_EQ(loops[0].curves[0].knots, (std::vector<double>{0, 0, 1, 2, 2}));
+  EXPECT_EQ(
+      loop_points(loops[0]),
+      (std::vector<taut::dvec3>{
+          {0.25, 0.25, 1}, {0.75, 0.25, 1}, {0.75, 0.75, 1}, {0.75, 0.75, 1}, {0.25, 0.25, 1}}));
+  // A hole, clockwise as it is written.
+  EXPECT_EQ(loops[1].curves[0].knots, (std::vector<double>{3, 3, 3, 5, 5, 5}));
+  EXPECT_EQ(loop_points(loops[1]),
+            (std::vector<taut::dvec3>{
+                {0.5, 0.5, 1}, {1, 1.25, 2}, {0.625, 0.5, 1}, {0.625, 0.5, 1}, {0.5, 0.5, 1}}));
+}
+
+TEST_F(ReadModel, ObjTrimLoopsAreTurnedToTheirSense) {
+  const Part part =
+      this->part("a.obj", vertices(4) + trim_curves +
+                              "surf 0 1 0 1 1 2 3 4\nhole 0 2 1 0 1 2\ntrim 3 5 3 0 1 4\nend\n");
+  const std::vector<taut::TrimLoop>& loops = part.faces()[0].loops;
+  ASSERT_EQ(loops.size(), 2U);
+  ASSERT_EQ(loops[0].curves.size(), 2U);
+  EXPECT_EQ(
+      loop_points(loops[0]),
+      (std::vector<taut::dvec3>{
+          {0.25, 0.25, 1}, {0.75, 0.75, 1}, {0.75, 0.75, 1}, {0.75, 0.25, 1}, {0.25, 0.25, 1}}));
+  EXPECT_EQ(loops[0].curves[1].knots, (std::vector<double>{0, 0, 1, 2, 2}));
+  EXPECT_EQ(loop_points(loops[1]).front(), taut::dvec3(0.5, 0.5, 1));
+  EXPECT_EQ(loop_points(loops[1])[3], taut::dvec3(1, 1.25, 2));
+  EXPECT_EQ(loops[1].curves[1].knots, (std::vector<double>{3, 3, 3, 5, 5, 5}));
+}
+
+/// The point of a curve in parameter space.
+taut::dvec3 curve_point(const taut::NurbsCurve& curve, double t) {
+  for (const taut::CurvePiece& piece : taut::decompose(curve)) {
+    if (piece.t.lower <= t && t <= piece.t.upper) {
+      return taut::point(piece.bezier, (t - piece.t.lower) / (piece.t.upper - piece.t.lower));
+    }
+  }
+  ADD_FAILURE() << "no piece covers " << t;
+  return {};
+}
+
+TEST_F(ReadModel, ObjTrimLoopTurnedIsTheSameCurve) {
+  // A closed B-spline on knots that are not clamped, once as the outer loop, once as a hole.
+  const Part part = this->part(
+      "a.obj", vertices(4) +
+                   "vp .2 .2\nvp .8 .3 2\nvp .7 .8\nvp .3 .7 .5\ncstype rat bspline\ndeg 3\n"
+                   "curv2 1 2 3 4 1 2 3\nparm u -3 -2 -1 0 1 2.5 3 4 5 6.5 7\nend\n"
+                   "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\ntrim 0 4 1\nhole 0 4 1\nend\n");
+  const taut::NurbsCurve& outer = part.faces()[0].loops[0].curves[0];
+  const taut::NurbsCurve& hole = part.faces()[0].loops[1].curves[0];
+  EXPECT_EQ(outer.knots, (std::vector<double>{-3, -2, -1, 0, 1, 2.5, 3, 4, 5, 6.5, 7}));
+  EXPECT_EQ(hole.domain().lower, 0);
+  EXPECT_EQ(hole.domain().upper, 4);
+  for (int i = 0; i <= 32; ++i) {
+    const double t = i / 8.0;
+    EXPECT_LT(glm::length(curve_point(outer, t) - curve_point(hole, 4 - t)), 1e-15) << t;
+  }
+}
+
+TEST_F(ReadModel, ObjTrimSenseAtAllSizesAndAngles) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution(a, b)(random);
+  };
+  for (int k = 0; k < 300; ++k) {
+    // A thin star about a far point, in either sense.
+    const double size = std::pow(10, uniform(-150, 150));
+    const double far = uniform(0, 100), thin = std::pow(10, uniform(-6, 0));
+    const double angle = uniform(0, 7);
+    const int corners = 3 + k % 6;
+    const int sense = random() % 2 == 0 ? 1 : -1;
+    std::string text = vertices(4);
+    for (int i = 0; i < corners; ++i) {
+      const double a = sense * 6.283185307179586 * (i + uniform(0, 0.4)) / corners;
+      const double r = uniform(0.5, 1), x = r * std::cos(a), y = thin * r * std::sin(a);
+      text += "vp " + taut::shortest(size * (far + x * std::cos(angle) - y * std::sin(angle))) +
+              " " + taut::shortest(size * (x * std::sin(angle) + y * std::cos(angle))) + "\n";
+    }
+    text += "cstype bspline\ndeg 1 1\ncurv2" + numbers(1, corners) + " 1\nparm u 0" +
+            numbers(0, corners) + " " + std::to_string(corners) + "\nend\ncstype bezier\n" +
+            "surf 0 1 0 1 1 2 3 4\ntrim 0 " + std::to_string(corners) + " 1\nend\n";
+    const taut::NurbsCurve curve = part("a.obj", text).faces()[0].loops[0].curves[0];
+    long double area = 0;
+    for (std::size_t i = 1; i + 2 < curve.points.size(); ++i) {
+      const taut::dvec3 o(curve.points[0]), p(curve.points[i]), q(curve.points[i + 1]);
+      const long double px = p.x - static_cast<long double>(o.x),
+                        py = p.y - static_cast<long double>(o.y);
+      const long double qx = q.x - static_cast<long double>(o.x),
+                        qy = q.y - static_cast<long double>(o.y);
+      area += px * qy - py * qx;
+    }
+    EXPECT_GT(area, 0) << text;
+  }
+}
+
+TEST_F(ReadModel, ObjTrimCurvesOverTheirRange) {
+  const Part part = this->part(
+      "a.obj", vertices(4) + trim_curves + "surf 0 1 0 1 1 2 3 4\ntrim 0.5 1.25 1 0.5 1 2\nend\n");
+  const taut::NurbsCurve& curve = part.faces()[0].loops[0].curves[0];
+  EXPECT_EQ(curve.domain().lower, 0.5);
+  EXPECT_EQ(curve.domain().upper, 1.25);
+  EXPECT_EQ(loop_points(part.faces()[0].loops[0]), (std::vector<taut::dvec3>{{0.5, 0.25, 1},
+                                                                             {0.75, 0.25, 1},
+                                                                             {0.75, 0.25, 1},
+                                                                             {0.75, 0.375, 1},
+                                                                             {0.5, 0.5, 1},
+                                                                             {0.25, 0.25, 1}}));
+}
+
+TEST_F(ReadModel, ObjTrimThatIsNotItsFormat) {
+  // The curves end on line 30.
+  const std::string surf = vertices(4) + trim_curves + "surf 0 1 0 1 1 2 3 4\n";
+  const auto line = std::to_string(std::count(surf.begin(), surf.end(), '\n') + 1);
+  for (const auto& [text, expected] : std::vector<Malformed>{
+           {surf + "trim\nend\n", ": trim takes a range and a curv2, once or several times"},
+           {surf + "hole 0 1\nend\n", ": hole takes a range and a curv2, once or several times"},
+           {surf + "trim 0 1 1 0\nend\n",
+            ": trim takes a range and a curv2, once or several times"},
+           {surf + "trim 0 1 one\nend\n", ": a curv2 expected, found \"one\""},
+           {surf + "trim zero 1 1\nend\n", ": a parameter expected, found \"zero\""}}) {
+    EXPECT_EQ(message<IoError>("a.obj", text), ":" + line + expected);
+  }
+  for (const auto& [text, expected] : std::vector<Malformed>{
+           {surf + "trim 0 1 5\nend\n", ": curv2 5 is referred to, but 4 came before"},
+           {surf + "trim 0 1 -5\nend\n", ": curv2 -5 is referred to, but 4 came before"},
+           {surf + "trim 1 0 1\nend\n", ": the range of parameters is empty: \"1\" to \"0\""},
+           {surf + "trim 0 nan 1\nend\n", ": a parameter is not finite: \"nan\""},
+           {surf + "trim 0 3 1\nend\n",
+            ": the range of parameters, 0 to 3, exceeds that of parm, 0 to 2"}}) {
+    EXPECT_EQ(message<InvalidInput>("a.obj", text), ":" + line + expected);
+  }
+  const std::string type = "cstype rat bezier\ndeg 1 1\n";
+  for (const auto& [text, expected] : std::vector<Malformed>{
+           {"vp\n", ":1: vp takes a parameter or more"},
+           {"vp 1 b\n", ":1: a parameter expected, found \"b\""},
+           {"vp 0 0\nvp 1 0\ncurv2 1 2\nend\n", ":3: curv2 stands before any cstype"},
+           {"vp 0 0\nvp 1 0\ncstype bezier\ncurv2 1 2\nend\n", ":4: curv2 stands before any deg"},
+           {vertices(4) + "cstype bezier\ndeg 1 1\ncurv 0 1 1 2\ntrim 0 1 1\nend\n",
+            ":8: a curve has no trim"},
+           {vertices(4) + "vp 0 0\nvp 1 0\n" + type +
+                "curv2 1 2 1\nend\nsurf 0 1 0 1 1 2 3 4\ntrim 0 1 1\nend\n",
+            ":9: 3 vertices where degree and parm ask for 2"}}) {
+    EXPECT_EQ(message<IoError>("a.obj", text), expected);
+  }
+  for (const auto& [text, expected] : std::vector<Malformed>{
+           {"vp 0 inf\n", ":1: a parameter is not finite: \"inf\""},
+           {"vp 0 0 nan\n", ":1: a weight is not finite: \"nan\""},
+           {"v 0 0 0\nv 1 0 0\nvp 0 0 -1\nvp 1 0\n" + type +
+                "curv2 1 2\nend\nsurf 0 1 0 1 1 2 1 2\ntrim 0 1 1\nend\n",
+            ":3: the weight of parameter point 1 is not positive, and the rational element of line "
+            "7 uses it"}}) {
+    EXPECT_EQ(message<InvalidInput>("a.obj", text), expected);
+  }
+}
+
+TEST_F(ReadModel, ObjTrimThatWouldFillMemory) {
+  // A thousand points, referred to a hundred thousand times.
+  std::string text = vertices(4) + "vp 0 0\ncstype bspline\ndeg 1 1\ncurv2";
+  for (int i = 0; i < 1000; ++i) text += " 1";
+  text += "\nparm u 0" + numbers(0, 999) + " 999\nend\ncstype bezier\nsurf 0 1 0 1 1 2 3 4\ntrim";
+  for (int i = 0; i < 100000; ++i) text += " 0 999 1";
+  EXPECT_EQ(message<taut::LimitExceeded>("a.obj", text + "\nend\n"),
+            ":13: the Bezier pieces of this file have more than 67108864 control points");
+}
+
+TEST_F(ReadModel, ObjOtherElementsMalformed) {
+  EXPECT_EQ(message<IoError>("a.obj", "v 0 0 0\np\n"), ":2: p takes a vertex or more");
+  EXPECT_EQ(message<IoError>("a.obj", "v 0 0 0\np a\n"), ":2: a vertex expected, found \"a\"");
+  for (const auto& [text, expected] : std::vector<Malformed>{
+           {"", ": holds no geometry"},
+           {"v 0 0 0\n", ": holds no geometry, only vertices that nothing uses"},
+           {"v 0 0 0\np 2\n", ":2: vertex 2 is referred to, but there are 1"},
+           {"v 0 0 0\np 4294967297\n", ":2: vertex 4294967297 is referred to, but there are 1"},
+           {"v 0 0 0\np 0\n", ":2: vertex 0 is referred to, but 1 came before"},
+           {"v 0 0 0\nl 1 2\n", ":2: vertex 2 is referred to, but there are 1"},
+           {"v 0 0 0\nl 1\n", ":2: a line has fewer than two vertices"},
+           {"v 0 0 0\nf 1 1\n", ":2: a face has fewer than three vertices"},
+           {"v 0 0 0\nf 1 1 2\n", ":2: vertex 2 is referred to, but there are 1"},
+           {"v 1e308 0 0\nv -1e308 0 0\nf 1 1 2\n", ": point 0: the extent overflows"}}) {
+    EXPECT_EQ(message<InvalidInput>("a.obj", text), expected) << text;
+  }
+}
+
+// ---------------------------------------------------------------- polygons
+
+/// A square and a triangle with a point that neither uses.
+const std::string off_sample =
+    "OFF\n6 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n5 5 5\n4 0 1 2 3\n3 0 1 4\n";
+const std::string ply_sample =
+    "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n5 5 5\n4 0 1 2 3\n3 0 1 4\n";
+
+TEST_F(ReadModel, PolygonsOfOffAndPly) {
+  for (const auto& [name, text] :
+       {std::pair{"a.off", off_sample}, std::pair{"a.ply", ply_sample}}) {
+    const Part part = this->part(name, text);
+    EXPECT_EQ(part.name, name);
+    EXPECT_EQ(part.polygons(), (std::vector<std::vector<int>>{{0, 1, 2, 3}, {0, 1, 4}}));
+    EXPECT_EQ(part.vertices().size(), 6U);
+    EXPECT_EQ(part.vertices()[5], taut::dvec3(5));
+    EXPECT_EQ(part.point_count(), 6);
+    EXPECT_TRUE(part.polyhedral());
+  }
+}
+
+TEST_F(ReadModel, PolygonsOfStl) {
+  const Part part = this->part("a.stl",
+                               "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                               "vertex 0 1 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\n"
+                               "vertex 0 1 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+                               "endsolid\n");
+  EXPECT_EQ(part.polygons(), (std::vector<std::vector<int>>{{0, 1, 2}, {2, 1, 2}}));
+  EXPECT_EQ(part.vertices().size(), 3U);
+}
+
+TEST_F(ReadModel, PointsWithoutPolygons) {
+  for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+           {"a.off", "OFF 2 0 0 1 2 3 4 5 6"},
+           {"a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
+            "property double z\nend_header\n1 2 3\n4 5 6\n"},
+           {"a.obj", "v 1 2 3\nv 4 5 6\np 1 2\n"},
+           {"a.xyz", "1 2 3\n4 5 6\n"}}) {
+    const Part part = this->part(name, text);
+    EXPECT_EQ(part.vertices(), (std::vector<taut::dvec3>{{1, 2, 3}, {4, 5, 6}})) << name;
+    EXPECT_TRUE(part.polygons().empty()) << name;
+  }
+}
+
+TEST_F(ReadModel, FilesWithoutPoints) {
+  for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+           {"a.off", "OFF 0 0 0"},
+           {"a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 0\nproperty double x\nproperty double y\n"
+            "property double z\nend_header\n"},
+           {"a.obj", "# nothing\n"},
+           {"a.stl", "solid\nendsolid\n"},
+           {"a.stl", std::string(84, '\0')},
+           {"a.xyz", "# nothing\n"},
+           {"b.xyz", "0\n"}}) {
+    EXPECT_EQ(message<InvalidInput>(name, text), ": holds no geometry") << name;
+  }
+}
+
+TEST_F(ReadModel, FromMemory) {
+  for (const auto& [format, text] :
+       {std::pair{".off", off_sample}, std::pair{".ply", ply_sample},
+        std::pair{".obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")},
+        std::pair{".bpt", std::string("1 1 1 0 0 0 1 0 0 0 1 0 1 1 0")},
+        std::pair{".xyz", std::string("0 0 0\n")}}) {
+    Model model;
+    taut::read_model(text, "standard input", format, model);
+    ASSERT_EQ(model.parts().size(), 1U);
+    EXPECT_EQ(model.parts()[0].name, "standard input");
+    EXPECT_FALSE(model.empty());
+  }
+  Model model;
+  EXPECT_EQ(
+      message_of<IoError>([&] { taut::read_model("x 1 1", "standard input", ".off", model); }),
+      "standard input:1: the number of vertices expected, found \"x\"");
+  EXPECT_TRUE(message_of<IoError>([&] {
+                taut::read_model("", "standard input", ".step", model);
+              }).starts_with("standard input: no format of models has the extension \".step\""));
+  EXPECT_TRUE(model.parts().empty());
 }
 
 // ---------------------------------------------------------------- anything
@@ -619,10 +979,14 @@ TEST_F(ReadModel, DamagedFiles) {
   const std::string obj = vertices(12) +
                           "cstype rat bspline\ndeg 2 2\nsurf 0 1 0.25 2 -12 -11 -10 -9 -8 -7 \\\n"
                           "-6/1 -5//2 -4 -3 -2 -1\nparm u 0 0 0 1 1 1\nparm v 0 0 0 1 2 2 2\nend\n"
-                          "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nend\n";
+                          "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nend\nf 1 2 3\nl 1 2\np 1\n"
+                          "vp 0 0\nvp 1 0 2\nvp 1 1\ndeg 2 1\ncurv2 1 2 3\nparm u 0 1\nend\n"
+                          "surf 0 1 0 1 1 2 3 4 5 6\ntrim 0 1 1 0.5 1 1\nhole 0 1 1\nend\n";
   std::mt19937 random(2);
   const std::string bytes = std::string("0123456789-+.eE/\\#\n\r \tnainf") + '\0' + '\xff';
-  for (const auto& [name, text] : {std::pair{"a.bpt", bpt}, std::pair{"a.obj", obj}}) {
+  for (const auto& [name, text] :
+       {std::pair{"a.bpt", bpt}, std::pair{"a.obj", obj}, std::pair{"a.off", off_sample},
+        std::pair{"a.ply", ply_sample}, std::pair{"a.xyz", std::string("2\n1 2 3\n-4,5e1,6\n")}}) {
     for (std::size_t length = 0; length < text.size(); ++length) {
       expect_read_or_refused(file(name, text.substr(0, length)));
     }

@@ -5,21 +5,26 @@ namespace taut {
 const std::vector<Format>& formats() {
   static const std::vector<Format> all = {
       {".bpt", "Bezier patches", true, false, false},
-      {".obj", "Wavefront OBJ: free-form surfaces and curves, polygons", true, true, true},
-      {".off", "Object File Format polygons", false, true, true},
-      {".ply", "Polygon File Format, ascii and binary", false, true, true},
-      {".stl", "STL triangles, ascii and binary", false, true, true},
+      {".mlp", "MeshLab project: layers under matrices", true, false, false},
+      {".obj", "Wavefront OBJ: free-form surfaces and curves, polygons, points", true, true, true},
+      {".off", "Object File Format polygons", true, true, true},
+      {".ply", "Polygon File Format, ascii and binary", true, true, true},
+      {".stl", "STL triangles, ascii and binary", true, true, true},
+      {".xyz", "Points as text, one a line", true, false, false},
   };
   return all;
 }
 
 std::string extension(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
+  std::string name = path.filename().string();
   // By hand, since std::tolower follows the locale.
-  for (char& c : text) {
+  for (char& c : name) {
     if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  return text;
+  for (const std::string double_extension : {".taut.json", ".taut.cbor", ".hull.json"}) {
+    if (name.ends_with(double_extension)) return double_extension;
+  }
+  return std::filesystem::path(name).extension().string();
 }
 
 }  // namespace taut

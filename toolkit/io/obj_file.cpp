@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "taut/core/tolerances.h"
+#include "taut/io/obj_reference.h"
 
 namespace taut {
 namespace {
@@ -33,15 +34,19 @@ class Parser {
  private:
   void dispatch(const Statement& s);
   void read_vertex(const Statement& s);
-  void count_parameter_point(const Statement&);
-  void count_polygon(const Statement&);
+  void read_parameter_point(const Statement& s);
+  void read_polygon(const Statement& s);
+  void read_points(const Statement& s);
+  void read_polyline(const Statement& s);
+  void read_tag(const Statement& s);
   void read_name(const Statement& s);
   void read_type(const Statement& s);
   void read_degree(const Statement& s);
   void begin_element(const Statement& s);
   void begin_parameter_curve(const Statement& s);
+  void begin_body(const Statement& s);
   void read_parameters(const Statement& s);
-  void refuse_trim(const Statement& s);
+  void read_loop(const Statement& s);
   void pass_special_geometry(const Statement& s);
   void end_element(const Statement& s);
 
@@ -54,7 +59,7 @@ class Parser {
   const Progress& progress_;
   std::size_t bytes_;
   ObjFile file_;
-  std::size_t parameter_points_ = 0;
+  ObjReferences references_;
 
   // The state that elements stand in.
   std::string name_;
@@ -63,7 +68,7 @@ class Parser {
   int degree_u_ = 0;
   int degree_v_ = 0;
 
-  // The element between its statement and `end`; of a curve in parameter space nothing is kept.
+  // The element between its statement and `end`.
   std::string body_;
   ObjElement element_;
 
@@ -83,15 +88,19 @@ ObjFile Parser::parse() {
   if (!body_.empty()) {
     scanner_.fail(element_.line, "the " + body_ + " that begins here has no end");
   }
+  references_.check(scanner_, file_.vertices.size());
   return std::move(file_);
 }
 
 void Parser::dispatch(const Statement& s) {
   static const std::map<std::string_view, void (Parser::*)(const Statement&)> readers = {
       {"v", &Parser::read_vertex},
-      {"vp", &Parser::count_parameter_point},
-      {"f", &Parser::count_polygon},
-      {"fo", &Parser::count_polygon},
+      {"vp", &Parser::read_parameter_point},
+      {"f", &Parser::read_polygon},
+      {"fo", &Parser::read_polygon},
+      {"p", &Parser::read_points},
+      {"l", &Parser::read_polyline},
+      {"t", &Parser::read_tag},
       {"g", &Parser::read_name},
       {"o", &Parser::read_name},
       {"cstype", &Parser::read_type},
@@ -100,8 +109,8 @@ void Parser::dispatch(const Statement& s) {
       {"surf", &Parser::begin_element},
       {"curv2", &Parser::begin_parameter_curve},
       {"parm", &Parser::read_parameters},
-      {"trim", &Parser::refuse_trim},
-      {"hole", &Parser::refuse_trim},
+      {"trim", &Parser::read_loop},
+      {"hole", &Parser::read_loop},
       {"scrv", &Parser::pass_special_geometry},
       {"sp", &Parser::pass_special_geometry},
       {"end", &Parser::end_element},
@@ -114,12 +123,64 @@ void Parser::dispatch(const Statement& s) {
   }
 }
 
-void Parser::count_parameter_point(const Statement&) { ++parameter_points_; }
-void Parser::count_polygon(const Statement&) { ++file_.polygons; }
+void Parser::read_parameter_point(const Statement& s) {
+  if (s.size() < 2) scanner_.fail(s[0].line, "vp takes a parameter or more");
+  ObjVertex point;
+  point.point = {scanner_.number(s[1], "a parameter"),
+                 s.size() > 2 ? scanner_.number(s[2], "a parameter") : 0, 0};
+  if (s.size() > 3) point.weight = scanner_.number(s[3], "a weight");
+  point.line = s[0].line;
+  file_.parameter_points.push_back(point);
+}
 
-void Parser::refuse_trim(const Statement& s) {
+void Parser::read_polygon(const Statement& s) {
+  if (file_.polygons.empty()) file_.polygon_line = s[0].line;
+  add_obj_polygon(scanner_, s, file_.vertices.size(), references_, file_.polygons);
+}
+
+void Parser::read_points(const Statement& s) {
+  if (s.size() < 2) scanner_.fail(s[0].line, "p takes a vertex or more");
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    file_.points.push_back(references_.add(scanner_, s[i], file_.vertices.size()));
+  }
+}
+
+void Parser::read_polyline(const Statement& s) {
+  if (s.size() < 3) scanner_.refuse(s[0].line, "a line has fewer than two vertices");
+  ObjElement line;
+  line.line = line.parameters_line_u = s[0].line;
+  line.spline = true;
+  line.degree_u = 1;
+  line.name = name_;
+  line.parameters_u.push_back(0);
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    line.vertices.push_back(obj_index(scanner_, s[i], file_.vertices.size()));
+    line.parameters_u.push_back(static_cast<double>(i - 1));
+  }
+  line.u = {0, line.parameters_u.back()};
+  line.parameters_u.push_back(line.u.upper);
+  file_.elements.push_back(std::move(line));
+}
+
+void Parser::read_tag(const Statement& s) {
+  if (file_.tag_line == 0) file_.tag_line = s[0].line;
+}
+
+void Parser::read_loop(const Statement& s) {
   require_body(s);
-  scanner_.refuse(s[0].line, "trimmed surfaces are not supported yet");
+  const std::string keyword(s[0].text);
+  if (body_ != "surf") scanner_.fail(s[0].line, "a curve has no " + keyword);
+  if (s.size() < 4 || (s.size() - 1) % 3 != 0) {
+    scanner_.fail(s[0].line, keyword + " takes a range and a curv2, once or several times");
+  }
+  ObjLoop& loop = element_.loops.emplace_back();
+  loop.hole = keyword == "hole";
+  loop.line = s[0].line;
+  for (std::size_t i = 1; i < s.size(); i += 3) {
+    const Interval range = read_range(s, i);
+    loop.curves.push_back(
+        {earlier_obj_index(scanner_, s[i + 2], file_.parameter_curves.size(), "a curv2"), range});
+  }
 }
 
 void Parser::pass_special_geometry(const Statement& s) {
@@ -175,14 +236,24 @@ void Parser::read_degree(const Statement& s) {
   degree_v_ = degrees[1];
 }
 
-void Parser::begin_element(const Statement& s) {
+/// What the statements that a body may follow have in common.
+void Parser::begin_body(const Statement& s) {
   require_no_body(s);
   body_ = s[0].text;
-  element_ = {};
-  element_.line = s[0].line;
-  element_.surface = body_ == "surf";
   if (type_.empty()) scanner_.fail(s[0].line, body_ + " stands before any cstype");
   if (degree_u_ == 0) scanner_.fail(s[0].line, body_ + " stands before any deg");
+  element_ = {};
+  element_.line = s[0].line;
+  element_.rational = rational_;
+  element_.spline = type_ == "bspline";
+  element_.degree_u = degree_u_;
+  element_.degree_v = degree_v_;
+  element_.name = name_;
+}
+
+void Parser::begin_element(const Statement& s) {
+  begin_body(s);
+  element_.surface = body_ == "surf";
   if (element_.surface && degree_v_ == 0) {
     scanner_.fail(s[0].line, "surf needs two degrees, the last deg gives one");
   }
@@ -191,34 +262,21 @@ void Parser::begin_element(const Statement& s) {
     scanner_.fail(s[0].line, element_.surface ? "surf takes s0 s1 t0 t1 and vertices"
                                               : "curv takes t0 t1 and vertices");
   }
-  element_.rational = rational_;
-  element_.spline = type_ == "bspline";
-  element_.degree_u = degree_u_;
-  element_.degree_v = degree_v_;
-  element_.name = name_;
   element_.u = read_range(s, 1);
   if (element_.surface) element_.v = read_range(s, 3);
   element_.vertices.reserve(s.size() - first_vertex);
   for (std::size_t i = first_vertex; i < s.size(); ++i) {
-    element_.vertices.push_back(obj_vertex_index(scanner_, s[i], file_.vertices.size()));
+    element_.vertices.push_back(obj_index(scanner_, s[i], file_.vertices.size()));
   }
 }
 
 void Parser::begin_parameter_curve(const Statement& s) {
-  require_no_body(s);
-  body_ = s[0].text;
-  element_ = {};
-  element_.line = s[0].line;
+  begin_body(s);
   if (s.size() < 3) scanner_.fail(s[0].line, "curv2 takes two parameter points or more");
   for (std::size_t i = 1; i < s.size(); ++i) {
-    const std::size_t index = obj_vertex_index(scanner_, s[i], parameter_points_);
-    if (index >= parameter_points_) {
-      scanner_.refuse(s[i].line, "parameter point " + in_quotes(s[i].text) +
-                                     " is referred to, but " + std::to_string(parameter_points_) +
-                                     " came before");
-    }
+    element_.vertices.push_back(
+        earlier_obj_index(scanner_, s[i], file_.parameter_points.size(), "a parameter point"));
   }
-  warn_once("parameter-curve", s[0], "curves in parameter space are left out");
 }
 
 void Parser::read_parameters(const Statement& s) {
@@ -244,7 +302,7 @@ void Parser::read_parameters(const Statement& s) {
 
 void Parser::end_element(const Statement& s) {
   require_body(s);
-  if (body_ != "curv2") file_.elements.push_back(std::move(element_));
+  (body_ == "curv2" ? file_.parameter_curves : file_.elements).push_back(std::move(element_));
   body_.clear();
 }
 
@@ -277,37 +335,10 @@ void Parser::warn_once(std::string_view code, const Word& keyword, const std::st
                               in_quotes(keyword.text) + ": " + what);
 }
 
-bool is_index_part(char c) { return ('0' <= c && c <= '9') || c == '-' || c == '/'; }
-
 }  // namespace
 
 ObjFile parse_obj(TextScanner& scanner, const Progress& progress) {
   return Parser(scanner, progress).parse();
-}
-
-std::size_t obj_vertex_index(const TextScanner& scanner, const Word& word, std::size_t count) {
-  const std::size_t slash = std::min(word.text.find('/'), word.text.size());
-  const std::string_view rest = word.text.substr(slash);
-  if (!std::all_of(rest.begin(), rest.end(), is_index_part)) {
-    scanner.fail(word.line, "a vertex expected, found " + in_quotes(word.text));
-  }
-  const long number = scanner.integer({word.text.substr(0, slash), word.line}, "a vertex");
-  if (number > 0) return static_cast<std::size_t>(number) - 1;
-  // Compared without turning the sign, which the smallest long would not survive.
-  if (number == 0 || number < -static_cast<long>(count)) {
-    scanner.refuse(word.line, "vertex " + std::to_string(number) + " is referred to, but " +
-                                  std::to_string(count) + " came before");
-  }
-  return count - static_cast<std::size_t>(-number);
-}
-
-dvec3 obj_point(const TextScanner& scanner, const std::vector<Word>& statement) {
-  if (statement.size() < 4) scanner.fail(statement[0].line, "v takes three coordinates");
-  dvec3 p;
-  for (int i = 0; i < 3; ++i) {
-    p[i] = scanner.number(statement[static_cast<std::size_t>(i) + 1], "a coordinate");
-  }
-  return p;
 }
 
 }  // namespace taut

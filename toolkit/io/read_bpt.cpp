@@ -41,9 +41,8 @@ BezierPatch read_patch(TextScanner& scanner) {
 
 }  // namespace
 
-Part read_bpt(const std::filesystem::path& path, const Progress& progress) {
-  const std::string text = read_file(path);
-  TextScanner scanner(path.string(), text);
+Part read_bpt(const std::string& file, std::string_view data, const Progress& progress) {
+  TextScanner scanner(file, data);
   const Word word = scanner.next("the number of patches");
   const std::size_t count = scanner.count(word, patch_bytes, "patches");
   if (count == 0) scanner.refuse(word.line, "there are no patches");

@@ -1,130 +1,32 @@
 #include "taut/io/read_mesh.h"
 
-#include <string>
-#include <utility>
-
 #include "taut/io/formats.h"
 #include "taut/io/mesh_readers.h"
-#include "taut/io/obj_file.h"
 #include "taut/io/text_scanner.h"
 
 namespace taut {
 namespace {
 
-/// What begins an OFF file, or "" if nothing of the kind does: "OFF", "COFF", "STCNOFF", ...
-std::string_view off_keyword(std::string_view word) {
-  std::string_view rest = word;
-  for (const std::string_view prefix : {"ST", "C", "N", "4", "n"}) {
-    if (rest.starts_with(prefix)) rest.remove_prefix(prefix.size());
-  }
-  return rest == "OFF" ? word : std::string_view();
-}
+using Reader = PolygonMesh (*)(const std::string& file, std::string_view data, const Progress&);
 
-/// Vertices and faces; the number of edges, which means nothing, may be absent.
-std::pair<std::size_t, std::size_t> read_off_counts(TextScanner& scanner) {
-  constexpr std::size_t vertex_bytes = 3 * 2;
-  constexpr std::size_t face_bytes = 4 * 2;
-  const Word vertices = scanner.next("the number of vertices");
-  const Word faces = scanner.next("the number of faces");
-  const TextScanner without_edges = scanner;
-  if (scanner.at_end() || scanner.next("the number of edges").line != faces.line) {
-    scanner = without_edges;
-  }
-  return {scanner.count(vertices, vertex_bytes, "vertices"),
-          scanner.count(faces, face_bytes, "faces")};
-}
-
-std::vector<int> read_off_face(TextScanner& scanner, std::size_t vertex_count) {
-  const Word word = scanner.next("the number of a face's vertices");
-  const std::size_t corners = scanner.count(word, 2, "vertices of a face");
-  if (corners < 3) scanner.refuse(word.line, "a face has fewer than three vertices");
-  std::vector<int> face(corners);
-  for (int& corner : face) {
-    const Word vertex = scanner.next("a vertex index");
-    const long index = scanner.integer(vertex, "a vertex index");
-    if (index < 0 || static_cast<std::size_t>(index) >= vertex_count) {
-      scanner.refuse(vertex.line, "vertex index " + std::to_string(index) + " is not below " +
-                                      std::to_string(vertex_count));
-    }
-    corner = static_cast<int>(index);
-  }
-  scanner.skip_line();  // a colour may follow
-  return face;
+Reader reader(const std::string& name, const std::string& format) {
+  if (format == ".obj") return read_obj_polygons;
+  if (format == ".off") return read_off;
+  if (format == ".ply") return read_ply;
+  if (format == ".stl") return read_stl;
+  throw IoError(name + ": no format of meshes has the extension " + in_quotes(format) +
+                "; known are .obj, .off, .ply, .stl");
 }
 
 }  // namespace
 
-PolygonMesh read_off(const std::string& file, std::string_view data) {
-  TextScanner scanner(file, data);
-  scanner.at_end();
-  const TextScanner beginning = scanner;
-  const Word word = scanner.next("OFF");
-  const std::string_view keyword = off_keyword(word.text);
-  if (keyword.empty()) {
-    scanner = beginning;  // the keyword is optional; counts must follow at once
-  } else if (keyword.find_first_of("4n") != keyword.npos) {
-    scanner.fail(word.line, "points of other than three coordinates are not supported");
-  }
-  const TextScanner counts = scanner;
-  if (!keyword.empty() && scanner.next("the number of vertices").text == "BINARY") {
-    scanner.fail(word.line, "the binary form of OFF is not supported");
-  }
-  scanner = counts;
-
-  const auto [vertices, faces] = read_off_counts(scanner);
-  PolygonMesh mesh;
-  mesh.points.resize(vertices);
-  for (dvec3& p : mesh.points) {
-    for (int i = 0; i < 3; ++i) p[i] = scanner.next_number("a coordinate");
-    // Normals, colours and texture coordinates, of which the keyword tells.
-    if (keyword.size() > 3) scanner.skip_line();
-  }
-  mesh.polygons.reserve(faces);
-  for (std::size_t i = 0; i < faces; ++i) mesh.polygons.push_back(read_off_face(scanner, vertices));
-  return mesh;
-}
-
-PolygonMesh read_obj_polygons(const std::string& file, std::string_view data) {
-  TextScanner scanner(file, data);
-  PolygonMesh mesh;
-  // Faces may stand before their vertices, so indices are checked at the end.
-  std::size_t most_vertices = 0;
-  long most_vertices_line = 0;
-  std::vector<Word> statement;
-  while (scanner.next_statement(statement)) {
-    const Word& keyword = statement[0];
-    if (keyword.text == "v") mesh.points.push_back(obj_point(scanner, statement));
-    if (keyword.text != "f" && keyword.text != "fo") continue;
-    if (statement.size() < 4) {
-      scanner.refuse(keyword.line, "a face has fewer than three vertices");
-    }
-    std::vector<int>& polygon = mesh.polygons.emplace_back();
-    for (std::size_t i = 1; i < statement.size(); ++i) {
-      const std::size_t index = obj_vertex_index(scanner, statement[i], mesh.points.size());
-      if (index >= most_vertices) {
-        most_vertices = index + 1;
-        most_vertices_line = statement[i].line;
-      }
-      polygon.push_back(static_cast<int>(index));
-    }
-  }
-  if (most_vertices > mesh.points.size()) {
-    scanner.refuse(most_vertices_line, "vertex " + std::to_string(most_vertices) +
-                                           " is referred to, but there are " +
-                                           std::to_string(mesh.points.size()));
-  }
-  return mesh;
-}
-
 PolygonMesh read_mesh(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  const std::string kind = extension(path);
-  if (kind == ".obj") return read_obj_polygons(file, read_file(path));
-  if (kind == ".off") return read_off(file, read_file(path));
-  if (kind == ".ply") return read_ply(file, read_file(path));
-  if (kind == ".stl") return read_stl(file, read_file(path));
-  throw IoError(file + ": no format of meshes has the extension \"" + kind +
-                "\"; known are .obj, .off, .ply, .stl");
+  const Reader read = reader(path.string(), extension(path));
+  return read(path.string(), read_file(path), {});
+}
+
+PolygonMesh read_mesh(std::string_view data, const std::string& name, const std::string& format) {
+  return reader(name, format)(name, data, {});
 }
 
 }  // namespace taut

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "taut/surface/polygon_mesh.h"
 
@@ -12,5 +14,8 @@ namespace taut {
 /// @throws IoError (FILE:LINE: or FILE:byte N: ...), InvalidInput for numbers that are not finite,
 /// LimitExceeded for files above 2 GiB
 PolygonMesh read_mesh(const std::filesystem::path& path);
+
+/// Reads what a file of the format (".ply") holds; the name stands in messages.
+PolygonMesh read_mesh(std::string_view data, const std::string& name, const std::string& format);
 
 }  // namespace taut

@@ -1,34 +1,54 @@
 #include "taut/io/read_model.h"
 
-#include <string>
 #include <utility>
 
 #include "taut/io/formats.h"
-#include "taut/io/read_bpt.h"
-#include "taut/io/read_obj.h"
+#include "taut/io/read_part.h"
+#include "taut/io/read_project.h"
+#include "taut/io/text_scanner.h"
 
 namespace taut {
 namespace {
 
-Part read_part(const std::filesystem::path& path, const Progress& progress) {
-  const std::string kind = extension(path);
-  if (kind == ".bpt") return read_bpt(path, progress);
-  if (kind == ".obj") return read_obj(path, progress);
+/// @throws IoError
+void require_known(const std::string& name, const std::string& format) {
   std::string known;
-  for (const Format& format : formats()) {
-    if (format.reads_model) known += (known.empty() ? "" : ", ") + format.extension;
+  for (const Format& f : formats()) {
+    if (!f.reads_model) continue;
+    if (f.extension == format) return;
+    known += (known.empty() ? "" : ", ") + f.extension;
   }
-  throw IoError(path.string() + ": no format of models has the extension \"" + kind +
-                "\"; known are " + known);
+  throw IoError(name + ": no format of models has the extension " + in_quotes(format) +
+                "; known are " + known);
+}
+
+void add(FileContent content, const std::string& name, Model& model, const ReadOptions& options) {
+  Part part = as_part(std::move(content), name);
+  options.progress.check();
+  model.add_part(std::move(part), options.smooth_angle);
 }
 
 }  // namespace
 
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options) {
-  Part part = read_part(path, options.progress);
-  part.name = path.filename().string();
-  options.progress.check();
-  model.add_part(std::move(part), options.smooth_angle);
+  const std::string name = path.string();
+  const std::string format = extension(path);
+  require_known(name, format);
+  std::string data = read_file(path);
+  if (!is_part_format(format)) return read_model(data, name, format, model, options);
+  FileContent content = read_content(data, name, format, options);
+  std::string().swap(data);
+  add(std::move(content), name, model, options);
+}
+
+void read_model(std::string_view data, const std::string& name, const std::string& format,
+                Model& model, const ReadOptions& options) {
+  require_known(name, format);
+  if (is_part_format(format)) {
+    add(read_content(data, name, format, options), name, model, options);
+  } else {
+    read_project(name, data, model, options);
+  }
 }
 
 }  // namespace taut

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "taut/core/progress.h"
 #include "taut/core/tolerances.h"
@@ -8,21 +11,39 @@
 
 namespace taut {
 
+/// What the polygons of a file stand for.
+enum class Scheme {
+  bilinear,  ///< themselves
+  catmark,   ///< the control cage of a Catmull-Clark surface
+  loop,      ///< the control cage of a Loop surface
+};
+
 struct ReadOptions {
   /// Borders whose tangent planes differ by less are smooth joins; radians.
   double smooth_angle = smooth_join_angle;
+  /// If not given, polygons are bilinear unless their file has the tags of a subdivision cage.
+  std::optional<Scheme> scheme;
   /// Receives a warning for each part of a file that is named but not supported.
   Progress progress;
 };
 
 /// Reads a file into the model as one more part, by the file name's extension: `.bpt` (Bezier
-/// patches) or `.obj` (the free-form statements of the format).
+/// patches), `.obj` (free-form statements, polygons and points), `.off`, `.ply`, `.stl` (polygons)
+/// or `.xyz` (points); of a project, `.mlp`, the visible layers become instances. A part is named
+/// after its file.
 ///
 /// Nothing that a file says is trusted: counts, indices and numbers are checked before memory is
 /// taken, and the model is unchanged if anything is wrong.
-/// @throws IoError (FILE:LINE: ...) if the file cannot be read or is not what its format says,
-/// InvalidInput (likewise with place) if its numbers are no valid geometry, LimitExceeded for files
-/// above 2 GiB or surfaces with more than 2^26 control points once decomposed, Cancelled
+/// @throws IoError (FILE:LINE: ... or FILE:byte N: ...) if the file cannot be read or is not what
+/// its format says, also for cages of schemes other than bilinear, which are not evaluated;
+/// InvalidInput (likewise with place) if its numbers are no valid geometry or there is none;
+/// LimitExceeded for files above 2 GiB or surfaces with more than 2^26 control points once
+/// decomposed; Cancelled
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options = {});
+
+/// Reads what a file of the format (".obj") holds; the name stands in messages and names the part.
+/// The files of a project are sought beside `name`.
+void read_model(std::string_view data, const std::string& name, const std::string& format,
+                Model& model, const ReadOptions& options = {});
 
 }  // namespace taut

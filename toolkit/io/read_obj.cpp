@@ -1,11 +1,14 @@
 #include "taut/io/read_obj.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "taut/io/obj_file.h"
+#include "taut/io/piecewise.h"
 #include "taut/io/text_scanner.h"
+#include "taut/io/trim_sense.h"
 
 namespace taut {
 namespace {
@@ -30,107 +33,39 @@ struct Basis {
   }
 };
 
-/// Knots of n Bezier pieces: all breakpoints with the multiplicity `inner`, but degree + 1 at the
-/// ends. With inner = degree neighbours share their common control points, with degree + 1 each has
-/// its own.
-std::vector<double> piecewise_knots(const std::vector<double>& breakpoints, int degree, int inner) {
-  std::vector<double> knots;
-  for (std::size_t i = 0; i < breakpoints.size(); ++i) {
-    const bool end = i == 0 || i + 1 == breakpoints.size();
-    knots.insert(knots.end(), to_size(end ? degree + 1 : inner), breakpoints[i]);
-  }
-  return knots;
-}
-
-/// The common part of two intervals, and the same in coordinates where `piece` is [0, 1].
-struct Overlap {
-  Interval common, local;
-  bool empty() const { return !(common.lower < common.upper && local.lower < local.upper); }
-};
-
-Overlap overlap(const Interval& piece, const Interval& range) {
-  Overlap o;
-  o.common = {std::max(piece.lower, range.lower), std::min(piece.upper, range.upper)};
-  const double length = piece.upper - piece.lower;
-  o.local = {o.common.lower == piece.lower ? 0 : (o.common.lower - piece.lower) / length,
-             o.common.upper == piece.upper ? 1 : (o.common.upper - piece.lower) / length};
-  return o;
-}
-
-/// The part of a curve or surface over a range within its domain: its Bezier pieces, cut at the
-/// ends of the range, side by side. Each keeps its own control points, so that nothing is said
-/// about how they join. @pre validate() passes
-NurbsCurve restricted(const NurbsCurve& curve, const Interval& range) {
-  NurbsCurve result;
-  result.degree = curve.degree;
-  std::vector<double> breakpoints = {range.lower};
-  for (const CurvePiece& piece : decompose(curve)) {
-    const Overlap t = overlap(piece.t, range);
-    if (t.empty()) continue;
-    const BezierCurve part = restricted(piece.bezier, t.local);
-    result.points.insert(result.points.end(), part.points.begin(), part.points.end());
-    breakpoints.push_back(t.common.upper);
-  }
-  result.knots = piecewise_knots(breakpoints, curve.degree, curve.degree + 1);
-  return result;
-}
-
-NurbsSurface restricted(const NurbsSurface& surface, const Interval& u, const Interval& v) {
-  std::vector<BezierPatch> patches;
-  std::vector<double> breakpoints_u = {u.lower};
-  std::vector<double> breakpoints_v = {v.lower};
-  for (const PatchPiece& piece : decompose(surface)) {
-    const Overlap in_u = overlap(piece.u, u);
-    const Overlap in_v = overlap(piece.v, v);
-    if (in_u.empty() || in_v.empty()) continue;
-    patches.push_back(restricted(piece.bezier, in_u.local, in_v.local));
-    // Pieces come with u outer, v inner: all v are seen in the first row.
-    if (in_u.common.upper > breakpoints_u.back()) breakpoints_u.push_back(in_u.common.upper);
-    if (in_v.common.upper > breakpoints_v.back()) breakpoints_v.push_back(in_v.common.upper);
-  }
-
-  const std::size_t rows = to_size(surface.degree_u) + 1;
-  const std::size_t columns = to_size(surface.degree_v) + 1;
-  const std::size_t patches_v = breakpoints_v.size() - 1;
-  NurbsSurface result;
-  result.degree_u = surface.degree_u;
-  result.degree_v = surface.degree_v;
-  result.knots_u = piecewise_knots(breakpoints_u, surface.degree_u, surface.degree_u + 1);
-  result.knots_v = piecewise_knots(breakpoints_v, surface.degree_v, surface.degree_v + 1);
-  for (std::size_t first = 0; first < patches.size(); first += patches_v) {
-    for (std::size_t i = 0; i < rows; ++i) {
-      for (std::size_t k = first; k < first + patches_v; ++k) {
-        const auto row = patches[k].points.begin() + static_cast<std::ptrdiff_t>(i * columns);
-        result.points.insert(result.points.end(), row, row + static_cast<std::ptrdiff_t>(columns));
-      }
-    }
-  }
-  return result;
-}
-
 bool same(const Interval& a, const Interval& b) { return a.lower == b.lower && a.upper == b.upper; }
 
 /// Turns the elements of an OBJ file into the faces and edges of a part.
 class Builder {
  public:
-  Builder(const TextScanner& scanner, const ObjFile& file) : scanner_(scanner), file_(file) {}
+  Builder(const TextScanner& scanner, ObjFile& file) : scanner_(scanner), file_(file) {}
 
   void add(const ObjElement& element);
+  PolygonMesh used_polygons();
   Part take() { return std::move(part_); }
 
  private:
+  struct ParameterCurve {
+    NurbsCurve curve;
+    double piece_points = 0;
+  };
+
   Basis basis(const ObjElement& e, Direction direction) const;
   dvec4 control_point(const ObjElement& e, std::size_t i) const;
-  void require_range(const ObjElement& e, const Interval& range, const Interval& domain) const;
+  dvec4 weighted(const ObjElement& e, const ObjVertex& vertex, const std::string& name) const;
+  void require_range(long line, const Interval& range, const Interval& domain) const;
   void require_vertices(const ObjElement& e, std::size_t count) const;
-  void count_piece_points(const ObjElement& e, double points);
+  void count_piece_points(long line, double points);
+  const ParameterCurve& parameter_curve(std::size_t i);
+  TrimLoop trim_loop(const ObjLoop& loop);
   void add_curve(const ObjElement& e);
   void add_surface(const ObjElement& e);
   void fail(const ObjElement& e, const std::string& what) const { scanner_.fail(e.line, what); }
 
   const TextScanner& scanner_;
-  const ObjFile& file_;
+  ObjFile& file_;
   Part part_;
+  std::map<std::size_t, ParameterCurve> parameter_curves_;
   double piece_points_ = 0;
 };
 
@@ -178,22 +113,25 @@ dvec4 Builder::control_point(const ObjElement& e, std::size_t i) const {
                                 " is referred to, but there are " +
                                 std::to_string(file_.vertices.size()));
   }
-  const ObjVertex& vertex = file_.vertices[index];
+  return weighted(e, file_.vertices[index], "vertex " + std::to_string(index + 1));
+}
+
+dvec4 Builder::weighted(const ObjElement& e, const ObjVertex& vertex,
+                        const std::string& name) const {
   if (!e.rational) return homogeneous(vertex.point);
   if (!(vertex.weight > 0)) {
-    scanner_.refuse(vertex.line, "the weight of vertex " + std::to_string(index + 1) +
+    scanner_.refuse(vertex.line, "the weight of " + name +
                                      " is not positive, and the rational element of line " +
                                      std::to_string(e.line) + " uses it");
   }
   return homogeneous(vertex.point, vertex.weight);
 }
 
-void Builder::require_range(const ObjElement& e, const Interval& range,
-                            const Interval& domain) const {
+void Builder::require_range(long line, const Interval& range, const Interval& domain) const {
   if (domain.lower <= range.lower && range.upper <= domain.upper) return;
-  scanner_.refuse(e.line, "the range of parameters, " + shortest(range.lower) + " to " +
-                              shortest(range.upper) + ", exceeds that of parm, " +
-                              shortest(domain.lower) + " to " + shortest(domain.upper));
+  scanner_.refuse(line, "the range of parameters, " + shortest(range.lower) + " to " +
+                            shortest(range.upper) + ", exceeds that of parm, " +
+                            shortest(domain.lower) + " to " + shortest(domain.upper));
 }
 
 void Builder::require_vertices(const ObjElement& e, std::size_t count) const {
@@ -202,10 +140,10 @@ void Builder::require_vertices(const ObjElement& e, std::size_t count) const {
               std::to_string(count));
 }
 
-void Builder::count_piece_points(const ObjElement& e, double points) {
+void Builder::count_piece_points(long line, double points) {
   piece_points_ += points;
   if (piece_points_ <= static_cast<double>(max_piece_points)) return;
-  throw LimitExceeded(scanner_.file() + ":" + std::to_string(e.line) +
+  throw LimitExceeded(scanner_.file() + ":" + std::to_string(line) +
                       ": the Bezier pieces of this file have more than " +
                       std::to_string(max_piece_points) + " control points");
 }
@@ -213,23 +151,76 @@ void Builder::count_piece_points(const ObjElement& e, double points) {
 void Builder::add_curve(const ObjElement& e) {
   Basis u = basis(e, Direction::u);
   require_vertices(e, u.count);
-  count_piece_points(e, static_cast<double>(u.spans() * (to_size(u.degree) + 1)));
+  count_piece_points(e.line, static_cast<double>(u.spans() * (to_size(u.degree) + 1)));
   const std::string name =
       e.name.empty() ? "curve " + std::to_string(part_.edges().size() + 1) : e.name;
   NurbsCurve curve{u.degree, std::move(u.knots), {}};
   for (std::size_t i = 0; i < u.count; ++i) curve.points.push_back(control_point(e, i));
   scanner_.placed(e.line, [&] { validate(curve, name); });
-  require_range(e, e.u, curve.domain());
+  require_range(e.line, e.u, curve.domain());
   if (!same(e.u, curve.domain())) curve = restricted(curve, e.u);
   scanner_.placed(e.line, [&] { part_.add_curve(curve, name); });
+}
+
+/// Each is built once, however many loops use it.
+const Builder::ParameterCurve& Builder::parameter_curve(std::size_t i) {
+  const auto known = parameter_curves_.find(i);
+  if (known != parameter_curves_.end()) return known->second;
+  const ObjElement& e = file_.parameter_curves[i];
+  Basis u = basis(e, Direction::u);
+  require_vertices(e, u.count);
+  const double piece_points = static_cast<double>(u.spans() * (to_size(u.degree) + 1));
+  NurbsCurve curve{u.degree, std::move(u.knots), {}};
+  for (const std::size_t k : e.vertices) {
+    curve.points.push_back(
+        weighted(e, file_.parameter_points[k], "parameter point " + std::to_string(k + 1)));
+  }
+  scanner_.placed(e.line, [&] { validate(curve, "curv2 " + std::to_string(i + 1)); });
+  return parameter_curves_.emplace(i, ParameterCurve{std::move(curve), piece_points}).first->second;
+}
+
+TrimLoop Builder::trim_loop(const ObjLoop& loop) {
+  for (const ObjTrimCurve& trim : loop.curves) {
+    count_piece_points(loop.line, parameter_curve(trim.curve).piece_points);
+  }
+  TrimLoop result;
+  for (const ObjTrimCurve& trim : loop.curves) {
+    const NurbsCurve& whole = parameter_curve(trim.curve).curve;
+    require_range(loop.line, trim.range, whole.domain());
+    const bool is_whole = same(trim.range, whole.domain());
+    result.curves.push_back(is_whole ? whole : restricted(whole, trim.range));
+    scanner_.placed(loop.line, [&] { validate(result.curves.back(), "trimming curve"); });
+  }
+  return runs_counter_clockwise(result) == loop.hole ? reversed(result) : result;
+}
+
+/// Polygons, and points that stand alone, with the vertices that either uses, in the file's order.
+PolygonMesh Builder::used_polygons() {
+  constexpr int unused = -1;
+  std::vector<int> number(file_.vertices.size(), unused);
+  for (const std::vector<int>& polygon : file_.polygons) {
+    for (const int v : polygon) number[to_size(v)] = 0;
+  }
+  for (const int v : file_.points) number[to_size(v)] = 0;
+  PolygonMesh mesh;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == unused) continue;
+    number[v] = static_cast<int>(mesh.points.size());
+    mesh.points.push_back(file_.vertices[v].point);
+  }
+  mesh.polygons = std::move(file_.polygons);
+  for (std::vector<int>& polygon : mesh.polygons) {
+    for (int& v : polygon) v = number[to_size(v)];
+  }
+  return mesh;
 }
 
 void Builder::add_surface(const ObjElement& e) {
   Basis u = basis(e, Direction::u);
   Basis v = basis(e, Direction::v);
   require_vertices(e, u.count * v.count);
-  count_piece_points(e, static_cast<double>(u.spans() * (to_size(u.degree) + 1)) *
-                            static_cast<double>(v.spans() * (to_size(v.degree) + 1)));
+  count_piece_points(e.line, static_cast<double>(u.spans() * (to_size(u.degree) + 1)) *
+                                 static_cast<double>(v.spans() * (to_size(v.degree) + 1)));
   const std::string name =
       e.name.empty() ? "surface " + std::to_string(part_.faces().size() + 1) : e.name;
   NurbsSurface surface{u.degree, v.degree, std::move(u.knots), std::move(v.knots), {}};
@@ -239,35 +230,36 @@ void Builder::add_surface(const ObjElement& e) {
     }
   }
   scanner_.placed(e.line, [&] { validate(surface, name); });
-  require_range(e, e.u, surface.domain_u());
-  require_range(e, e.v, surface.domain_v());
+  require_range(e.line, e.u, surface.domain_u());
+  require_range(e.line, e.v, surface.domain_v());
   if (!same(e.u, surface.domain_u()) || !same(e.v, surface.domain_v())) {
     surface = restricted(surface, e.u, e.v);
   }
-  scanner_.placed(e.line, [&] { part_.add_surface(surface, name); });
+  std::vector<TrimLoop> loops;
+  for (const ObjLoop& loop : e.loops) loops.push_back(trim_loop(loop));
+  scanner_.placed(e.line, [&] { part_.add_surface(surface, name, std::move(loops)); });
 }
 
 }  // namespace
 
-Part read_obj(const std::filesystem::path& path, const Progress& progress) {
-  const std::string text = read_file(path);
-  TextScanner scanner(path.string(), text);
-  const ObjFile file = parse_obj(scanner, progress);
-  const std::string polygons =
-      std::to_string(file.polygons) + " polygons, which are not supported as part of a model yet";
-  if (file.elements.empty()) {
-    throw IoError(scanner.file() + ": holds no free-form curves or surfaces" +
-                  (file.polygons > 0 ? ", only " + polygons : ""));
+FileContent read_obj(const std::string& name, std::string_view data, const ReadOptions& options) {
+  TextScanner scanner(name, data);
+  ObjFile file = parse_obj(scanner, options.progress);
+  if (!file.polygons.empty()) {
+    if (asks_for_cage(options)) scanner.fail(file.polygon_line, cages_are_not_evaluated);
+    if (file.tag_line > 0 && !options.scheme) scanner.fail(file.tag_line, cages_are_not_evaluated);
   }
-  if (file.polygons > 0) {
-    progress.warning("polygons-left-out", scanner.file() + ": left out " + polygons);
+  if (file.elements.empty() && file.polygons.empty() && file.points.empty()) {
+    throw InvalidInput(name + ": holds no geometry" +
+                       (file.vertices.empty() ? "" : ", only vertices that nothing uses"));
   }
   Builder builder(scanner, file);
   for (const ObjElement& element : file.elements) {
-    progress.check();
+    options.progress.check();
     builder.add(element);
   }
-  return builder.take();
+  PolygonMesh mesh = builder.used_polygons();
+  return {builder.take(), std::move(mesh)};
 }
 
 }  // namespace taut

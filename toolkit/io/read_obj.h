@@ -1,21 +1,26 @@
 #pragma once
 
-#include <filesystem>
+#include <string>
+#include <string_view>
 
-#include "taut/core/progress.h"
-#include "taut/surface/model.h"
+#include "taut/io/read_part.h"
 
 namespace taut {
 
-/// Reads the free-form surfaces and curves of a Wavefront OBJ file: Bezier (one or several pieces)
-/// and B-spline, rational or not, each over the range of parameters that its statement names.
+/// Reads the polygons and points, free-form surfaces and curves of a Wavefront OBJ file: Bezier
+/// (one or several pieces) and B-spline, rational or not, each over the range of parameters that
+/// its statement names.
 ///
-/// A surface is a face, a curve an edge, both named after the group or object that they stand in.
-/// Polygons, curves in parameter space and statements that are not known are left out with a
-/// warning; trimmed surfaces and other bases are refused.
+/// A surface is a face, a curve an edge, both named after the group or object that they stand in; a
+/// polyline is a curve of degree 1. Vertices that no polygon, point or element uses count for
+/// nothing. `trim` and `hole` become loops of the face; they are turned to run counter-clockwise
+/// and clockwise, for which the format has no rule. Special curves and statements that are not
+/// known are left out with a warning; other bases are refused, and so are polygons that the
+/// file's tags or the options make a subdivision cage, save for the scheme `bilinear`.
 ///
+/// `data` is the whole file, `name` its name for messages.
 /// Source: Alias|Wavefront, "Advanced Visualizer", appendix B1 "Object files" (3.0).
 /// @throws as read_model()
-Part read_obj(const std::filesystem::path& path, const Progress& progress);
+FileContent read_obj(const std::string& name, std::string_view data, const ReadOptions& options);
 
 }  // namespace taut

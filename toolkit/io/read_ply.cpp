@@ -73,11 +73,12 @@ class AsciiValues {
  public:
   explicit AsciiValues(const TextScanner& scanner) : scanner_(scanner) {}
 
-  double real(Type) { return scanner_.number(take("a coordinate"), "a coordinate"); }
+  double real(Type) { return scanner_.next_number("a coordinate"); }
   std::int64_t integer(Type) { return scanner_.integer(take("an integer"), "an integer"); }
   void skip(Type, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) scanner_.next("a value");
   }
+  std::size_t bytes_left() const { return scanner_.bytes_left(); }
   bool can_hold(Type, std::size_t count) const { return count <= (scanner_.bytes_left() + 1) / 2; }
   [[noreturn]] void refuse(const std::string& what) const { scanner_.refuse(word_.line, what); }
 
@@ -96,6 +97,7 @@ class BinaryValues {
   double real(Type type);
   std::int64_t integer(Type type);
   void skip(Type type, std::size_t count) { scanner_.skip(count * size_of(type)); }
+  std::size_t bytes_left() const { return scanner_.bytes_left(); }
   bool can_hold(Type type, std::size_t count) const {
     return count <= scanner_.bytes_left() / size_of(type);
   }
@@ -235,13 +237,16 @@ class ElementReader {
  public:
   ElementReader(const Header& header, Values values) : header_(header), values_(values) {}
 
-  PolygonMesh read() {
-    for (const Element& e : header_.elements) {
-      if (e.name == "vertex") vertex_count_ = e.count;
-    }
+  PolygonMesh read(const Progress& progress) {
+    reserve();
+    const double bytes = static_cast<double>(values_.bytes_left());
     for (const Element& e : header_.elements) {
       // Elements without properties take no room, so their number is no more than a word.
       for (std::size_t i = 0; i < (e.properties.empty() ? 0 : e.count); ++i) {
+        constexpr std::size_t elements_per_update = 65536;
+        if (i % elements_per_update == 0) {
+          progress.update("read", 1 - static_cast<double>(values_.bytes_left()) / bytes);
+        }
         if (e.name == "vertex") mesh_.points.emplace_back(0.0);
         for (const Property& property : e.properties) read_property(e, property);
       }
@@ -250,6 +255,19 @@ class ElementReader {
   }
 
  private:
+  /// The header's numbers are checked against the room in the file, if by the shortest elements.
+  void reserve() {
+    constexpr std::size_t polygon_bytes = 4;
+    for (const Element& e : header_.elements) {
+      if (e.name == "vertex") {
+        vertex_count_ = e.count;
+        mesh_.points.reserve(e.count);
+      } else if (e.name == "face") {
+        mesh_.polygons.reserve(std::min(e.count, values_.bytes_left() / polygon_bytes));
+      }
+    }
+  }
+
   void read_property(const Element& e, const Property& p) {
     if (!p.length_type) {
       const int axis = e.name == "vertex" ? axis_of(p.name) : -1;
@@ -317,16 +335,16 @@ void check_vertices(const TextScanner& scanner, const Header& header) {
 
 }  // namespace
 
-PolygonMesh read_ply(const std::string& file, std::string_view data) {
+PolygonMesh read_ply(const std::string& file, std::string_view data, const Progress& progress) {
   TextScanner scanner(file, data);
   const Header header = HeaderReader(scanner).read();
   check_vertices(scanner, header);
   if (header.encoding == Encoding::ascii) {
-    return ElementReader(header, AsciiValues(scanner)).read();
+    return ElementReader(header, AsciiValues(scanner)).read(progress);
   }
   const ByteOrder order =
       header.encoding == Encoding::binary_big_endian ? ByteOrder::big : ByteOrder::little;
-  return ElementReader(header, BinaryValues({file, data, scanner.offset(), order})).read();
+  return ElementReader(header, BinaryValues({file, data, scanner.offset(), order})).read(progress);
 }
 
 }  // namespace taut

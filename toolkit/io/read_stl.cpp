@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -40,6 +41,7 @@ class PointIndex {
 
 constexpr std::size_t header_bytes = 80;
 constexpr std::size_t triangle_bytes = 4 * 3 * 4 + 2;
+constexpr std::size_t triangles_per_update = 16384;
 
 /// Whether the announced number of triangles fills the file exactly. Many binary files begin with
 /// the word "solid" too, so the length is asked first.
@@ -49,7 +51,7 @@ bool has_binary_length(const std::string& file, std::string_view data) {
   return scanner.next<std::uint32_t>() * std::uint64_t{triangle_bytes} == scanner.bytes_left();
 }
 
-PolygonMesh read_binary(const std::string& file, std::string_view data) {
+PolygonMesh read_binary(const std::string& file, std::string_view data, const Progress& progress) {
   BinaryScanner scanner(file, data, 0, ByteOrder::little);
   scanner.skip(header_bytes);
   const auto count = scanner.next<std::uint32_t>();
@@ -61,9 +63,11 @@ PolygonMesh read_binary(const std::string& file, std::string_view data) {
   mesh.polygons.reserve(count);
   PointIndex index;
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (i % triangles_per_update == 0) {
+      progress.update("read", static_cast<double>(i) / static_cast<double>(count));
+    }
     scanner.skip(3 * 4);  // the normal
-    std::vector<int>& triangle = mesh.polygons.emplace_back();
-    for (int corner = 0; corner < 3; ++corner) {
+    for (int& corner : mesh.polygons.emplace_back(3)) {
       dvec3 p;
       for (int k = 0; k < 3; ++k) {
         p[k] = static_cast<double>(scanner.next<float>());
@@ -71,7 +75,7 @@ PolygonMesh read_binary(const std::string& file, std::string_view data) {
           scanner.refuse("a coordinate of triangle " + std::to_string(i) + " is not finite");
         }
       }
-      triangle.push_back(index(p));
+      corner = index(p);
     }
     scanner.skip(2);  // attributes
   }
@@ -79,15 +83,35 @@ PolygonMesh read_binary(const std::string& file, std::string_view data) {
   return mesh;
 }
 
-/// The text form; keywords in either case.
+/// In either case, as keywords are. @pre the keyword is of small letters
+bool is_keyword(std::string_view word, std::string_view keyword) {
+  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                    [](char a, char b) { return (a | 0x20) == b; });
+}
+
+/// Begins with "solid" and has no zero byte where a binary file has its number of triangles, or
+/// padding before it.
+bool looks_like_text(std::string_view data) {
+  constexpr std::string_view solid = "solid";
+  TextScanner scanner("", data);
+  if (scanner.at_end()) return false;
+  return is_keyword(data.substr(scanner.offset(), solid.size()), solid) &&
+         data.substr(0, header_bytes + 4).find('\0') == data.npos;
+}
+
+/// The text form.
 class AsciiReader {
  public:
   AsciiReader(const std::string& file, std::string_view data) : scanner_(file, data) {}
 
-  PolygonMesh read() {
+  PolygonMesh read(const Progress& progress) {
     PolygonMesh mesh;
     bool open = false;
+    const double bytes = static_cast<double>(scanner_.bytes_left());
     while (!scanner_.at_end()) {
+      if (mesh.polygons.size() % triangles_per_update == 0) {
+        progress.update("read", 1 - static_cast<double>(scanner_.bytes_left()) / bytes);
+      }
       const Word word = scanner_.next("facet");
       if (is(word, "solid") || is(word, "endsolid")) {
         open = is(word, "solid");
@@ -105,11 +129,7 @@ class AsciiReader {
 
  private:
   static bool is(const Word& word, std::string_view keyword) {
-    if (word.text.size() != keyword.size()) return false;
-    for (std::size_t i = 0; i < keyword.size(); ++i) {
-      if ((word.text[i] | 0x20) != keyword[i]) return false;
-    }
-    return true;
+    return is_keyword(word.text, keyword);
   }
 
   void expect(std::string_view keyword) {
@@ -124,12 +144,12 @@ class AsciiReader {
     for (int k = 0; k < 3; ++k) scanner_.next("a normal");  // of any value, often zero or NaN
     expect("outer");
     expect("loop");
-    std::vector<int> triangle;
-    for (int corner = 0; corner < 3; ++corner) {
+    std::vector<int> triangle(3);
+    for (int& corner : triangle) {
       expect("vertex");
       dvec3 p;
       for (int k = 0; k < 3; ++k) p[k] = scanner_.next_number("a coordinate");
-      triangle.push_back(index_(p));
+      corner = index_(p);
     }
     expect("endloop");
     expect("endfacet");
@@ -142,11 +162,11 @@ class AsciiReader {
 
 }  // namespace
 
-PolygonMesh read_stl(const std::string& file, std::string_view data) {
-  const std::size_t word = data.find_first_not_of(" \t\r\n");
-  const bool is_text = word != data.npos && data.substr(word).starts_with("solid");
-  if (has_binary_length(file, data) || !is_text) return read_binary(file, data);
-  return AsciiReader(file, data).read();
+PolygonMesh read_stl(const std::string& file, std::string_view data, const Progress& progress) {
+  if (has_binary_length(file, data) || !looks_like_text(data)) {
+    return read_binary(file, data, progress);
+  }
+  return AsciiReader(file, data).read(progress);
 }
 
 }  // namespace taut

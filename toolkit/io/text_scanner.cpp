@@ -17,8 +17,16 @@ struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+/// A table, since six comparisons for each character would take longer than the numbers do.
+constexpr std::array<bool, 256> space_table() {
+  std::array<bool, 256> table = {};
+  for (const unsigned char c : {' ', '\t', '\n', '\r', '\v', '\f'}) table[c] = true;
+  return table;
+}
+
 bool is_space(char c) {
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
+  static constexpr std::array<bool, 256> table = space_table();
+  return table[static_cast<unsigned char>(c)];
 }
 
 /// std::from_chars knows no '+'.
@@ -109,16 +117,16 @@ std::size_t TextScanner::line_end_at(std::size_t i) const {
 
 void TextScanner::skip_space(bool over_lines, bool continuation) {
   while (at_ < text_.size()) {
-    const std::size_t next_line = line_end_at(at_);
-    if (next_line != at_) {
+    const char c = text_[at_];
+    if (c == '\n' || c == '\r') {
       if (!over_lines) return;
-      at_ = next_line;
+      at_ = line_end_at(at_);
       ++line_;
-    } else if (is_space(text_[at_])) {
+    } else if (is_space(c)) {
       ++at_;
-    } else if (text_[at_] == '#') {
+    } else if (c == '#') {
       at_ = std::min(text_.find_first_of("\r\n", at_), text_.size());
-    } else if (continuation && text_[at_] == '\\' && line_end_at(at_ + 1) != at_ + 1) {
+    } else if (continuation && c == '\\' && line_end_at(at_ + 1) != at_ + 1) {
       at_ = line_end_at(at_ + 1);
       ++line_;
     } else {
@@ -146,6 +154,19 @@ Word TextScanner::next(std::string_view expected) {
   return read_word(false);
 }
 
+double TextScanner::next_number(std::string_view expected) {
+  if (at_end()) fail(line_, "the file ends where " + std::string(expected) + " is expected");
+  // Nearly all numbers can be taken where they stand, without looking for the word's end before.
+  double value = 0;
+  const char* const end = text_.data() + text_.size();
+  const auto [rest, error] = std::from_chars(text_.data() + at_, end, value);
+  if (error == std::errc() && (rest == end || is_space(*rest)) && std::isfinite(value)) {
+    at_ = static_cast<std::size_t>(rest - text_.data());
+    return value;
+  }
+  return number(read_word(false), expected);
+}
+
 void TextScanner::skip_line() { rest_of_line(); }
 
 std::string_view TextScanner::rest_of_line() {
@@ -171,7 +192,7 @@ double TextScanner::number(const Word& word, std::string_view expected) const {
   const char* const end = text.data() + text.size();
   double value = 0;
   const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (rest != end && !is_microsoft_nonfinite(text)) {
+  if (text.empty() || (rest != end && !is_microsoft_nonfinite(text))) {
     fail(word.line, std::string(expected) + " expected, found " + in_quotes(word.text));
   }
   if (rest != end || !std::isfinite(value)) {

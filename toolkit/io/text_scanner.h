@@ -47,7 +47,7 @@ class TextScanner {
   /// The next word, on this or a later line; `expected` says what it should be: "a coordinate".
   /// @throws IoError at the end of the file
   Word next(std::string_view expected);
-  double next_number(std::string_view expected) { return number(next(expected), expected); }
+  double next_number(std::string_view expected);
   long next_integer(std::string_view expected) { return integer(next(expected), expected); }
   /// Passes over what is left of the line and its end.
   void skip_line();

@@ -1,0 +1,267 @@
+#include "taut/io/read_project.h"
+
+#include <algorithm>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <pugixml.hpp>
+#include <utility>
+#include <vector>
+
+#include "taut/io/affine_map.h"
+#include "taut/io/formats.h"
+#include "taut/io/read_part.h"
+#include "taut/io/text_scanner.h"
+
+namespace taut {
+namespace {
+
+/// Far above every project; a document takes many times the memory of its text.
+constexpr std::size_t max_project_bytes = std::size_t{1} << 26;
+
+struct Layer {
+  std::string file;
+  std::string label;
+  AffineMap map;
+  long line = 0;
+};
+
+/// Turns the document into layers.
+class ProjectParser {
+ public:
+  ProjectParser(const std::string& file, std::string_view data, const Progress& progress)
+      : scanner_(file, data), file_(file), data_(data), progress_(progress) {}
+
+  std::vector<Layer> parse();
+
+ private:
+  long line_at(std::ptrdiff_t offset) const;
+  void read_group(const pugi::xml_node& group);
+  void read_layer(const pugi::xml_node& node);
+  AffineMap read_matrix(const pugi::xml_node& node) const;
+  void warn(long line, std::string_view code, const std::string& what) const {
+    progress_.warning(code, file_ + ":" + std::to_string(line) + ": " + what);
+  }
+
+  TextScanner scanner_;
+  const std::string& file_;
+  std::string_view data_;
+  const Progress& progress_;
+  std::vector<Layer> layers_;
+  int invisible_ = 0;
+};
+
+std::vector<Layer> ProjectParser::parse() {
+  if (data_.size() > max_project_bytes) {
+    throw LimitExceeded(file_ + ": is larger than " + std::to_string(max_project_bytes >> 20) +
+                        " MiB, the most that a project may have");
+  }
+  pugi::xml_document document;
+  const pugi::xml_parse_result result =
+      document.load_buffer(data_.data(), data_.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!result)
+    scanner_.fail(line_at(result.offset), std::string("is no XML: ") + result.description());
+  const pugi::xml_node root = document.document_element();
+  const long line = line_at(root.offset_debug());
+  if (std::string_view(root.name()) != "MeshLabProject") {
+    scanner_.fail(line, "MeshLabProject expected, found " + in_quotes(root.name()));
+  }
+  for (const pugi::xml_node& child : root.children()) {
+    if (std::string_view(child.name()) == "MeshGroup") read_group(child);
+    if (std::string_view(child.name()) == "RasterGroup" && child.child("MLRaster")) {
+      warn(line_at(child.offset_debug()), "raster-layer", "rasters are left out");
+    }
+  }
+  if (layers_.empty()) {
+    scanner_.refuse(line, std::string("the project has no layers") +
+                              (invisible_ > 0 ? " that are visible" : ""));
+  }
+  return std::move(layers_);
+}
+
+long ProjectParser::line_at(std::ptrdiff_t offset) const {
+  const std::ptrdiff_t end = std::min(offset, static_cast<std::ptrdiff_t>(data_.size()));
+  return 1 + std::count(data_.begin(), data_.begin() + std::max(end, std::ptrdiff_t{0}), '\n');
+}
+
+void ProjectParser::read_group(const pugi::xml_node& group) {
+  for (const pugi::xml_node& node : group.children("MLMesh")) {
+    const std::string_view visible = node.attribute("visible").value();
+    if (visible == "0" || visible == "false") {
+      ++invisible_;
+      warn(line_at(node.offset_debug()), "invisible-layer",
+           "layer " + in_quotes(node.attribute("label").value()) + " is not visible and left out");
+    } else {
+      read_layer(node);
+    }
+  }
+}
+
+void ProjectParser::read_layer(const pugi::xml_node& node) {
+  Layer layer;
+  layer.line = line_at(node.offset_debug());
+  layer.file = node.attribute("filename").value();
+  layer.label = node.attribute("label").value();
+  if (layer.file.empty()) scanner_.fail(layer.line, "a layer has no filename");
+  if (layer.label.empty()) layer.label = layer.file;
+  // MeshLab numbers the layers of formats that hold several; -1 is what it writes for all others.
+  const std::string_view in_file = node.attribute("idInFile").value();
+  if (!in_file.empty() && in_file != "-1" && in_file != "0") {
+    scanner_.fail(layer.line, "layer " + in_quotes(layer.label) + ": idInFile " +
+                                  in_quotes(in_file) + " where files hold one layer");
+  }
+  if (const pugi::xml_node matrix = node.child("MLMatrix44")) layer.map = read_matrix(matrix);
+  layers_.push_back(std::move(layer));
+}
+
+AffineMap ProjectParser::read_matrix(const pugi::xml_node& node) const {
+  const long line = line_at(node.offset_debug());
+  const std::string_view text = node.child_value();
+  TextScanner words(file_, text);
+  double m[4][4];
+  for (int i = 0; i < 16; ++i) {
+    if (words.at_end()) {
+      scanner_.fail(line, "MLMatrix44 has " + std::to_string(i) + " numbers, not 16");
+    }
+    m[i / 4][i % 4] =
+        scanner_.number({words.next("a number").text, line + words.line() - 1}, "a number");
+  }
+  if (!words.at_end()) scanner_.fail(line, "MLMatrix44 has more than 16 numbers");
+  if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1) {
+    scanner_.refuse(line, "the last row of MLMatrix44 is not 0 0 0 1");
+  }
+  AffineMap map;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) map.linear[column][row] = m[row][column];
+    map.translation[row] = m[row][3];
+  }
+  if (is_singular(map)) scanner_.refuse(line, "MLMatrix44 is singular");
+  return map;
+}
+
+/// Reads the files of the layers and puts the parts into a model.
+class ProjectLoader {
+ public:
+  ProjectLoader(const std::string& file, const ReadOptions& options)
+      : file_(file), options_(options) {}
+
+  void add(const Layer& layer);
+  void put_into(Model& model);
+
+ private:
+  /// A file, and the part that its instances are of, if there are any yet.
+  struct File {
+    Part part;
+    std::optional<std::size_t> slot;
+  };
+
+  File& file(const std::filesystem::path& path);
+  void add_placed(const Layer& layer);
+  bool has_room(const Model& model) const;
+
+  const std::string& file_;
+  const ReadOptions& options_;
+  std::map<std::string, File> files_;
+  std::deque<Part> images_;
+  std::vector<Part*> parts_;
+  std::vector<Instance> instances_;
+};
+
+void ProjectLoader::add(const Layer& layer) {
+  const auto place = [&](const Error& error) {
+    return file_ + ":" + std::to_string(layer.line) + ": layer " + in_quotes(layer.label) + ": " +
+           error.what();
+  };
+  try {
+    add_placed(layer);
+  } catch (const IoError& error) {
+    throw IoError(place(error));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(place(error));
+  } catch (const LimitExceeded& error) {
+    throw LimitExceeded(place(error));
+  }
+}
+
+void ProjectLoader::add_placed(const Layer& layer) {
+  File& source = file(std::filesystem::path(file_).parent_path() / layer.file);
+  if (!is_rigid(layer.map)) {
+    images_.push_back(transformed(source.part, layer.map));
+    instances_.push_back({static_cast<int>(parts_.size()), {}});
+    parts_.push_back(&images_.back());
+    return;
+  }
+  if (!source.slot) {
+    source.slot = parts_.size();
+    parts_.push_back(&source.part);
+  }
+  instances_.push_back({static_cast<int>(*source.slot), {layer.map.linear, layer.map.translation}});
+}
+
+/// The file, read if it was not yet.
+ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
+  const std::string key = path.lexically_normal().string();
+  const auto known = files_.find(key);
+  if (known != files_.end()) return known->second;
+  const std::string name = path.string();
+  const std::string format = extension(path);
+  if (format == ".mlp") throw IoError(name + ": a project within a project is not read");
+  if (!is_part_format(format)) {
+    throw IoError(name + ": no format of layers has the extension " + in_quotes(format));
+  }
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw IoError(name + ": is no file");
+  }
+  FileContent content = read_content(read_file(path), name, format, options_);
+  return files_.emplace(key, File{as_part(std::move(content), name), {}}).first->second;
+}
+
+/// Whether sources and patches can be numbered by an int, so that nothing fails half-way.
+bool ProjectLoader::has_room(const Model& model) const {
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  std::size_t sources = static_cast<std::size_t>(model.source_count());
+  std::size_t patches = static_cast<std::size_t>(model.patch_count());
+  for (const Instance& instance : instances_) {
+    const Part& part = *parts_[static_cast<std::size_t>(instance.part)];
+    sources +=
+        part.faces().size() + part.polygons().size() + part.edges().size() + part.vertices().size();
+    patches += part.patches().size();
+    if (sources > most || patches > most) return false;
+  }
+  return true;
+}
+
+void ProjectLoader::put_into(Model& model) {
+  for (Part* part : parts_) {
+    options_.progress.check();
+    part->connect(options_.smooth_angle);
+  }
+  if (!has_room(model)) {
+    throw LimitExceeded(file_ +
+                        ": the model would have more sources or patches than an int counts");
+  }
+  std::vector<Instance> all = model.instances();
+  const int first = static_cast<int>(model.parts().size());
+  for (Part* part : parts_) model.add_part(std::move(*part), options_.smooth_angle);
+  for (const Instance& instance : instances_) {
+    all.push_back({first + instance.part, instance.pose});
+  }
+  // Parts come with an instance at rest, which need not be one of the project's.
+  model.clear_instances();
+  for (const Instance& instance : all) model.add_instance(instance.part, instance.pose);
+}
+
+}  // namespace
+
+void read_project(const std::string& file, std::string_view data, Model& model,
+                  const ReadOptions& options) {
+  const std::vector<Layer> layers = ProjectParser(file, data, options.progress).parse();
+  ProjectLoader loader(file, options);
+  for (const Layer& layer : layers) loader.add(layer);
+  loader.put_into(model);
+}
+
+}  // namespace taut
