@@ -9,6 +9,8 @@ const std::vector<Format>& formats() {
       {".off", "Object File Format polygons", false, true, true},
       {".ply", "Polygon File Format, ascii and binary", false, true, true},
       {".stl", "STL triangles, ascii and binary", false, true, true},
+      {".taut.cbor", "Taut's exact model document, binary", true, false, false},
+      {".taut.json", "Taut's exact model document", true, false, false},
   };
   return all;
 }
@@ -19,7 +21,8 @@ std::string extension(const std::filesystem::path& path) {
   for (char& c : text) {
     if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  return text;
+  if (text != ".json" && text != ".cbor") return text;
+  return extension(path.stem()) == ".taut" ? ".taut" + text : text;
 }
 
 }  // namespace taut

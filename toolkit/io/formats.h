@@ -18,7 +18,7 @@ struct Format {
 /// All formats of this library, sorted by extension.
 const std::vector<Format>& formats();
 
-/// The path's extension in lower case: ".ply"; empty if it has none.
+/// The path's extension in lower case: ".ply", ".taut.json"; empty if it has none.
 std::string extension(const std::filesystem::path& path);
 
 }  // namespace taut

@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "taut/io/formats.h"
+#include "taut/io/model_document.h"
 #include "taut/io/read_bpt.h"
 #include "taut/io/read_obj.h"
+#include "taut/io/text_scanner.h"
 
 namespace taut {
 namespace {
@@ -25,6 +27,10 @@ Part read_part(const std::filesystem::path& path, const Progress& progress) {
 }  // namespace
 
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options) {
+  if (const std::string kind = extension(path); kind == ".taut.json" || kind == ".taut.cbor") {
+    const auto encoding = kind == ".taut.json" ? DocumentEncoding::json : DocumentEncoding::cbor;
+    return read_document(path.string(), read_file(path), encoding, model, options);
+  }
   Part part = read_part(path, options.progress);
   part.name = path.filename().string();
   options.progress.check();
