@@ -210,10 +210,12 @@ TEST_F(ReadModel, FilesThatCannotBeRead) {
   EXPECT_EQ(message(path("folder.bpt")), path("folder.bpt").string() + ": is a directory");
   EXPECT_EQ(message(file("a.step", "")),
             path("a.step").string() +
-                ": no format of models has the extension \".step\"; known are .bpt, .obj");
-  EXPECT_EQ(
-      message(file("a", "")),
-      path("a").string() + ": no format of models has the extension \"\"; known are .bpt, .obj");
+                ": no format of models has the extension \".step\"; known are .bpt, .obj, "
+                ".taut.cbor, .taut.json");
+  EXPECT_EQ(message(file("a", "")),
+            path("a").string() +
+                ": no format of models has the extension \"\"; known are .bpt, .obj, "
+                ".taut.cbor, .taut.json");
   EXPECT_TRUE(model.parts().empty());
 }
 
@@ -228,6 +230,9 @@ TEST_F(ReadModel, ExtensionInAnyCase) {
   EXPECT_EQ(part("A.BPT", "1 1 1 0 0 0 1 0 0 0 1 0 1 1 0").faces().size(), 1U);
   EXPECT_EQ(taut::extension("folder.x/A.Ply"), ".ply");
   EXPECT_EQ(taut::extension("folder.x/a"), "");
+  EXPECT_EQ(taut::extension("a.b.Taut.Json"), ".taut.json");
+  EXPECT_EQ(taut::extension("a.taut.cbor"), ".taut.cbor");
+  EXPECT_EQ(taut::extension("taut.json"), ".json");
 }
 
 TEST_F(ReadModel, AddsOnePartPerFile) {
