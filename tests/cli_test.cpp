@@ -349,6 +349,24 @@ TEST_F(Cli, VerifyFindsDamage) {
   EXPECT_GT(json["model_outside"], 0.1);
 }
 
+TEST_F(Cli, InfoConvertsToModelDocuments) {
+  EXPECT_EQ(run("info " + teapot_ + " -o a.taut.json").exit_code, 0);
+  EXPECT_EQ(run("info a.taut.json " + teapot_ + " -o both.taut.cbor").exit_code, 0);
+  EXPECT_EQ(run("info a.taut.json -o again.taut.json").exit_code, 0);
+  EXPECT_EQ(content(path("a.taut.json")), content(path("again.taut.json")));
+  const Json one = Json::parse(run("info --json " + teapot_).out);
+  const Json both = Json::parse(run("info --json both.taut.cbor").out);
+  EXPECT_EQ(both["input"]["patches"], 64);
+  EXPECT_EQ(both["input"]["edges"], 2 * one["input"]["edges"].get<int>());
+  EXPECT_EQ(both["input"]["box"], one["input"]["box"]);
+
+  expect_failure("info " + teapot_ + " -o a.json", 2, "a.json: a model is written as .taut.json");
+  expect_failure("info " + teapot_ + " -o -", 2, "a model is written as .taut.json");
+  expect_failure("info a.taut.json -o ./a.taut.json", 2, "is an input");
+  expect_failure("info " + teapot_ + " -o none/a.taut.json", 3, "there is no folder none");
+  EXPECT_EQ(file_count(), 3U);
+}
+
 TEST_F(Cli, PluginsListsFormats) {
   const Result text = run("plugins");
   EXPECT_EQ(text.exit_code, 0);

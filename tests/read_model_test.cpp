@@ -210,7 +210,7 @@ TEST_F(ReadModel, FilesThatCannotBeRead) {
             path("none.bpt").string() + ": cannot be opened: No such file or directory");
   std::filesystem::create_directory(path("folder.bpt"));
   EXPECT_EQ(message(path("folder.bpt")), path("folder.bpt").string() + ": is a directory");
-  const std::string known = "; known are .bpt, .mlp, .obj, .off, .ply, .stl, .xyz";
+  const std::string known = "; known are .bpt, .mlp, .obj, .off, .ply, .stl, .taut.cbor, .taut.json, .xyz";
   EXPECT_EQ(message(file("a.step", "")),
             path("a.step").string() + ": no format of models has the extension \".step\"" + known);
   EXPECT_EQ(message(file("a", "")),
@@ -233,6 +233,7 @@ TEST_F(ReadModel, ExtensionInAnyCase) {
   EXPECT_EQ(taut::extension("a.b.Taut.json"), ".taut.json");
   EXPECT_EQ(taut::extension("a.taut.cbor"), ".taut.cbor");
   EXPECT_EQ(taut::extension("a.hull.json"), ".hull.json");
+  EXPECT_EQ(taut::extension("taut.json"), ".json");
 }
 
 TEST_F(ReadModel, AddsOnePartPerFile) {

@@ -10,6 +10,8 @@ const std::vector<Format>& formats() {
       {".off", "Object File Format polygons", true, true, true},
       {".ply", "Polygon File Format, ascii and binary", true, true, true},
       {".stl", "STL triangles, ascii and binary", true, true, true},
+      {".taut.cbor", "Taut's exact model document, binary", true, false, false},
+      {".taut.json", "Taut's exact model document", true, false, false},
       {".xyz", "Points as text, one a line", true, false, false},
   };
   return all;

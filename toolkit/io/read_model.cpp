@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "taut/io/formats.h"
+#include "taut/io/model_document.h"
 #include "taut/io/read_part.h"
 #include "taut/io/read_project.h"
 #include "taut/io/text_scanner.h"
@@ -46,8 +47,11 @@ void read_model(std::string_view data, const std::string& name, const std::strin
   require_known(name, format);
   if (is_part_format(format)) {
     add(read_content(data, name, format, options), name, model, options);
-  } else {
+  } else if (format == ".mlp") {
     read_project(name, data, model, options);
+  } else {
+    const auto encoding = format == ".taut.json" ? DocumentEncoding::json : DocumentEncoding::cbor;
+    read_document(name, data, encoding, model, options);
   }
 }
 

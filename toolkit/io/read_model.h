@@ -29,8 +29,8 @@ struct ReadOptions {
 
 /// Reads a file into the model as one more part, by the file name's extension: `.bpt` (Bezier
 /// patches), `.obj` (free-form statements, polygons and points), `.off`, `.ply`, `.stl` (polygons)
-/// or `.xyz` (points); of a project, `.mlp`, the visible layers become instances. A part is named
-/// after its file.
+/// or `.xyz` (points), or the parts and instances of a model document, `.taut.json` or `.taut.cbor`;
+/// of a project, `.mlp`, the visible layers become instances. A part is named after its file.
 ///
 /// Nothing that a file says is trusted: counts, indices and numbers are checked before memory is
 /// taken, and the model is unchanged if anything is wrong.

@@ -5,6 +5,9 @@
 
 #include "command.h"
 #include "input.h"
+#include "output.h"
+#include "taut/io/formats.h"
+#include "taut/io/model_document.h"
 #include "text.h"
 
 namespace taut::tool {
@@ -127,8 +130,41 @@ std::string text_of(const Contents& file, bool names) {
   return text;
 }
 
-ExitCode run(const std::vector<std::string>& inputs, Console& console) {
+/// Puts parts and instances of several models together.
+class Collection {
+ public:
+  void add(const Model& model) {
+    const int first = int(all_.parts().size());
+    // Parts are connected already, by the angle they were read with.
+    for (const Part& part : model.parts()) all_.add_part(part, 0);
+    for (const Instance& instance : model.instances()) {
+      instances_.push_back({first + instance.part, instance.pose});
+    }
+  }
+  Model take() {
+    all_.clear_instances();
+    for (const Instance& instance : instances_) all_.add_instance(instance.part, instance.pose);
+    return std::move(all_);
+  }
+
+ private:
+  Model all_;
+  std::vector<Instance> instances_;
+};
+
+void check_output(const std::string& output, const std::vector<std::string>& inputs) {
+  const std::string kind = extension(output);
+  if (kind != ".taut.json" && kind != ".taut.cbor") {
+    throw UsageError(output + ": a model is written as .taut.json or .taut.cbor only");
+  }
+  check_outputs({}, output, inputs);
+}
+
+/// `output`: the model document that all inputs are written to, or empty.
+ExitCode run(const std::vector<std::string>& inputs, const std::string& output, Console& console) {
+  if (!output.empty()) check_output(output, inputs);
   std::vector<Contents> files;
+  Collection collection;
   double seconds_read = 0;
   double seconds_build = 0;
   for (const std::string& file : inputs) {
@@ -136,6 +172,11 @@ ExitCode run(const std::vector<std::string>& inputs, Console& console) {
     files.push_back(contents(input));
     seconds_read += input.seconds_read;
     seconds_build += input.seconds_build;
+    if (!output.empty()) collection.add(input.scene.model());
+  }
+  if (!output.empty()) {
+    write_model(output, collection.take());
+    console.note("wrote " + output);
   }
   if (console.options().json) {
     Json list = Json::array();
@@ -161,10 +202,16 @@ Command add_info(CLI::App& parent) {
   Command command = add_command(parent, "info", "What the inputs hold",
                                 "Examples:\n"
                                 "  taut info teapot.bpt\n"
-                                "  taut info a.bpt b.obj --json");
+                                "  taut info a.bpt b.obj --json\n"
+                                "  taut info a.bpt b.obj -o both.taut.json");
   const auto inputs = std::make_shared<std::vector<std::string>>();
+  const auto output = std::make_shared<std::string>();
   add_inputs(*command.app, *inputs);
-  command.run = [inputs](Console& console) { return run(*inputs, console); };
+  command.app
+      ->add_option("-o,--output", *output,
+                   "Model document that all inputs are written to: .taut.json, .taut.cbor")
+      ->option_text("FILE");
+  command.run = [inputs, output](Console& console) { return run(*inputs, *output, console); };
   return command;
 }
 
