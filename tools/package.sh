@@ -37,10 +37,17 @@ say "made ${packages[*]}"
 
 taut_setup fresh
 fresh=$(mktemp -d)
+chmod 755 "$fresh"
 trap 'rm -rf --one-file-system "$fresh"' EXIT
 
-# inside COMMAND...: in the fresh system.
-inside() { chroot "$fresh" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
+# inside COMMAND...: in the fresh system, with a /proc that no one else sees and nothing of this
+# environment but the way out.
+inside() {
+  # shellcheck disable=SC2016
+  unshare --mount sh -c 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"' "$fresh" \
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive ${http_proxy:+"http_proxy=$http_proxy"} "$@"
+}
 install_inside() {
   inside apt-get install -y -qq --no-install-recommends "$@" >"$fresh/apt.log" 2>&1 || {
     cat "$fresh/apt.log" >&2
@@ -61,14 +68,14 @@ rm -f "$fresh"/etc/dpkg/dpkg.cfg.d/*
 inside apt-get update -qq
 
 mkdir "$fresh/taut"
-cp "${packages[@]}" "$fresh/taut/"
-cp -r tests/consumer data "$fresh/taut/"
+cp -r tests/consumer data "${packages[@]}" "$fresh/taut/"
+version=$(dpkg-deb -f "${packages[0]}" Version)_$(dpkg-deb -f "${packages[0]}" Architecture)
 
 say "the command alone"
-install_inside /taut/taut_*.deb /taut/libtaut_*.deb
+install_inside "/taut/taut_$version.deb" "/taut/libtaut_$version.deb"
 inside taut --version
 say "the rest"
-install_inside /taut/libtaut-dev_*.deb g++ make cmake pkg-config man-db
+install_inside "/taut/libtaut-dev_$version.deb" g++ make cmake pkg-config man-db
 inside man --pager=cat taut >/dev/null
 say "is it complete?"
 inside /taut/consumer/check.sh /usr /taut/build /taut/data

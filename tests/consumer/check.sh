@@ -3,7 +3,6 @@
 # against it, by CMake and by pkg-config, in the folder WORK, which it empties first; reads the
 # models of DATA. Uses nothing of the build or the sources but this folder.
 set -euo pipefail
-shopt -s nullglob
 prefix=$(cd "$1" && pwd)
 data=$(cd "$3" && pwd)
 consumer=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -16,10 +15,14 @@ fail() {
   echo "check.sh: $*" >&2
   exit 1
 }
-# only FILE...: the one file that a pattern stands for.
+# only FILE...: the one of the files that is there.
 only() {
-  [[ $# == 1 && -e $1 ]] || fail "not one file: $*"
-  echo "$1"
+  local file found=()
+  for file in "$@"; do
+    [[ ! -e $file ]] || found+=("$file")
+  done
+  ((${#found[@]} == 1)) || fail "not one file: $*"
+  echo "${found[0]}"
 }
 pc=$(only "$prefix"/lib/{,*/}pkgconfig/taut.pc)
 libraries=$(dirname "$(dirname "$pc")")

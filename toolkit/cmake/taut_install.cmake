@@ -85,6 +85,7 @@ function(taut_install_configuration)
   endif()
   set(pc_folder "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig")
   file(RELATIVE_PATH prefix_from_pc "${pc_folder}" "${CMAKE_INSTALL_PREFIX}")
+  string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
   configure_file("${PROJECT_SOURCE_DIR}/toolkit/cmake/taut.pc.in" "${folder}/taut.pc" @ONLY)
   install(FILES "${folder}/taut.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
           COMPONENT libtaut-dev)

@@ -4,6 +4,7 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME taut)
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
 set(CPACK_PACKAGE_VENDOR "The Taut authors")
 set(CPACK_PACKAGE_CONTACT "The Taut authors <taut@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX "${CMAKE_INSTALL_PREFIX}")
@@ -42,9 +43,18 @@ set(CPACK_DEBIAN_LIBTAUT-DEV_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_LIBTAUT-DEV_DESCRIPTION
     "convex hulls of freeform models: development files\n${about}")
 
+file(WRITE "${PROJECT_BINARY_DIR}/installed/copyright" "\
+Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: taut
+
+Files: *
+Copyright: The Taut authors
+License: Apache-2.0
+ Debian systems have the text in /usr/share/common-licenses/Apache-2.0.
+")
 foreach(package IN LISTS CPACK_COMPONENTS_ALL)
-  install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${package}"
-          RENAME copyright COMPONENT ${package})
+  install(FILES "${PROJECT_BINARY_DIR}/installed/copyright"
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${package}" COMPONENT ${package})
 endforeach()
 
 include(CPack)
