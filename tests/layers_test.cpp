@@ -145,6 +145,38 @@ std::vector<std::string> violations(const fs::path& root, int& files) {
   return found;
 }
 
+/// The headers that are installed, as they are included: those that the layers' CMakeLists.txt name
+/// as PUBLIC_HEADERS.
+std::set<std::string> public_headers() {
+  std::istringstream list(TAUT_PUBLIC_HEADERS);
+  std::set<std::string> headers;
+  for (std::string header; list >> header;) headers.insert(header);
+  return headers;
+}
+
+/// One line for each include of a header of the toolkit that is not public, where only public ones
+/// may be included: in public headers, tools and plugins.
+std::vector<std::string> uses_of_private_headers(const fs::path& root,
+                                                 const std::set<std::string>& headers) {
+  std::vector<std::string> found;
+  for (const char* folder : {"toolkit", "tools", "plugins"}) {
+    if (!fs::exists(root / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+      const std::string file = entry.path().lexically_relative(root).generic_string();
+      const std::string inside = entry.path().lexically_relative(root / folder).generic_string();
+      if (folder == std::string("toolkit") && !headers.contains("taut/" + inside)) continue;
+      for (const Include& include : includes(entry.path())) {
+        if (!include.path.starts_with("taut/") || headers.contains(include.path)) continue;
+        found.push_back(file + ":" + std::to_string(include.line) + ": " + include.path +
+                        " is none of its layer's PUBLIC_HEADERS");
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 std::string joined(const std::vector<std::string>& lines) {
   std::ostringstream text;
   for (const std::string& line : lines) text << line << '\n';
@@ -238,6 +270,29 @@ TEST_F(Layers, FindsPlantedThirdPartyInPublicHeader) {
   EXPECT_EQ(violations_of("toolkit/io/report.cpp", "<nlohmann/json.hpp>"), 0U);
   EXPECT_EQ(violations_of("toolkit/core/geometry.h", "<glm/glm.hpp>"), 0U);
   EXPECT_EQ(violations_of("toolkit/core/geometry.h", "<cmath>"), 0U);
+}
+
+TEST_F(Layers, WhatIsInstalledNeedsNothingThatIsNot) {
+  const std::set<std::string> headers = public_headers();
+  EXPECT_GT(headers.size(), 15U);
+  EXPECT_TRUE(headers.contains("taut/hull/convex_hull.h"));
+  const std::vector<std::string> found = uses_of_private_headers(TAUT_SOURCE_DIR, headers);
+  EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST_F(Layers, FindsPlantedUseOfPrivateHeader) {
+  const std::set<std::string> headers = {"taut/hull/open.h", "taut/core/open.h"};
+  plant("toolkit/hull/open.h", "\"taut/core/open.h\"");
+  plant("toolkit/hull/closed.h", "\"taut/core/closed.h\"");
+  plant("toolkit/hull/open.cpp", "\"taut/core/closed.h\"");
+  EXPECT_EQ(joined(uses_of_private_headers(root_, headers)), "");
+  plant("toolkit/hull/open.h", "\"taut/hull/closed.h\"");
+  plant("tools/taut/a.cpp", "\"taut/hull/closed.h\"");
+  plant("plugins/irit/a.h", "\"taut/core/closed.h\"");
+  EXPECT_EQ(joined(uses_of_private_headers(root_, headers)),
+            "plugins/irit/a.h:1: taut/core/closed.h is none of its layer's PUBLIC_HEADERS\n"
+            "toolkit/hull/open.h:2: taut/hull/closed.h is none of its layer's PUBLIC_HEADERS\n"
+            "tools/taut/a.cpp:1: taut/hull/closed.h is none of its layer's PUBLIC_HEADERS\n");
 }
 
 TEST_F(Layers, NamesFileAndLine) {
