@@ -577,6 +577,20 @@ TEST_F(WriteMesh, PlanarStlHasTwoSidesOfTriangles) {
   }
 }
 
+TEST_F(WriteMesh, TiltedPlanarStlIsClosedAndConvex) {
+  for (const int corners : {3, 4, 8, 100, 1000}) {
+    std::vector<dvec3> points;
+    for (const dvec3& p : circle(corners)) points.emplace_back(p.x, 0.6 * p.y, 0.8 * p.y + p.x / 3);
+    const HullMesh mesh = hull_of(points);
+    ASSERT_EQ(mesh.n_faces(), 2U);
+    const double rounding = taut::write_mesh(path("a.stl"), mesh).rounding;
+    const PolygonMesh read = taut::read_mesh(path("a.stl"));
+    EXPECT_GE(volume(read), 0) << "rounding leaves a sliver";
+    EXPECT_LE(volume(read), 7 * rounding) << "the area is below 3.3";
+    expect_perfect(read, points, rounding, std::to_string(corners));
+  }
+}
+
 TEST_F(WriteMesh, SolidsThatFloatsFlattenAreStillClosed) {
   std::vector<dvec3> points;
   for (const dvec3& p : circle(50)) {

@@ -47,7 +47,7 @@ Color face_color(FaceKind kind, int source) {
   return color;
 }
 
-/// A segment's only edge, which MeshLab and others take as such.
+/// Its one edge is written as such, since it bounds no face.
 bool is_segment(const HullMesh& mesh) { return mesh.n_faces() == 0 && mesh.n_edges() == 1; }
 
 void write_ply(OutputBuffer& out, const HullMesh& mesh) {
