@@ -30,6 +30,7 @@ taut::Report sample() {
   report.mesh.measures.area = 53.66226;
   report.mesh.tolerance = 5e-324;
   report.mesh.distance_bound = 1.7976931348623157e308;
+  report.mesh.files = {{"a.ply", 0}, {"b.stl", 0.1}};
   report.queries = {7, 8};
   report.seconds = {1, 2, 3, 4, 5, 15.5};
   report.peak_bytes = 1L << 40;
@@ -52,8 +53,9 @@ TEST(Report, KeysOfTheContractInOrder) {
   EXPECT_EQ(keys(json["input"]),
             (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
   EXPECT_EQ(keys(json["hull"]), (Keys{"gap_bound"}));
-  EXPECT_EQ(keys(json["mesh"]),
-            (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance", "distance_bound"}));
+  EXPECT_EQ(keys(json["mesh"]), (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance",
+                                      "distance_bound", "files"}));
+  for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
   EXPECT_EQ(keys(json["queries"]), (Keys{"support", "newton_iterations"}));
   EXPECT_EQ(keys(json["seconds"]), (Keys{"read", "build", "sample", "mesh", "write", "total"}));
 }
@@ -80,6 +82,11 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["mesh"]["area"].get<double>(), 53.66226);
   EXPECT_EQ(json["mesh"]["tolerance"].get<double>(), 5e-324);
   EXPECT_EQ(json["mesh"]["distance_bound"].get<double>(), 1.7976931348623157e308);
+  ASSERT_EQ(json["mesh"]["files"].size(), 2U);
+  EXPECT_EQ(json["mesh"]["files"][0]["file"], "a.ply");
+  EXPECT_EQ(json["mesh"]["files"][0]["rounding"].get<double>(), 0);
+  EXPECT_EQ(json["mesh"]["files"][1]["file"], "b.stl");
+  EXPECT_EQ(json["mesh"]["files"][1]["rounding"].get<double>(), 0.1);
   EXPECT_EQ(json["queries"], Json({{"support", 7}, {"newton_iterations", 8}}));
   EXPECT_EQ(json["seconds"]["read"], 1.0);
   EXPECT_EQ(json["seconds"]["build"], 2.0);
@@ -112,8 +119,12 @@ TEST(Report, ListsOfAnyLengthStayLists) {
     ASSERT_TRUE(json["warnings"].is_array());
     ASSERT_EQ(json["warnings"].size(), static_cast<std::size_t>(n));
     for (const Json& warning : json["warnings"]) EXPECT_EQ(keys(warning), (Keys{"code", "text"}));
+    ASSERT_TRUE(json["mesh"]["files"].is_array());
+    ASSERT_EQ(json["mesh"]["files"].size(), static_cast<std::size_t>(n));
+    for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
     report.input.files.push_back("file");
     report.warnings.push_back({"code", "text"});
+    report.mesh.files.push_back({"file", 0});
   }
 }
 

@@ -12,12 +12,16 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <random>
 #include <set>
 #include <sstream>
 #include <vector>
 
 #include "taut/core/error.h"
 #include "taut/core/predicates.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/verify.h"
 #include "taut/io/read_mesh.h"
 #include "temporary_folder.h"
 
@@ -191,12 +195,13 @@ TEST_F(WriteMesh, RoundTripsEveryBit) {
 TEST_F(WriteMesh, RoundTripsExtremeNumbers) {
   const std::vector<dvec3> points = {{5e-324, -0.0, 1.7976931348623157e308},
                                      {1e22, -2.2250738585072014e-308, 123456789.12345679},
-                                     {0.1 + 0.2, 1.0 / 3, -1e-5}};
-  const HullMesh mesh = mesh_of(points, {{0, 1, 2}, {2, 1, 0}});
+                                     {0.1 + 0.2, 1.0 / 3, -1e-5},
+                                     {1e-300, -1e300, 2.2250738585072009e-308}};
+  const HullMesh mesh = mesh_of(points, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {3, 2, 1}});
   for (const std::string& name : exact_formats) {
     const PolygonMesh read = round_trip(name, mesh);
-    ASSERT_EQ(read.points.size(), 3U);
-    for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(read.points.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
       for (int k = 0; k < 3; ++k) {
         EXPECT_EQ(std::bit_cast<std::uint64_t>(read.points[i][k]),
                   std::bit_cast<std::uint64_t>(points[i][k]))
@@ -214,7 +219,7 @@ TEST_F(WriteMesh, ClosedMeshesStayClosed) {
     for (const std::string& name : all_formats) {
       const PolygonMesh read = round_trip(name, mesh);
       EXPECT_TRUE(is_closed(read)) << name;
-      EXPECT_EQ(read.points.size(), original.points.size()) << name;
+      EXPECT_TRUE(name == "a.stl" || read.points.size() == original.points.size()) << name;
       EXPECT_NEAR(volume(read), volume(original), 1e-6 * volume(original)) << name;
     }
   }
@@ -264,15 +269,127 @@ TEST_F(WriteMesh, SplittingMakesNoFlatPieces) {
   }
 }
 
-TEST_F(WriteMesh, LowerDimensions) {
-  const HullMesh point = mesh_of({{1, 2, 3}}, {});
-  const HullMesh outline = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}});
-  for (const std::string& name : exact_formats) {
-    EXPECT_EQ(round_trip(name, point).points, points_of(point));
-    const PolygonMesh read = round_trip(name, outline);
-    EXPECT_TRUE(is_closed(read));
-    EXPECT_EQ(volume(read), 0);
+// ---------------------------------------------------------------- dimensions below 3
+
+taut::Model model_of(const std::vector<dvec3>& points) {
+  taut::Model model;
+  taut::Part part;
+  part.add_points(points);
+  model.add_instance(model.add_part(std::move(part), taut::smooth_join_angle), {});
+  return model;
+}
+
+HullMesh hull_of(const std::vector<dvec3>& points) {
+  return taut::convex_hull(model_of(points)).mesh;
+}
+
+std::vector<dvec3> circle(int corners) {
+  std::vector<dvec3> points;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners;
+    points.emplace_back(std::cos(angle), std::sin(angle), 0);
   }
+  return points;
+}
+
+const std::vector<dvec3> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+
+void expect_perfect(const PolygonMesh& mesh, const std::vector<dvec3>& points, double tolerance,
+                    const std::string& name) {
+  const taut::Scene scene(model_of(points));
+  const taut::Verification found = taut::verify(mesh, scene);
+  EXPECT_TRUE(found.closed && found.manifold && found.oriented && found.topological_sphere) << name;
+  EXPECT_TRUE(found.no_zero_area) << name;
+  EXPECT_TRUE(found.convex) << name;
+  // What verify() measures is rounded itself.
+  const double slack = taut::support_slack * scene.diagonal();
+  EXPECT_LE(found.model_outside, tolerance + slack) << name;
+  EXPECT_LE(found.mesh_outside, tolerance + slack) << name;
+}
+
+TEST_F(WriteMesh, LowerDimensionsAreVerifiedHulls) {
+  const std::vector<std::vector<dvec3>> models = {{{0.1, 2, 3}},
+                                                  {{0, 0.1, 0}, {1, 1, 1}},
+                                                  {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}},
+                                                  square,
+                                                  circle(8),
+                                                  circle(256),
+                                                  circle(1000)};
+  for (const auto& points : models) {
+    const HullMesh mesh = hull_of(points);
+    for (const std::string& name : exact_formats) {
+      const PolygonMesh read = round_trip(name, mesh);
+      EXPECT_EQ(read.points, points_of(mesh)) << name;
+      expect_perfect(read, points, 0, name);
+    }
+  }
+}
+
+TEST_F(WriteMesh, SegmentsHaveAnEdge) {
+  const HullMesh segment = hull_of({{0, 0, 0}, {1, 0.5, 0}, {2, 1, 0}});
+  for (const std::string& name : exact_formats) taut::write_mesh(path(name), segment);
+  EXPECT_EQ(content(path("a.obj")), "# Convex hull by Taut\nv 0 0 0\nv 2 1 0\nl 1 2\n");
+  EXPECT_EQ(content(path("a.off")), "OFF\n2 0 1\n0 0 0\n2 1 0\n");
+  const std::string ply = content(path("a.ply"));
+  EXPECT_NE(ply.find("element face 0\n"), ply.npos);
+  EXPECT_NE(ply.find("element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"),
+            ply.npos);
+  EXPECT_TRUE(ply.ends_with(std::string("\0\0\0\0\1\0\0\0", 8)));
+  EXPECT_EQ(file_count(), 3U) << "no faces, no materials";
+}
+
+TEST_F(WriteMesh, PointsAreVertices) {
+  const HullMesh point = hull_of({{1, 2, 3}, {1, 2, 3}});
+  for (const std::string& name : exact_formats) taut::write_mesh(path(name), point);
+  EXPECT_EQ(content(path("a.obj")), "# Convex hull by Taut\nv 1 2 3\np 1\n");
+  EXPECT_EQ(content(path("a.off")), "OFF\n1 0 0\n1 2 3\n");
+  const std::string ply = content(path("a.ply"));
+  EXPECT_NE(ply.find("element vertex 1\n"), ply.npos);
+  EXPECT_EQ(ply.find("element edge"), ply.npos);
+}
+
+TEST_F(WriteMesh, HullsKeepTheirExtremePointsToTheLastBit) {
+  const std::vector<dvec3> points = {
+      {0.1 + 0.2, 0, 0}, {-1.0 / 3, 1e-300, 0}, {0, std::numbers::e, 5e-324}, {0, 0, 2.0 / 3}};
+  for (const std::string& name : exact_formats) {
+    std::vector<dvec3> left = points;
+    for (const dvec3& p : round_trip(name, hull_of(points)).points) {
+      std::erase_if(left, [&](const dvec3& q) {
+        using Bits = std::array<std::uint64_t, 3>;
+        return std::bit_cast<Bits>(p) == std::bit_cast<Bits>(q);
+      });
+    }
+    EXPECT_TRUE(left.empty()) << name;
+  }
+}
+
+// ---------------------------------------------------------------- to memory
+
+TEST_F(WriteMesh, MemoryHoldsTheSameBytes) {
+  for (const HullMesh& mesh : {box(), prism(20'000)}) {
+    for (const char* format : {".ply", ".off", ".stl"}) {
+      const double rounding = taut::write_mesh(path(std::string("a") + format), mesh).rounding;
+      std::string data = "before";
+      EXPECT_EQ(taut::write_mesh(data, "-", format, mesh).rounding, rounding);
+      EXPECT_EQ(data, "before" + content(path(std::string("a") + format)));
+    }
+  }
+}
+
+TEST_F(WriteMesh, ObjInMemoryIsWithoutMaterials) {
+  std::string data;
+  taut::write_mesh(data, "-", ".obj", box());
+  EXPECT_EQ(data.find("mtl"), data.npos) << data;
+  EXPECT_EQ(taut::read_mesh(data, "-", ".obj").points, points_of(box()));
+}
+
+TEST_F(WriteMesh, MemoryIsUntouchedByFailures) {
+  std::string data = "before";
+  EXPECT_EQ(message_of<IoError>([&] { taut::write_mesh(data, "standard output", "", box()); }),
+            "standard output: no format of meshes has the extension \"\"; known are .obj, .off, "
+            ".ply, .stl");
+  EXPECT_THROW(taut::write_mesh(data, "-", ".stl", hull_of({{0, 0, 0}})), IoError);
+  EXPECT_EQ(data, "before");
 }
 
 // ---------------------------------------------------------------- PLY
@@ -432,6 +549,130 @@ TEST_F(WriteMesh, StlRefusesWhatFloatsCannotHold) {
             path("a.stl").string() +
                 ": a coordinate of vertex 1 is beyond the floats of STL; .ply holds it");
   EXPECT_EQ(file_count(), 0U);
+}
+
+TEST_F(WriteMesh, StlHoldsTrianglesOnly) {
+  const std::pair<HullMesh, std::string> cases[] = {
+      {hull_of({{1, 2, 3}}), "a point"},
+      {hull_of({{0, 0, 0}, {1, 2, 3}}), "a segment"},
+      {hull_of({{1e9, 1, 0}, {1e9, 2, 0}, {1e9 + 1, 1, 0}}), "a segment in floats"},
+      {hull_of({{1e9, 1e9, 0}, {1e9, 1e9 + 1, 0}, {1e9 + 1, 1e9, 0}}), "a point in floats"},
+      {HullMesh(), "empty"}};
+  for (const auto& [mesh, what] : cases) {
+    EXPECT_EQ(message_of<IoError>([&] { taut::write_mesh(path("a.stl"), mesh); }),
+              path("a.stl").string() + ": an STL file holds triangles only, and the hull is " +
+                  what + "; .ply holds it");
+  }
+  EXPECT_EQ(file_count(), 0U);
+}
+
+TEST_F(WriteMesh, PlanarStlHasTwoSidesOfTriangles) {
+  for (const auto& points : {square, circle(8), circle(9), circle(100), circle(1000)}) {
+    const double rounding = taut::write_mesh(path("a.stl"), hull_of(points)).rounding;
+    const PolygonMesh read = taut::read_mesh(path("a.stl"));
+    EXPECT_EQ(read.points.size(), points.size());
+    EXPECT_EQ(read.polygons.size(), 2 * (points.size() - 2));
+    EXPECT_EQ(volume(read), 0);
+    expect_perfect(read, points, rounding, std::to_string(points.size()));
+  }
+}
+
+TEST_F(WriteMesh, TiltedPlanarStlIsClosedAndConvex) {
+  for (const int corners : {3, 4, 8, 100, 1000}) {
+    std::vector<dvec3> points;
+    for (const dvec3& p : circle(corners)) points.emplace_back(p.x, 0.6 * p.y, 0.8 * p.y + p.x / 3);
+    const HullMesh mesh = hull_of(points);
+    ASSERT_EQ(mesh.n_faces(), 2U);
+    const double rounding = taut::write_mesh(path("a.stl"), mesh).rounding;
+    const PolygonMesh read = taut::read_mesh(path("a.stl"));
+    EXPECT_GE(volume(read), 0) << "rounding leaves a sliver";
+    EXPECT_LE(volume(read), 7 * rounding) << "the area is below 3.3";
+    expect_perfect(read, points, rounding, std::to_string(corners));
+  }
+}
+
+TEST_F(WriteMesh, SolidsThatFloatsFlattenAreStillClosed) {
+  std::vector<dvec3> points;
+  for (const dvec3& p : circle(50)) {
+    points.emplace_back(p.x, p.y, 1e8 + p.x);
+    points.emplace_back(0.5 * p.x, 0.5 * p.y, 1e8 - 1);
+  }
+  const HullMesh mesh = hull_of(points);
+  EXPECT_GT(volume({points_of(mesh), polygons_of(mesh)}), 0);
+  const double rounding = taut::write_mesh(path("a.stl"), mesh).rounding;
+  EXPECT_NEAR(rounding, 1, 1e-6);
+  const PolygonMesh read = taut::read_mesh(path("a.stl"));
+  for (const dvec3& p : read.points) EXPECT_EQ(p.z, 1e8);
+  expect_perfect(read, points, rounding, "");
+}
+
+/// The farthest that a vertex lies from its float.
+long double largest_move(const HullMesh& mesh) {
+  long double largest = 0;
+  for (const dvec3& p : points_of(mesh)) {
+    long double squares = 0;
+    for (int i = 0; i < 3; ++i) {
+      const long double move = static_cast<long double>(p[i]) - static_cast<float>(p[i]);
+      squares += move * move;
+    }
+    largest = std::max(largest, std::sqrt(squares));
+  }
+  return largest;
+}
+
+TEST_F(WriteMesh, StlIsConvexAtAllPlacesAndSizes) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> gaussian;
+  std::uniform_real_distribution<double> exponent(-1, 7);
+  for (int trial = 0; trial < 60; ++trial) {
+    const double size = trial % 3 == 0 ? 1e-30 : trial % 3 == 1 ? 1 : 1e20;
+    const dvec3 place = size * std::pow(10, exponent(random)) *
+                        dvec3(gaussian(random), gaussian(random), gaussian(random));
+    const double flatness = trial % 2 == 0 ? 1 : std::pow(10, -exponent(random));
+    const dvec3 axis = taut::unit({gaussian(random), gaussian(random), gaussian(random)});
+    std::vector<dvec3> points;
+    for (int i = 0; i < 500; ++i) {
+      dvec3 p = taut::unit({gaussian(random), gaussian(random), gaussian(random)});
+      p -= (1 - flatness) * glm::dot(p, axis) * axis;
+      points.push_back(place + size * p);
+    }
+    const HullMesh mesh = hull_of(points);
+    const double rounding = taut::write_mesh(path("a.stl"), mesh).rounding;
+    EXPECT_GE(rounding, largest_move(mesh));
+    EXPECT_LE(rounding, largest_move(mesh) * (1 + 1e-14L));
+    expect_perfect(taut::read_mesh(path("a.stl")), points, rounding, std::to_string(trial));
+  }
+}
+
+TEST_F(WriteMesh, StlLeavesOutVerticesThatAreNotExtreme) {
+  const PolygonMesh read = round_trip("a.stl", pyramid_with_collinear_vertices(4));
+  EXPECT_EQ(read.points.size(), 5U);
+  EXPECT_EQ(read.polygons.size(), 6U);
+}
+
+TEST_F(WriteMesh, RoundingIsNeverUnderstated) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> exponent(-320, 38);
+  std::uniform_real_distribution<double> mantissa(-1, 1);
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<dvec3> points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    dvec3& p = points.emplace_back(0);
+    for (int i = 0; i < 3; ++i) {
+      p[i] = mantissa(random) * std::pow(10, trial < 100 ? -300 - trial / 5.0 : exponent(random));
+    }
+    const HullMesh mesh = mesh_of(points, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}});
+    const double rounding = taut::write_mesh(path("a.stl"), mesh).rounding;
+    EXPECT_GE(rounding, largest_move(mesh));
+    EXPECT_LE(rounding, largest_move(mesh) * (1 + 1e-14L) + 1e-323L);
+  }
+}
+
+TEST_F(WriteMesh, OnlyStlRounds) {
+  for (const std::string& name : exact_formats) {
+    EXPECT_EQ(taut::write_mesh(path(name), box()).rounding, 0);
+  }
+  EXPECT_GT(taut::write_mesh(path("a.stl"), box()).rounding, 0);
+  EXPECT_EQ(taut::write_mesh(path("a.stl"), hull_of(square)).rounding, 0);
 }
 
 // ---------------------------------------------------------------- failures

@@ -11,6 +11,7 @@
 #include "taut/hull/affine_span.h"
 #include "taut/hull/coarse_hull.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/model_points.h"
 #include "taut/hull/outline.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/polytope_mesh.h"
@@ -23,109 +24,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// Sizes at which no product of the hull's arithmetic leaves the range of doubles.
-constexpr int safe_exponent = 200;
-
-/// The power of two by which coordinates up to this size are multiplied: one for all usual sizes.
-double scale_for(double largest) {
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  if (largest == 0 || std::abs(exponent) <= safe_exponent) return 1;
-  return std::ldexp(1.0, std::min(-exponent, 1023));
-}
-
-/// All points of a model, placed by its instances.
-class ModelPoints {
- public:
-  explicit ModelPoints(const Model& model) : model_(model) {
-    Box box;
-    for_each([&](const dvec3& x, bool) { box.include(x); });
-    const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-    scale_ = scale_for(std::max({reach.x, reach.y, reach.z}));
-    diagonal_ = scale_ * taut::diagonal(box);
-    reach_ = scale_ * (reach.x + reach.y + reach.z);
-    int count = 0;
-    for (const Instance& instance : model.instances()) {
-      first_.push_back(count);
-      count += part_of(instance).point_count();
-    }
-    if (scale_ == 1 && model.instances().size() == 1 && at_rest(model.instances().front())) {
-      points_ = part_of(model.instances().front()).vertices();
-      return;
-    }
-    moved_.reserve(std::size_t(count));
-    for_each([&](const dvec3& x, bool moved) {
-      moved_.push_back(scale_ * x);
-      any_moved_ = any_moved_ || moved;
-    });
-    points_ = moved_;
-  }
-
-  std::span<const dvec3> points() const { return points_; }
-  /// What coordinates were multiplied by.
-  double scale() const { return scale_; }
-  double diagonal() const { return diagonal_; }
-  /// The sum of the largest coordinates' sizes.
-  double reach() const { return reach_; }
-  /// How far the points may lie from the instances' true ones.
-  double placement_bound() const { return any_moved_ ? coordinate_rounding * reach_ : 0; }
-
-  /// The source of the point of this number.
-  int source(int point) const { return model_.source_id(place_of(point)); }
-  /// The point as it stands in the model, not multiplied.
-  dvec3 model_point(int point) const {
-    const Source place = place_of(point);
-    const Instance& instance = model_.instances()[std::size_t(place.instance)];
-    const dvec3& x = part_of(instance).vertices()[std::size_t(place.index)];
-    return at_rest(instance) ? x : instance.pose(x);
-  }
-
-  /// Calls visit with the source and the corners, by number of points, of every polygon.
-  template <class Visit>
-  void for_each_polygon(Visit visit) const {
-    std::vector<int> corners;
-    for (int i = 0; i < int(model_.instances().size()); ++i) {
-      const Part& part = part_of(model_.instances()[std::size_t(i)]);
-      for (int k = 0; k < int(part.polygons().size()); ++k) {
-        corners = part.polygons()[std::size_t(k)];
-        for (int& c : corners) c += first_[std::size_t(i)];
-        visit(model_.source_id({SourceKind::face, i, k}), corners);
-      }
-    }
-  }
-
- private:
-  static bool at_rest(const Instance& instance) {
-    return instance.pose.rotation == dmat3(1.0) && instance.pose.translation == dvec3(0.0);
-  }
-  const Part& part_of(const Instance& instance) const {
-    return model_.parts()[std::size_t(instance.part)];
-  }
-  Source place_of(int point) const {
-    const auto next = std::upper_bound(first_.begin(), first_.end(), point);
-    const auto instance = std::size_t(next - first_.begin()) - 1;
-    return {SourceKind::vertex, int(instance), point - first_[instance]};
-  }
-  template <class Visit>
-  void for_each(Visit visit) const {
-    for (const Instance& instance : model_.instances()) {
-      const bool moved = !at_rest(instance);
-      for (const dvec3& x : part_of(instance).vertices()) {
-        visit(moved ? instance.pose(x) : x, moved);
-      }
-    }
-  }
-
-  const Model& model_;
-  std::vector<int> first_;  ///< per instance: the number of its first point
-  std::vector<dvec3> moved_;
-  std::span<const dvec3> points_;
-  double scale_ = 1;
-  double diagonal_ = 0;
-  double reach_ = 0;
-  bool any_moved_ = false;
-};
 
 /// Builds the hull of whatever dimension from all points.
 class PolyhedralHull {
@@ -151,17 +49,23 @@ class PolyhedralHull {
                    double off_plane);
   void make_solid(const PointHull& hull);
   void make_polytope(const PointHull& hull, const std::vector<int>* original = nullptr);
-  void finish(const std::vector<int>& corners);
-  dvec3 normal_of(OpenMesh::FaceHandle f, const std::vector<int>& corners) const;
-  void label_faces(const PointHull& hull, const PointHull::Polygons& polygons,
-                   const std::vector<int>& vertex_of);
+  void finish(std::vector<int> corners);
+  void join_hull_faces();
+  dvec3 normal_of(OpenMesh::FaceHandle f) const;
+  double height(const dvec3& p, OpenMesh::FaceHandle f) const;
+  void label_faces();
 
   const dvec3& point(int i) const { return points_.points()[std::size_t(i)]; }
+  const dvec3& point_at(OpenMesh::VertexHandle v) const {
+    return point(corners_[std::size_t(v.idx())]);
+  }
 
   ModelPoints points_;
   const HullOptions& options_;
   double width_;  ///< what is put down to rounding, scaled as the points are
   Hull result_;
+  std::vector<int> corners_;    ///< per vertex of the mesh: its number among the points
+  std::vector<dvec3> normals_;  ///< per face of the mesh
 };
 
 Hull PolyhedralHull::run() {
@@ -271,28 +175,38 @@ void PolyhedralHull::make_solid(const PointHull& hull) {
   }
 }
 
-/// `original`: the numbers of the hull's points among all, where they differ.
+/// Convex polygons as fans of triangles.
+std::vector<std::vector<int>> triangulated(const std::vector<std::vector<int>>& polygons) {
+  std::vector<std::vector<int>> triangles;
+  for (const std::vector<int>& p : polygons) {
+    for (std::size_t k = 1; k + 1 < p.size(); ++k) triangles.push_back({p[0], p[k], p[k + 1]});
+  }
+  return triangles;
+}
+
+/// `original`: the numbers of a coarse hull's points among all. Which of its facets are exactly
+/// coplanar is chance, so all are triangles.
 void PolyhedralHull::make_polytope(const PointHull& hull, const std::vector<int>* original) {
   result_.kind = HullKind::solid;
-  const PointHull::Polygons polygons = hull.merged_polygons();
+  PointHull::Polygons polygons = hull.merged_polygons();
+  if (original != nullptr) polygons.loops = triangulated(polygons.loops);
   options_.progress.update("mesh", 0);
   std::vector<int> corners;  // per vertex of the mesh
-  result_.mesh = bare_mesh(hull, 1, polygons, corners);
+  result_.mesh = bare_mesh(hull, 1, std::move(polygons), corners);
   if (original != nullptr) {
     for (int& c : corners) c = (*original)[std::size_t(c)];
   }
-  finish(corners);
-  std::vector<int> vertex_of(points_.points().size(), -1);
-  for (std::size_t v = 0; v < corners.size(); ++v) vertex_of[std::size_t(corners[v])] = int(v);
-  label_faces(hull, polygons, vertex_of);
+  finish(std::move(corners));
+  if (original != nullptr) join_hull_faces();
+  label_faces();
 }
 
-dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f, const std::vector<int>& corners) const {
+dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f) const {
   dvec3 normal(0.0);
   std::optional<dvec3> first;
   dvec3 before(0.0);
   for (const auto v : result_.mesh.fv_range(f)) {
-    const dvec3 p = point(corners[std::size_t(v.idx())]);
+    const dvec3& p = point_at(v);
     if (!first) first = before = p;
     normal += glm::cross(before - *first, p - *first);
     before = p;
@@ -301,45 +215,88 @@ dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f, const std::vector<int>& 
 }
 
 /// Puts the vertices, which are these points, in their places, and labels them and the faces.
-void PolyhedralHull::finish(const std::vector<int>& corners) {
+void PolyhedralHull::finish(std::vector<int> corners) {
+  corners_ = std::move(corners);
   HullMesh& mesh = result_.mesh;
   const float bound =
       float_above((result_.distance_bound + points_.placement_bound()) / points_.scale());
   for (const auto v : mesh.vertices()) {
-    const dvec3 x = points_.model_point(corners[std::size_t(v.idx())]);
+    const int number = corners_[std::size_t(v.idx())];
+    const dvec3 x = points_.model_point(number);
     mesh.set_point(v, {x.x, x.y, x.z});
-    mesh.data(v).source = points_.source(corners[std::size_t(v.idx())]);
+    mesh.data(v).source = points_.source(number);
     mesh.data(v).quality = bound;
   }
-  std::vector<dvec3> normals(corners.size(), dvec3(0.0));
+  std::vector<dvec3> vertex_normals(corners_.size(), dvec3(0.0));
   for (const auto f : mesh.faces()) {
     mesh.data(f).kind = FaceKind::facet;
     mesh.data(f).hull_face = f.idx();
+    normals_.push_back(normal_of(f));
     // Both sides of a planar hull would cancel: its vertices take the first one's.
     if (result_.kind == HullKind::planar && f.idx() > 0) continue;
-    const dvec3 normal = normal_of(f, corners);
-    for (const auto v : mesh.fv_range(f)) normals[std::size_t(v.idx())] += normal;
+    for (const auto v : mesh.fv_range(f)) vertex_normals[std::size_t(v.idx())] += normals_.back();
   }
   for (const auto v : mesh.vertices()) {
-    const dvec3 n = unit(normals[std::size_t(v.idx())]);
+    const dvec3 n = unit(vertex_normals[std::size_t(v.idx())]);
     mesh.set_normal(v, {n.x, n.y, n.z});
   }
   for (const auto e : mesh.edges()) mesh.data(e).feature = true;
 }
 
-/// Finds for every face the first polygon of the input that lies in it and touches a corner.
-void PolyhedralHull::label_faces(const PointHull& hull, const PointHull::Polygons& polygons,
-                                 const std::vector<int>& vertex_of) {
+/// Height above a face, up to rounding.
+double PolyhedralHull::height(const dvec3& p, OpenMesh::FaceHandle f) const {
+  const HullMesh& mesh = result_.mesh;
+  const auto corner = mesh.to_vertex_handle(mesh.halfedge_handle(f));
+  return glm::dot(p - point_at(corner), normals_[std::size_t(f.idx())]);
+}
+
+/// Numbers as one hull face what rounding keeps from being coplanar.
+void PolyhedralHull::join_hull_faces() {
   HullMesh& mesh = result_.mesh;
+  std::vector<int> face(mesh.n_faces(), -1);
+  std::vector<OpenMesh::FaceHandle> stack;
+  int count = 0;
+  for (const auto start : mesh.faces()) {
+    if (face[std::size_t(start.idx())] >= 0) continue;
+    face[std::size_t(start.idx())] = count;
+    stack.assign(1, start);
+    while (!stack.empty()) {
+      const auto f = stack.back();
+      stack.pop_back();
+      for (const auto g : mesh.ff_range(f)) {
+        const auto corners = mesh.fv_range(g);
+        const bool flat = std::all_of(corners.begin(), corners.end(), [&](auto v) {
+          return std::abs(height(point_at(v), start)) <= width_;
+        });
+        if (face[std::size_t(g.idx())] >= 0 || !flat) continue;
+        face[std::size_t(g.idx())] = count;
+        stack.push_back(g);
+      }
+    }
+    ++count;
+  }
+  for (const auto f : mesh.faces()) mesh.data(f).hull_face = face[std::size_t(f.idx())];
+  for (const auto e : mesh.edges()) {
+    const auto f = mesh.face_handle(mesh.halfedge_handle(e, 0));
+    const auto g = mesh.face_handle(mesh.halfedge_handle(e, 1));
+    mesh.data(e).feature = mesh.data(f).hull_face != mesh.data(g).hull_face;
+  }
+}
+
+/// Finds for every face the first polygon of the input that lies in it and touches a corner.
+void PolyhedralHull::label_faces() {
+  HullMesh& mesh = result_.mesh;
+  std::vector<int> vertex_of(points_.points().size(), -1);
+  for (std::size_t v = 0; v < corners_.size(); ++v) vertex_of[std::size_t(corners_[v])] = int(v);
   points_.for_each_polygon([&](int source, const std::vector<int>& corners) {
     const auto touching = std::find_if(corners.begin(), corners.end(),
                                        [&](int c) { return vertex_of[std::size_t(c)] >= 0; });
     if (touching == corners.end()) return;
     for (const auto f : mesh.vf_range(OpenMesh::VertexHandle(vertex_of[std::size_t(*touching)]))) {
       if (mesh.data(f).source >= 0) continue;
-      const PlaneSide& plane = hull.facet(polygons.facets[std::size_t(f.idx())]).side;
-      const bool lies_in = std::all_of(corners.begin(), corners.end(),
-                                       [&](int c) { return plane.side(point(c)) == Sign::zero; });
+      const bool lies_in = std::all_of(corners.begin(), corners.end(), [&](int c) {
+        return std::abs(height(point(c), f)) <= width_;
+      });
       if (lies_in) mesh.data(f).source = source;
     }
   });

@@ -12,7 +12,8 @@ namespace taut {
 class FilePolygons {
  public:
   /// Larger faces are split along diagonals, into convex pieces of the same vertices. No piece has
-  /// all its corners on one line unless its face has.
+  /// all its corners on one line unless its face has. The two sides of a planar hull have no
+  /// diagonal in common.
   /// @pre faces are convex; most >= 3
   FilePolygons(const HullMesh& mesh, std::size_t most);
 
@@ -25,7 +26,7 @@ class FilePolygons {
   OpenMesh::FaceHandle face(std::size_t i) const { return OpenMesh::FaceHandle(faces_[i]); }
 
  private:
-  void add(const HullMesh& mesh, int face, std::vector<int> polygon, std::size_t most);
+  void add(int face, const std::vector<int>& polygon);
 
   std::vector<int> corners_;
   std::vector<std::size_t> ends_ = {0};

@@ -5,12 +5,9 @@
 #include <utility>
 
 #include "taut/core/error.h"
-#include "taut/io/text_scanner.h"
 
 namespace taut {
 namespace {
-
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -38,17 +35,7 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
 }
 
-OutputFile& OutputFile::text(std::string_view text) {
-  buffer_ += text;
-  if (buffer_.size() >= buffer_bytes) flush();
-  return *this;
-}
-
-OutputFile& OutputFile::text(long number) { return text(std::to_string(number)); }
-
-OutputFile& OutputFile::text(double number) { return text(shortest(number)); }
-
-void OutputFile::flush() {
+void OutputFile::drain() {
   if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) != buffer_.size()) {
     fail("cannot be written", reason(errno));
   }
@@ -56,7 +43,7 @@ void OutputFile::flush() {
 }
 
 void OutputFile::finish() {
-  flush();
+  drain();
   if (std::fclose(file_.release()) != 0) fail("cannot be written", reason(errno));
 }
 

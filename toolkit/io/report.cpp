@@ -24,13 +24,16 @@ Json to_json(const Report::ExactHull& hull) {
 }
 
 Json to_json(const Report::Mesh& mesh) {
+  Json files = Json::array();
+  for (const auto& f : mesh.files) files.push_back({{"file", f.file}, {"rounding", f.rounding}});
   return {{"vertices", mesh.vertices},
           {"edges", mesh.edges},
           {"faces", mesh.faces},
           {"volume", mesh.measures.volume},
           {"area", mesh.measures.area},
           {"tolerance", mesh.tolerance},
-          {"distance_bound", mesh.distance_bound}};
+          {"distance_bound", mesh.distance_bound},
+          {"files", files}};
 }
 
 Json to_json(const Report::Queries& queries) {

@@ -33,6 +33,12 @@ struct Report {
     Measures measures;
     double tolerance = 0;
     double distance_bound = 0;
+    /// What was written; `rounding` as WrittenMesh has it, to be added to distance_bound.
+    struct File {
+      std::string file;
+      double rounding = 0;
+    };
+    std::vector<File> files;
   } mesh;
   struct Queries {
     long support = 0, newton_iterations = 0;

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "taut/io/file_polygons.h"
 #include "taut/io/formats.h"
 #include "taut/io/output_file.h"
+#include "taut/io/rounded_hull.h"
 
 namespace taut {
 namespace {
@@ -44,9 +47,11 @@ Color face_color(FaceKind kind, int source) {
   return color;
 }
 
-void write_ply(const std::filesystem::path& path, const HullMesh& mesh) {
+/// Its one edge is written as such, since it bounds no face.
+bool is_segment(const HullMesh& mesh) { return mesh.n_faces() == 0 && mesh.n_edges() == 1; }
+
+void write_ply(OutputBuffer& out, const HullMesh& mesh) {
   const FilePolygons polygons(mesh, most_corners);
-  OutputFile out(path);
   out.text("ply\nformat binary_little_endian 1.0\n")
       .text("comment convex hull by Taut; kind: 0 patch, 1 scroll, 2 facet\n")
       .text("element vertex ")
@@ -58,7 +63,9 @@ void write_ply(const std::filesystem::path& path, const HullMesh& mesh) {
       .text(static_cast<long>(polygons.size()))
       .text("\nproperty list uchar int vertex_indices\n")
       .text("property uchar red\nproperty uchar green\nproperty uchar blue\n")
-      .text("property uchar kind\nproperty int source\nproperty int hull_face\nend_header\n");
+      .text("property uchar kind\nproperty int source\nproperty int hull_face\n");
+  if (is_segment(mesh)) out.text("element edge 1\nproperty int vertex1\nproperty int vertex2\n");
+  out.text("end_header\n");
 
   for (const auto vertex : mesh.vertices()) {
     const auto& data = mesh.data(vertex);
@@ -75,8 +82,7 @@ void write_ply(const std::filesystem::path& path, const HullMesh& mesh) {
         .binary(std::int32_t{data.source})
         .binary(std::int32_t{data.hull_face});
   }
-  out.finish();
-  out.publish();
+  if (is_segment(mesh)) out.binary(std::int32_t{0}).binary(std::int32_t{1});
 }
 
 /// What OBJ faces are coloured by: the kind, and the source of a patch.
@@ -100,7 +106,7 @@ Material material(const HullMesh& mesh, OpenMesh::FaceHandle face) {
   return {data.kind, data.kind == FaceKind::patch ? data.source : -1};
 }
 
-void write_materials(OutputFile& out, const HullMesh& mesh) {
+void write_materials(OutputBuffer& out, const HullMesh& mesh) {
   std::set<Material> materials;
   for (const auto face : mesh.faces()) materials.insert(material(mesh, face));
   out.text("# Materials of a convex hull by Taut\n");
@@ -113,7 +119,7 @@ void write_materials(OutputFile& out, const HullMesh& mesh) {
   }
 }
 
-void write_obj_faces(OutputFile& out, const HullMesh& mesh) {
+void write_obj_faces(OutputBuffer& out, const HullMesh& mesh, bool with_materials) {
   const FilePolygons polygons(mesh, most_corners);
   std::vector<std::size_t> order(polygons.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -129,7 +135,7 @@ void write_obj_faces(OutputFile& out, const HullMesh& mesh) {
       out.text("g ").text(group < 0 ? "unassigned" : "face_" + std::to_string(group)).text("\n");
     }
     const Material m = material(mesh, polygons.face(i));
-    if (new_group || m != material(mesh, polygons.face(order[k - 1]))) {
+    if (with_materials && (new_group || m != material(mesh, polygons.face(order[k - 1])))) {
       out.text("usemtl ").text(m.name()).text("\n");
     }
     out.text("f");
@@ -138,41 +144,29 @@ void write_obj_faces(OutputFile& out, const HullMesh& mesh) {
   }
 }
 
-void write_point(OutputFile& out, const HullMesh& mesh, OpenMesh::VertexHandle vertex) {
+void write_point(OutputBuffer& out, const HullMesh& mesh, OpenMesh::VertexHandle vertex) {
   const dvec3 p = position(mesh, vertex);
   out.text(p.x).text(" ").text(p.y).text(" ").text(p.z).text("\n");
 }
 
-void write_obj(const std::filesystem::path& path, const HullMesh& mesh) {
-  std::filesystem::path materials_path = path;
-  materials_path.replace_extension(".mtl");
-  OutputFile materials(materials_path);
-  write_materials(materials, mesh);
-  materials.finish();
-
-  OutputFile out(path);
-  out.text("# Convex hull by Taut\nmtllib ").text(materials_path.filename().string()).text("\n");
+/// `materials`: the name of the file that describes the materials, empty if there is none.
+void write_obj(OutputBuffer& out, const std::string& materials, const HullMesh& mesh) {
+  out.text("# Convex hull by Taut\n");
+  if (!materials.empty()) out.text("mtllib ").text(materials).text("\n");
   for (const auto vertex : mesh.vertices()) {
     out.text("v ");
     write_point(out, mesh, vertex);
   }
-  write_obj_faces(out, mesh);
-  out.finish();
-
-  materials.publish();
-  try {
-    out.publish();
-  } catch (const IoError&) {
-    materials.withdraw();
-    throw;
-  }
+  write_obj_faces(out, mesh, !materials.empty());
+  if (mesh.n_vertices() == 1) out.text("p 1\n");
+  if (is_segment(mesh)) out.text("l 1 2\n");
 }
 
-void write_off(const std::filesystem::path& path, const HullMesh& mesh) {
+/// A segment is its edge in number only: readers want three corners of a face at least.
+void write_off(OutputBuffer& out, const HullMesh& mesh) {
   const FilePolygons polygons(mesh, most_corners);
   // Every diagonal that splits a face adds an edge and a polygon.
   const std::size_t edges = mesh.n_edges() + (polygons.size() - mesh.n_faces());
-  OutputFile out(path);
   out.text("OFF\n").text(static_cast<long>(mesh.n_vertices()));
   out.text(" ").text(static_cast<long>(polygons.size()));
   out.text(" ").text(static_cast<long>(edges)).text("\n");
@@ -182,54 +176,100 @@ void write_off(const std::filesystem::path& path, const HullMesh& mesh) {
     for (const int corner : polygons.corners(i)) out.text(" ").text(long{corner});
     out.text("\n");
   }
-  out.finish();
-  out.publish();
 }
 
-void write_floats(OutputFile& out, const dvec3& p) {
+void write_floats(OutputBuffer& out, const dvec3& p) {
   for (int i = 0; i < 3; ++i) out.binary(static_cast<float>(p[i]));
 }
 
-/// STL has triangles of floats only: vertices are rounded, and triangles that are smaller than a
-/// float can tell collapse.
-void write_stl(const std::filesystem::path& path, const HullMesh& mesh) {
-  const auto point = [&](int vertex) { return position(mesh, OpenMesh::VertexHandle(vertex)); };
-  for (const auto vertex : mesh.vertices()) {
-    const dvec3 p = glm::abs(point(vertex.idx()));
-    if (!(std::max({p.x, p.y, p.z}) <= double{std::numeric_limits<float>::max()})) {
-      throw IoError(path.string() + ": a coordinate of vertex " + std::to_string(vertex.idx()) +
-                    " is beyond the floats of STL; .ply holds it");
-    }
+std::string_view dimension_name(const HullMesh& mesh) {
+  return mesh.n_vertices() == 0 ? "empty" : mesh.n_vertices() == 1 ? "a point" : "a segment";
+}
+
+/// Triangles of floats.
+WrittenMesh write_stl(OutputBuffer& out, const std::string& name, const HullMesh& mesh) {
+  const auto refuse = [&](const std::string& what) {
+    throw IoError(name + ": " + what + "; .ply holds it");
+  };
+  RoundedHull rounded;
+  try {
+    rounded = rounded_hull(mesh);
+  } catch (const InvalidInput& error) {
+    refuse(std::string(error.what()) + " of STL");
   }
-  const FilePolygons triangles(mesh, 3);
+  if (rounded.mesh.n_faces() == 0) {
+    refuse("an STL file holds triangles only, and the hull is " +
+           std::string(dimension_name(rounded.mesh)) + (mesh.n_faces() > 0 ? " in floats" : ""));
+  }
+  const FilePolygons triangles(rounded.mesh, 3);
   if (triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw IoError(path.string() + ": has too many triangles for STL");
+    refuse("has too many triangles for STL");
   }
-  OutputFile out(path);
   std::string header = "Convex hull by Taut, binary STL";  // no first word "solid", as text has
   header.resize(80, ' ');
   out.text(header).binary(static_cast<std::uint32_t>(triangles.size()));
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto corners = triangles.corners(i);
-    const dvec3 a = point(corners[0]), b = point(corners[1]), c = point(corners[2]);
-    write_floats(out, unit(glm::cross(b - a, c - a)));
-    for (const dvec3& p : {a, b, c}) write_floats(out, p);
+    std::array<dvec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = position(rounded.mesh, OpenMesh::VertexHandle(triangles.corners(i)[k]));
+    }
+    write_floats(out, unit(glm::cross(p[1] - p[0], p[2] - p[0])));
+    for (const dvec3& corner : p) write_floats(out, corner);
     out.binary(std::uint16_t{0});
   }
-  out.finish();
-  out.publish();
+  return {rounded.rounding};
+}
+
+/// Puts out what a file of the format holds. `materials`: as for write_obj().
+WrittenMesh write(OutputBuffer& out, const std::string& name, const std::string& format,
+                  const std::string& materials, const HullMesh& mesh) {
+  if (format == ".stl") return write_stl(out, name, mesh);
+  if (format == ".ply") write_ply(out, mesh);
+  if (format == ".obj") write_obj(out, materials, mesh);
+  if (format == ".off") write_off(out, mesh);
+  return {};
+}
+
+void check_format(const std::string& name, const std::string& format) {
+  if (format == ".ply" || format == ".obj" || format == ".off" || format == ".stl") return;
+  throw IoError(name + ": no format of meshes has the extension \"" + format +
+                "\"; known are .obj, .off, .ply, .stl");
 }
 
 }  // namespace
 
-void write_mesh(const std::filesystem::path& path, const HullMesh& mesh) {
-  const std::string kind = extension(path);
-  if (kind == ".ply") return write_ply(path, mesh);
-  if (kind == ".obj") return write_obj(path, mesh);
-  if (kind == ".off") return write_off(path, mesh);
-  if (kind == ".stl") return write_stl(path, mesh);
-  throw IoError(path.string() + ": no format of meshes has the extension \"" + kind +
-                "\"; known are .obj, .off, .ply, .stl");
+WrittenMesh write_mesh(const std::filesystem::path& path, const HullMesh& mesh) {
+  const std::string format = extension(path);
+  check_format(path.string(), format);
+  std::filesystem::path materials_path = path;
+  materials_path.replace_extension(".mtl");
+  std::optional<OutputFile> materials;
+  if (format == ".obj" && mesh.n_faces() > 0) {
+    write_materials(materials.emplace(materials_path), mesh);
+    materials->finish();
+  }
+  OutputFile out(path);
+  const WrittenMesh written =
+      write(out, path.string(), format, materials ? materials_path.filename().string() : "", mesh);
+  out.finish();
+
+  if (materials) materials->publish();
+  try {
+    out.publish();
+  } catch (const IoError&) {
+    if (materials) materials->withdraw();
+    throw;
+  }
+  return written;
+}
+
+WrittenMesh write_mesh(std::string& data, const std::string& name, const std::string& format,
+                       const HullMesh& mesh) {
+  check_format(name, format);
+  OutputBuffer out;
+  const WrittenMesh written = write(out, name, format, "", mesh);
+  data += out.content();
+  return written;
 }
 
 }  // namespace taut

@@ -227,6 +227,26 @@ bool Model::empty() const {
   });
 }
 
+Box Model::control_box() const {
+  Box box;
+  for (const Instance& instance : instances_) {
+    const Part& part = parts_[to_size(instance.part)];
+    if (instance.pose.at_rest()) {
+      box.include(part.control_box());
+      continue;
+    }
+    const auto include_all = [&](const std::vector<dvec4>& points) {
+      for (const dvec4& p : points) box.include(instance.pose(euclidean(p)));
+    };
+    for (const Patch& patch : part.patches()) include_all(patch.bezier.points);
+    for (const EdgePiece& piece : part.pieces()) include_all(piece.bezier.points);
+    for (int i = 0; i < part.point_count(); ++i) {
+      box.include(instance.pose(part.vertices()[to_size(i)]));
+    }
+  }
+  return box;
+}
+
 int Model::face_count() const {
   return sum_over_instances(*this, [](const Part& part) { return face_count_of(part); });
 }

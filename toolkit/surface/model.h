@@ -190,6 +190,9 @@ class Model {
   bool polyhedral() const;
   /// Nothing is there, or only empty parts.
   bool empty() const;
+  /// Box of all control points and points, which contains the geometry; that of the geometry
+  /// itself where the model is polyhedral.
+  Box control_box() const;
 
   /// Numbers over all instances.
   int face_count() const;

@@ -6,31 +6,20 @@
 // needs, is not counted.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <vector>
 
+#include "peers.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/point_hull.h"
 #include "taut/io/read_model.h"
 
-#ifdef TAUT_WITH_CGAL
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/convex_hull_3.h>
-#endif
-#ifdef TAUT_WITH_QHULL
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
-#endif
-
 namespace {
 
-using namespace taut;
+using namespace taut;        // NOLINT: a program
+using namespace taut_bench;  // NOLINT
 
 std::vector<dvec3> tessellate(const Model& model, int steps) {
   std::vector<dvec3> points;
@@ -75,62 +64,6 @@ std::vector<dvec3> tessellation_of_accuracy(const Model& model, const Scene& sce
   return tessellate(model, high);
 }
 
-double seconds(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
-struct Peer {
-  const char* name;
-  std::function<long(const std::vector<dvec3>&)> faces;  ///< computes the hull, returns its faces
-};
-
-std::vector<Peer> peers() {
-  std::vector<Peer> result;
-  result.push_back({"point hull of Taut", [](const std::vector<dvec3>& points) {
-                      Box box;
-                      for (const dvec3& p : points) box.include(p);
-                      PointHull hull(box);
-                      hull.add(points);
-                      return long(hull.facet_count());
-                    }});
-#ifdef TAUT_WITH_CGAL
-  result.push_back({"CGAL", [](const std::vector<dvec3>& points) {
-                      using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-                      std::vector<Kernel::Point_3> input;
-                      for (const dvec3& p : points) input.emplace_back(p.x, p.y, p.z);
-                      CGAL::Surface_mesh<Kernel::Point_3> mesh;
-                      CGAL::convex_hull_3(input.begin(), input.end(), mesh);
-                      return long(mesh.number_of_faces());
-                    }});
-#endif
-#ifdef TAUT_WITH_QHULL
-  result.push_back({"Qhull", [](const std::vector<dvec3>& points) {
-                      std::vector<double> input;
-                      for (const dvec3& p : points) input.insert(input.end(), {p.x, p.y, p.z});
-                      qhT qhull;
-                      qh_zero(&qhull, stderr);
-                      char options[] = "qhull Qt";
-                      const int failed = qh_new_qhull(&qhull, 3, int(points.size()), input.data(),
-                                                      False, options, nullptr, stderr);
-                      const long faces = failed ? 0 : long(qhull.num_facets);
-                      qh_freeqhull(&qhull, !qh_ALL);
-                      int left = 0;
-                      int total = 0;
-                      qh_memfreeshort(&qhull, &left, &total);
-                      return faces;
-                    }});
-#endif
-  return result;
-}
-
 void compare(const Model& model, const Scene& scene, double relative, int runs) {
   HullOptions options;
   options.tolerance = relative * scene.diagonal();
@@ -162,7 +95,7 @@ void compare(const Model& model, const Scene& scene, double relative, int runs) 
       ratios.push_back(taut_times[run] / times[k][run]);
     }
     std::printf("  %-20s %10.2f ms  %9ld faces  %9zu points    time ratio %.3f, faces ratio %.3f\n",
-                others[k].name, 1e3 * median(times[k]), other_faces[k], points.size(),
+                others[k].name.c_str(), 1e3 * median(times[k]), other_faces[k], points.size(),
                 median(ratios), double(faces) / double(other_faces[k]));
   }
 }

@@ -1,7 +1,6 @@
 #include "directions.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "standard_input.h"
 #include "taut/core/error.h"
 #include "text.h"
 
@@ -26,7 +26,7 @@ std::string reason() { return std::error_code(errno, std::generic_category()).me
 class LineReader {
  public:
   LineReader(const std::string& path, const std::stop_token& stop)
-      : name_(path == "-" ? "standard input" : path),
+      : name_(path == "-" ? standard_input : path),
         descriptor_(path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)),
         stop_(stop) {
     if (descriptor_ < 0) throw IoError(name_ + ": cannot be read: " + reason());
@@ -61,16 +61,9 @@ class LineReader {
 
  private:
   bool fill() {
-    for (;;) {
-      if (stop_.stop_requested()) throw Cancelled();
-      pollfd wait = {descriptor_, POLLIN, 0};
-      if (poll(&wait, 1, 100) == 0) continue;
-      const ssize_t count = read(descriptor_, buffer_.data(), buffer_.size());
-      if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-      if (count < 0) throw IoError(name_ + ": cannot be read: " + reason());
-      rest_ = std::string_view(buffer_.data(), static_cast<std::size_t>(count));
-      return count > 0;
-    }
+    const std::size_t count = read_some(descriptor_, buffer_, name_, stop_);
+    rest_ = std::string_view(buffer_.data(), count);
+    return count > 0;
   }
 
   std::string name_;

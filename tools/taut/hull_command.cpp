@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -21,7 +22,7 @@ namespace {
 constexpr double default_relative = 1e-4;
 
 struct HullArguments {
-  std::vector<std::string> inputs;
+  InputArguments inputs;
   std::vector<std::string> outputs;
   std::string report;
   std::string method = "sampled";
@@ -39,7 +40,7 @@ void check(const HullArguments& arguments, bool json) {
   if (arguments.outputs.empty() && arguments.report.empty() && !json) {
     throw UsageError("nothing to write: give -o FILE, --report FILE or --json");
   }
-  check_outputs(arguments.outputs, arguments.report, arguments.inputs);
+  check_outputs(arguments.outputs, arguments.report, arguments.inputs.files);
 }
 
 /// In model units.
@@ -64,7 +65,9 @@ struct Outcome {
 };
 
 /// @throws NotConverged if there is not even a best result
-Outcome compute(const Scene& scene, HullOptions options) {
+Outcome compute(Input& input, HullOptions options) {
+  if (input.model().polyhedral()) return {polyhedral_hull(input.model(), options), {}};
+  const Scene& scene = input.scene();
   try {
     return {sampled_hull(scene, options), {}};
   } catch (const NotConverged& failure) {
@@ -82,7 +85,7 @@ Outcome compute(const Scene& scene, HullOptions options) {
   }
 }
 
-Report make_report(const Input& input, const Hull& hull, const HullArguments& arguments,
+Report make_report(Input& input, const Hull& hull, const HullArguments& arguments,
                    double tolerance) {
   Report report;
   report.input = input.summary();
@@ -96,8 +99,8 @@ Report make_report(const Input& input, const Hull& hull, const HullArguments& ar
   report.mesh.tolerance = tolerance;
   report.mesh.distance_bound = hull.distance_bound;
   report.queries = {hull.statistics.support_queries, hull.statistics.newton_iterations};
-  report.seconds.read = input.seconds_read;
-  report.seconds.build = input.seconds_build;
+  report.seconds.read = input.seconds_read();
+  report.seconds.build = input.seconds_build();
   report.seconds.sample = hull.statistics.seconds_sample;
   report.seconds.mesh = hull.statistics.seconds_mesh;
   return report;
@@ -110,18 +113,23 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
   const Report::Input& input = report.input;
   const Report::Seconds& s = report.seconds;
   const double relative = input.diagonal > 0 ? report.mesh.distance_bound / input.diagonal : 0;
+  constexpr std::array kinds = {"point", "segment", "planar", "solid"};
   std::string text;
   text += line("input", joined(input.files));
   text += line("", counted(input.faces, "face", "faces") + ", " +
                        counted(input.patches, "patch", "patches") + ", diagonal " +
                        number(input.diagonal));
+  text += line("hull", kinds[std::size_t(report.dimension)]);
   text += line("mesh", counted(report.mesh.faces, "face", "faces") + ", " +
                            counted(report.mesh.vertices, "vertex", "vertices") + " (" +
                            report.method + ")");
   text += line("volume", number(report.mesh.measures.volume, 10));
   text += line("area", number(report.mesh.measures.area, 10));
-  text += line("distance", "at most " + number(report.mesh.distance_bound, 3) +
-                               " from the true hull, " + number(relative, 3) + " of the diagonal");
+  text += line("distance", report.mesh.distance_bound == 0
+                               ? std::string("none: the mesh is the hull")
+                               : "at most " + number(report.mesh.distance_bound, 3) +
+                                     " from the true hull, " + number(relative, 3) +
+                                     " of the diagonal");
   text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
                               number(s.build, 2) + ", sample " + number(s.sample, 2) + ", mesh " +
                               number(s.mesh, 2) + ", write " + number(s.write, 2));
@@ -131,13 +139,13 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
 
 ExitCode run(const HullArguments& arguments, Console& console) {
   check(arguments, console.options().json);
-  const Input input = load(arguments.inputs, console);
+  Input input(arguments.inputs, console);
   HullOptions options;
-  options.tolerance = tolerance(arguments, input.scene.diagonal());
+  options.tolerance = tolerance(arguments, input.diagonal());
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
-  const Outcome outcome = compute(input.scene, options);
+  const Outcome outcome = compute(input, options);
 
   Report report = make_report(input, outcome.hull, arguments, options.tolerance);
   const Stopwatch writing;
@@ -178,7 +186,8 @@ Command add_hull(CLI::App& parent) {
       "Examples:\n"
       "  taut hull teapot.bpt -o hull.ply\n"
       "  taut hull teapot.bpt -o hull.ply -o hull.stl --relative 1e-5 --report hull.json\n"
-      "  taut hull a.bpt b.obj --tolerance 0.01 --json");
+      "  taut hull a.bpt b.obj --tolerance 0.01 --json\n"
+      "  taut hull scan.xyz -o hull.ply              points and triangles: the exact hull");
   const auto arguments = std::make_shared<HullArguments>();
   CLI::App& app = *command.app;
   add_inputs(app, arguments->inputs);

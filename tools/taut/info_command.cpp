@@ -22,15 +22,18 @@ struct Contents {
   DegreeCounts patches;
   DegreeCounts free_pieces;
   long free_vertices = 0;
+  long polygons = 0;
+  int trimmed = 0;
   long rational = 0;
   std::vector<std::string> face_names;
 };
 
-Contents contents(const Input& input) {
+Contents contents(Input& input) {
   Contents contents;
   contents.summary = input.summary();
-  for (const Instance& instance : input.scene.model().instances()) {
-    const Part& part = input.scene.model().parts()[std::size_t(instance.part)];
+  contents.trimmed = trimmed_face_count(input.model());
+  for (const Instance& instance : input.model().instances()) {
+    const Part& part = input.model().parts()[std::size_t(instance.part)];
     for (const Patch& patch : part.patches()) {
       ++contents.patches[{patch.bezier.degree_u, patch.bezier.degree_v}];
       contents.rational += is_polynomial(patch.bezier.points) ? 0 : 1;
@@ -41,6 +44,7 @@ Contents contents(const Input& input) {
       contents.rational += is_polynomial(piece.bezier.points) ? 0 : 1;
     }
     contents.free_vertices += part.point_count();
+    contents.polygons += long(part.polygons().size());
     for (const Face& face : part.faces()) contents.face_names.push_back(face.name);
   }
   return contents;
@@ -79,7 +83,10 @@ Json json_of(const Contents& file) {
   for (const char* key : {"faces", "edges", "vertices", "patches"}) json[key] = counts[key];
   json["degrees"] = degrees_json(file.patches, "patches");
   json["free_curves"] = degrees_json(file.free_pieces, "pieces");
-  json["free_points"] = file.free_vertices;
+  json["points"] = file.free_vertices;
+  json["polygons"] = file.polygons;
+  json["scheme"] = file.polygons > 0 ? Json("bilinear") : Json();
+  json["trimmed"] = file.trimmed;
   json["rational"] = file.rational > 0;
   json["diagonal"] = counts["diagonal"];
   json["box"] = counts["box"];
@@ -106,9 +113,10 @@ std::string sizes_text(const Report::Input& input) {
          "  edges     " + number(long(input.edges)) + "\n" +     //
          "  vertices  " + number(long(input.vertices)) + "\n" +  //
          "  patches   " + number(long(input.patches)) + "\n" +   //
-         "  box       " + point_text(input.box.lower) + "  to  " + point_text(input.box.upper) +
-         "\n" +  //
-         "  diagonal  " + number(input.diagonal, 9) + "\n";
+         (input.box.empty() ? ""
+                            : "  box       " + point_text(input.box.lower) + "  to  " +
+                                  point_text(input.box.upper) + "\n" +  //
+                                  "  diagonal  " + number(input.diagonal, 9) + "\n");
 }
 
 std::string text_of(const Contents& file, bool names) {
@@ -117,7 +125,14 @@ std::string text_of(const Contents& file, bool names) {
   if (!file.free_pieces.empty()) {
     text += "  free curves, degrees  " + degrees_text(file.free_pieces) + "\n";
   }
-  if (file.free_vertices > 0) text += "  free points  " + number(file.free_vertices) + "\n";
+  if (file.polygons > 0) {
+    text += "  polygons  " + number(file.polygons) + ", taken as they are (scheme bilinear)\n";
+  }
+  if (file.free_vertices > 0) text += "  points    " + number(file.free_vertices) + "\n";
+  if (file.trimmed > 0) {
+    text += "  trimmed   " + counted(file.trimmed, "face", "faces") +
+            ", which cannot be evaluated yet: the box is not known\n";
+  }
   text += std::string("  rational  ") +
           (file.rational > 0 ? "yes, " + number(file.rational) + " of the patches and curves"
                              : std::string("no")) +
@@ -161,18 +176,20 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
 }
 
 /// `output`: the model document that all inputs are written to, or empty.
-ExitCode run(const std::vector<std::string>& inputs, const std::string& output, Console& console) {
-  if (!output.empty()) check_output(output, inputs);
+ExitCode run(const InputArguments& inputs, const std::string& output, Console& console) {
+  if (!output.empty()) check_output(output, inputs.files);
   std::vector<Contents> files;
   Collection collection;
   double seconds_read = 0;
   double seconds_build = 0;
-  for (const std::string& file : inputs) {
-    const Input input = load({file}, console);
+  for (const std::string& file : inputs.files) {
+    InputArguments one = inputs;
+    one.files = {file};
+    Input input(one, console);
     files.push_back(contents(input));
-    seconds_read += input.seconds_read;
-    seconds_build += input.seconds_build;
-    if (!output.empty()) collection.add(input.scene.model());
+    seconds_read += input.seconds_read();
+    seconds_build += input.seconds_build();
+    if (!output.empty()) collection.add(input.model());
   }
   if (!output.empty()) {
     write_model(output, collection.take());
@@ -204,7 +221,7 @@ Command add_info(CLI::App& parent) {
                                 "  taut info teapot.bpt\n"
                                 "  taut info a.bpt b.obj --json\n"
                                 "  taut info a.bpt b.obj -o both.taut.json");
-  const auto inputs = std::make_shared<std::vector<std::string>>();
+  const auto inputs = std::make_shared<InputArguments>();
   const auto output = std::make_shared<std::string>();
   add_inputs(*command.app, *inputs);
   command.app

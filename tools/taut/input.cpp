@@ -1,51 +1,116 @@
 #include "input.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "exit_code.h"
+#include "standard_input.h"
 #include "taut/io/read_model.h"
 #include "text.h"
 
 namespace taut::tool {
 
-Report::Input Input::summary() const {
-  const Model& model = scene.model();
+namespace {
+
+std::optional<Scheme> scheme_of(const std::string& name) {
+  if (name == "bilinear") return Scheme::bilinear;
+  if (name == "catmark") return Scheme::catmark;
+  if (name == "loop") return Scheme::loop;
+  return {};
+}
+
+/// @throws UsageError, IoError
+void read_from_standard_input(const InputArguments& arguments, Model& model,
+                              const ReadOptions& options) {
+  if (arguments.format.empty()) {
+    throw UsageError("standard input needs --format, such as --format ply");
+  }
+  const bool has_dot = arguments.format.starts_with(".");
+  read_model(read_standard_input(options.progress.stop), standard_input,
+             (has_dot ? "" : ".") + arguments.format, model, options);
+}
+
+}  // namespace
+
+Input::Input(const InputArguments& arguments, Console& console)
+    : console_(console), files_(arguments.files) {
+  const Stopwatch watch;
+  ReadOptions options;
+  options.progress = console.progress();
+  options.scheme = scheme_of(arguments.scheme);
+  if (std::count(files_.begin(), files_.end(), "-") > 1) {
+    throw UsageError("standard input can be read only once");
+  }
+  for (const std::string& file : files_) {
+    if (file == "-") {
+      read_from_standard_input(arguments, model_, options);
+    } else {
+      read_model(file, model_, options);
+    }
+    if (model_.empty()) throw InvalidInput(file + ": holds no geometry");
+  }
+  seconds_read_ = watch.seconds();
+}
+
+const Scene& Input::scene() {
+  if (!scene_) {
+    const Stopwatch watch;
+    scene_.emplace(std::move(model_),
+                   SceneOptions{console_.options().threads, console_.progress()});
+    seconds_build_ = watch.seconds();
+    console_.note("the scene takes " + number(double(scene_->memory()) / 1e6, 3) + " MB");
+  }
+  return *scene_;
+}
+
+Report::Input Input::summary() {
   Report::Input summary;
-  summary.files = files;
-  summary.faces = model.face_count();
-  summary.edges = model.edge_count();
-  summary.vertices = model.vertex_count();
-  summary.patches = model.patch_count();
-  summary.diagonal = scene.diagonal();
-  summary.box = scene.box();
+  summary.files = files_;
+  summary.faces = model().face_count();
+  summary.edges = model().edge_count();
+  summary.vertices = model().vertex_count();
+  summary.patches = model().patch_count();
+  if (model().polyhedral()) {
+    summary.box = model().control_box();
+  } else if (trimmed_face_count(model()) == 0) {
+    summary.box = scene().box();
+  }
+  summary.diagonal = diagonal();
   return summary;
 }
 
-Input load(const std::vector<std::string>& files, Console& console) {
-  const Stopwatch reading;
-  Model model;
-  ReadOptions options;
-  options.progress = console.progress();
-  for (const std::string& file : files) {
-    if (file == "-") {
-      throw UsageError("a model cannot be read from standard input: give a file's name");
-    }
-    read_model(file, model, options);
-    if (model.parts().empty() || model.parts().back().control_box().empty()) {
-      throw InvalidInput(file + ": holds no geometry");
-    }
-  }
-  const double seconds_read = reading.seconds();
-  const Stopwatch building;
-  Scene scene(std::move(model), {console.options().threads, console.progress()});
-  console.note("the scene takes " + number(double(scene.memory()) / 1e6, 3) + " MB");
-  return {files, std::move(scene), seconds_read, building.seconds()};
+double Input::diagonal() {
+  if (model().polyhedral()) return taut::diagonal(model().control_box());
+  return trimmed_face_count(model()) > 0 ? 0 : scene().diagonal();
 }
 
-void add_inputs(CLI::App& command, std::vector<std::string>& files) {
-  command.add_option("INPUT", files, "Model files; several make one model together")
+int trimmed_face_count(const Model& model) {
+  long count = 0;
+  for (const Instance& instance : model.instances()) {
+    const std::vector<Face>& faces = model.parts()[std::size_t(instance.part)].faces();
+    count += std::count_if(faces.begin(), faces.end(),
+                           [](const Face& face) { return !face.loops.empty(); });
+  }
+  return int(count);
+}
+
+void add_inputs(CLI::App& command, InputArguments& arguments) {
+  command
+      .add_option("INPUT", arguments.files,
+                  "Model files; several make one model together; - is standard\ninput")
       ->required()
       ->option_text("FILE...");
+  command
+      .add_option("--format", arguments.format,
+                  "Format of what is read from standard input or written to\nstandard output: ply, "
+                  "obj, taut.json, ...")
+      ->type_name("FORMAT");
+  command
+      .add_option("--scheme", arguments.scheme,
+                  "What polygons stand for: bilinear (default): themselves; catmark\nand loop: "
+                  "subdivision cages, which are not available yet")
+      ->check(CLI::IsMember({"bilinear", "catmark", "loop"}).description(""))
+      ->type_name("SCHEME");
 }
 
 Json to_json(const Box& box) {
@@ -54,9 +119,13 @@ Json to_json(const Box& box) {
 }
 
 Json to_json(const Report::Input& input) {
-  return {{"files", input.files},       {"faces", input.faces},     {"edges", input.edges},
-          {"vertices", input.vertices}, {"patches", input.patches}, {"diagonal", input.diagonal},
-          {"box", to_json(input.box)}};
+  return {{"files", input.files},
+          {"faces", input.faces},
+          {"edges", input.edges},
+          {"vertices", input.vertices},
+          {"patches", input.patches},
+          {"diagonal", input.box.empty() ? Json() : Json(input.diagonal)},
+          {"box", input.box.empty() ? Json() : to_json(input.box)}};
 }
 
 Json to_json(const std::vector<Warning>& warnings) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,23 +13,46 @@ namespace taut::tool {
 
 using Json = nlohmann::ordered_json;
 
-/// Input files made ready for queries, as one scene.
-struct Input {
-  std::vector<std::string> files;
-  Scene scene;
-  double seconds_read = 0;
-  double seconds_build = 0;
-
-  /// Its counts and sizes.
-  Report::Input summary() const;
+/// Which files make the model, and how they are read.
+struct InputArguments {
+  std::vector<std::string> files;  ///< "-" is standard input
+  std::string format;              ///< of standard input: an extension, with or without its dot
+  std::string scheme;              ///< empty: by the files
 };
 
-/// Reads all files into one model and builds its scene.
-/// @throws UsageError for "-", IoError, InvalidInput (also where a file holds no geometry)
-Input load(const std::vector<std::string>& files, Console& console);
+/// Input files read as one model, and its scene where that is asked for.
+class Input {
+ public:
+  /// Reads the files. @throws UsageError for standard input without a format, IoError, InvalidInput
+  /// (also where a file holds no geometry)
+  Input(const InputArguments& arguments, Console& console);
 
-/// Adds the positional arguments INPUT...
-void add_inputs(CLI::App& command, std::vector<std::string>& files);
+  const Model& model() const { return scene_ ? scene_->model() : model_; }
+  /// Built when it is first asked for. @throws InvalidInput for trimmed faces
+  const Scene& scene();
+  /// Counts and sizes. The box of points and polygons needs no scene; that of trimmed faces is
+  /// not known, and stays empty.
+  Report::Input summary();
+  /// The diagonal of that box.
+  double diagonal();
+
+  double seconds_read() const { return seconds_read_; }
+  double seconds_build() const { return seconds_build_; }
+
+ private:
+  Console& console_;
+  std::vector<std::string> files_;
+  Model model_;
+  std::optional<Scene> scene_;
+  double seconds_read_ = 0;
+  double seconds_build_ = 0;
+};
+
+/// Faces with trim loops, over all instances.
+int trimmed_face_count(const Model& model);
+
+/// Adds the positional arguments INPUT... and the options on how to read them.
+void add_inputs(CLI::App& command, InputArguments& arguments);
 
 Json to_json(const Box& box);
 Json to_json(const Report::Input& input);

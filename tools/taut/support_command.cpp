@@ -14,7 +14,7 @@ namespace taut::tool {
 namespace {
 
 struct SupportOptions {
-  std::vector<std::string> inputs;
+  InputArguments inputs;
   std::string directions;
 };
 
@@ -78,16 +78,21 @@ std::vector<ModelSupport> answer(const Scene& scene, const std::vector<dvec3>& d
 ExitCode run(const SupportOptions& options, Console& console) {
   const bool json = console.options().json;
   const Progress progress = console.progress();
+  const auto& files = options.inputs.files;
+  if (options.directions == "-" && std::find(files.begin(), files.end(), "-") != files.end()) {
+    throw UsageError("standard input cannot be both the model and the directions");
+  }
   if (options.directions == "-") console.note("reads directions from standard input");
   const auto directions = read_directions(options.directions, progress.stop);
-  const Input input = load(options.inputs, console);
+  Input input(options.inputs, console);
+  const Scene& scene = input.scene();
   Counts counts;
   Json answers = Json::array();
   double seconds = 0;
   for (std::size_t begin = 0; begin < directions.size(); begin += block_size) {
     progress.update("support", double(begin) / double(directions.size()));
     const Stopwatch watch;
-    const auto block = answer(input.scene, directions, begin, console.options().threads, counts);
+    const auto block = answer(scene, directions, begin, console.options().threads, counts);
     seconds += watch.seconds();
     std::string lines;
     for (std::size_t i = 0; i < block.size(); ++i) {
@@ -107,8 +112,8 @@ ExitCode run(const SupportOptions& options, Console& console) {
                              {{"support", counts.queries.load()},
                               {"newton_iterations", counts.newton_iterations.load()}}},
                             {"seconds",
-                             {{"read", input.seconds_read},
-                              {"build", input.seconds_build},
+                             {{"read", input.seconds_read()},
+                              {"build", input.seconds_build()},
                               {"support", seconds},
                               {"total", console.seconds()}}},
                             {"peak_bytes", peak_bytes()},

@@ -17,7 +17,7 @@ constexpr double default_relative = 1e-4;
 
 struct VerifyArguments {
   std::string hull;
-  std::vector<std::string> inputs;
+  InputArguments inputs;
   std::optional<double> given_relative;
 
   double relative() const { return given_relative.value_or(default_relative); }
@@ -102,13 +102,13 @@ ExitCode run(const VerifyArguments& arguments, Console& console) {
     throw UsageError("a mesh cannot be read from standard input: give a file's name");
   }
   const PolygonMesh mesh = read_mesh(arguments.hull);
-  const Input input = load(arguments.inputs, console);
-  const double diagonal = input.scene.diagonal();
+  Input input(arguments.inputs, console);
+  const double diagonal = input.scene().diagonal();
   const Stopwatch watch;
   VerifyOptions options;
   options.threads = console.options().threads;
   options.progress = console.progress();
-  const Verification found = verify(mesh, input.scene, options);
+  const Verification found = verify(mesh, input.scene(), options);
   const double seconds = watch.seconds();
 
   const bool is_hull = found.is_hull(arguments.relative() * diagonal);
@@ -116,8 +116,8 @@ ExitCode run(const VerifyArguments& arguments, Console& console) {
   if (console.options().json) {
     Json json = json_of(results, arguments, found, is_hull);
     json["input"] = to_json(input.summary());
-    json["seconds"] = {{"read", input.seconds_read},
-                       {"build", input.seconds_build},
+    json["seconds"] = {{"read", input.seconds_read()},
+                       {"build", input.seconds_build()},
                        {"verify", seconds},
                        {"total", console.seconds()}};
     json["peak_bytes"] = peak_bytes();
