@@ -204,10 +204,13 @@ void read_and_check(const Reader& reader, std::string_view data, const std::stri
 
 const std::vector<Reader>& readers() {
   using enum Reader::Kind;
-  static const std::vector<Reader> all = {
-      {model, ".bpt"}, {model, ".mlp"},       {model, ".obj"},       {model, ".off"}, {model, ".ply"},
-      {model, ".stl"}, {model, ".taut.cbor"}, {model, ".taut.json"}, {model, ".xyz"}, {mesh, ".obj"},
-      {mesh, ".off"},  {mesh, ".ply"},        {mesh, ".stl"},        {directions, "directions"}};
+  static const std::vector<Reader> all = {{model, ".bpt"},       {model, ".mlp"},
+                                          {model, ".obj"},       {model, ".off"},
+                                          {model, ".ply"},       {model, ".stl"},
+                                          {model, ".taut.cbor"}, {model, ".taut.json"},
+                                          {model, ".xyz"},       {mesh, ".obj"},
+                                          {mesh, ".off"},        {mesh, ".ply"},
+                                          {mesh, ".stl"},        {directions, "directions"}};
   return all;
 }
 

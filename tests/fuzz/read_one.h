@@ -38,8 +38,8 @@ struct Outcome {
 /// in one line that begins with the name, or that the result holds together: a small model
 /// survives its document in both encodings, and its hull is closed and finite.
 ///
-/// `name` is what the input is called; the layers of a project are sought beside it. (What directions
-/// are read from has a name of its own.)
+/// `name` is what the input is called; the layers of a project are sought beside it. (What
+/// directions are read from has a name of its own.)
 /// @throws Finding
 Outcome read_one(const Reader& reader, std::string_view data, const std::string& name);
 
