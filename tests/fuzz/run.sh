@@ -32,7 +32,7 @@ for target in "${targets[@]}"; do
   mkdir -p "$corpus" "$findings"
   say "$target for $seconds seconds"
   UBSAN_OPTIONS=print_stacktrace=1 "build/fuzz/tests/fuzz/fuzz_$target" \
-    -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+    -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 -verbosity=0 -dict=tests/fuzz/words.dict \
     -print_final_stats=1 -artifact_prefix="$findings/" "$corpus" "tests/fuzz/corpus/$seeds" ||
     found+=("$target")
 done
