@@ -213,7 +213,7 @@ void refuse_trimmed(const Model& model) {
   for (const Part& part : model.parts()) {
     for (const Face& face : part.faces()) {
       if (face.loops.empty()) continue;
-      throw InvalidInput(part.name + ": the face \"" + face.name +
+      throw InvalidInput(printable(part.name) + ": the face \"" + printable(face.name) +
                          "\" is trimmed, and trimmed faces cannot be evaluated yet");
     }
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace taut {
 
@@ -11,6 +12,10 @@ class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// A name that someone else gave, fit for a message: control characters as '?', and what is longer
+/// than so many bytes cut off.
+std::string printable(std::string_view name, std::size_t longest = 80);
 
 /// The caller's mistake: numbers that are no valid geometry (NaN, a negative weight, a decreasing
 /// knot vector, an index out of range). The message names the object and the number at fault.

@@ -74,13 +74,15 @@ class DocumentNode {
   [[noreturn]] void refuse(const std::string& what) const {
     throw InvalidInput(place() + ": " + what);
   }
-  /// Calls what knows nothing of documents, and gives its InvalidInput the place.
+  /// Calls what knows nothing of documents, and gives its errors the place.
   template <class Call>
   void placed(const Call& call) const {
     try {
       call();
     } catch (const InvalidInput& error) {
       refuse(error.what());
+    } catch (const LimitExceeded& error) {
+      throw LimitExceeded(place() + ": " + error.what());
     }
   }
 

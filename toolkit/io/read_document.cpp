@@ -302,7 +302,8 @@ void read_document(const std::string& file, std::string_view data, DocumentEncod
   const DocumentNode parts = root.at("parts");
   PartReader reader;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    grown.add_part(reader.read(parts[i], "part " + std::to_string(i)), options.smooth_angle);
+    Part part = reader.read(parts[i], "part " + std::to_string(i));
+    parts[i].placed([&] { grown.add_part(std::move(part), options.smooth_angle); });
   }
   if (const auto instances = root.find("instances")) {
     place_instances(*instances, first, before, grown);

@@ -26,7 +26,13 @@ void require_known(const std::string& name, const std::string& format) {
 void add(FileContent content, const std::string& name, Model& model, const ReadOptions& options) {
   Part part = as_part(std::move(content), name);
   options.progress.check();
-  model.add_part(std::move(part), options.smooth_angle);
+  try {
+    model.add_part(std::move(part), options.smooth_angle);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(name + ": " + error.what());
+  } catch (const LimitExceeded& error) {
+    throw LimitExceeded(name + ": " + error.what());
+  }
 }
 
 }  // namespace

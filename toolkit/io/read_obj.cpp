@@ -156,7 +156,7 @@ void Builder::add_curve(const ObjElement& e) {
       e.name.empty() ? "curve " + std::to_string(part_.edges().size() + 1) : e.name;
   NurbsCurve curve{u.degree, std::move(u.knots), {}};
   for (std::size_t i = 0; i < u.count; ++i) curve.points.push_back(control_point(e, i));
-  scanner_.placed(e.line, [&] { validate(curve, name); });
+  scanner_.placed(e.line, [&] { validate(curve, printable(name)); });
   require_range(e.line, e.u, curve.domain());
   if (!same(e.u, curve.domain())) curve = restricted(curve, e.u);
   scanner_.placed(e.line, [&] { part_.add_curve(curve, name); });
@@ -229,7 +229,7 @@ void Builder::add_surface(const ObjElement& e) {
       surface.points.push_back(control_point(e, j * u.count + i));
     }
   }
-  scanner_.placed(e.line, [&] { validate(surface, name); });
+  scanner_.placed(e.line, [&] { validate(surface, printable(name)); });
   require_range(e.line, e.u, surface.domain_u());
   require_range(e.line, e.v, surface.domain_v());
   if (!same(e.u, surface.domain_u()) || !same(e.v, surface.domain_v())) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
@@ -20,6 +19,9 @@ namespace {
 
 /// Far above every project; a document takes many times the memory of its text.
 constexpr std::size_t max_project_bytes = std::size_t{1} << 26;
+
+/// Of a file's name in messages.
+constexpr std::size_t longest_path = 4096;
 
 struct Layer {
   std::string file;
@@ -159,7 +161,6 @@ class ProjectLoader {
 
   File& file(const std::filesystem::path& path);
   void add_placed(const Layer& layer);
-  bool has_room(const Model& model) const;
 
   const std::string& file_;
   const ReadOptions& options_;
@@ -205,8 +206,11 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
   const std::string key = path.lexically_normal().string();
   const auto known = files_.find(key);
   if (known != files_.end()) return known->second;
-  const std::string name = path.string();
+  const std::string name = printable(path.string(), longest_path);
   const std::string format = extension(path);
+  if (name != path.string()) {
+    throw IoError(name + ": the name has control characters or is too long");
+  }
   if (format == ".mlp") throw IoError(name + ": a project within a project is not read");
   if (!is_part_format(format)) {
     throw IoError(name + ": no format of layers has the extension " + in_quotes(format));
@@ -219,39 +223,30 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
   return files_.emplace(key, File{as_part(std::move(content), name), {}}).first->second;
 }
 
-/// Whether sources and patches can be numbered by an int, so that nothing fails half-way.
-bool ProjectLoader::has_room(const Model& model) const {
-  constexpr std::size_t most = std::numeric_limits<int>::max();
-  std::size_t sources = static_cast<std::size_t>(model.source_count());
-  std::size_t patches = static_cast<std::size_t>(model.patch_count());
-  for (const Instance& instance : instances_) {
-    const Part& part = *parts_[static_cast<std::size_t>(instance.part)];
-    sources +=
-        part.faces().size() + part.polygons().size() + part.edges().size() + part.vertices().size();
-    patches += part.patches().size();
-    if (sources > most || patches > most) return false;
-  }
-  return true;
-}
-
 void ProjectLoader::put_into(Model& model) {
   for (Part* part : parts_) {
     options_.progress.check();
     part->connect(options_.smooth_angle);
   }
-  if (!has_room(model)) {
-    throw LimitExceeded(file_ +
-                        ": the model would have more sources or patches than an int counts");
-  }
+  Model grown = model;
   std::vector<Instance> all = model.instances();
   const int first = static_cast<int>(model.parts().size());
-  for (Part* part : parts_) model.add_part(std::move(*part), options_.smooth_angle);
   for (const Instance& instance : instances_) {
     all.push_back({first + instance.part, instance.pose});
   }
-  // Parts come with an instance at rest, which need not be one of the project's.
-  model.clear_instances();
-  for (const Instance& instance : all) model.add_instance(instance.part, instance.pose);
+  try {
+    for (Part* part : parts_) {
+      grown.add_part(std::move(*part), options_.smooth_angle);
+      // It comes with an instance at rest, which need not be one of the project's.
+      grown.clear_instances();
+    }
+    for (const Instance& instance : all) grown.add_instance(instance.part, instance.pose);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(file_ + ": " + error.what());
+  } catch (const LimitExceeded& error) {
+    throw LimitExceeded(file_ + ": " + error.what());
+  }
+  model = std::move(grown);
 }
 
 }  // namespace

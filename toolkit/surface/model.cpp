@@ -42,6 +42,18 @@ void validate(const RigidMotion& pose, const std::string& name) {
   if (!translation) throw InvalidInput(name + ": the translation is not finite");
 }
 
+/// The box that holds the part at this place, too.
+Box with(Box box, const Part& part, const RigidMotion& pose) {
+  const Box& own = part.control_box();
+  if (own.empty()) return box;
+  for (int k = 0; k < 8; ++k) {
+    box.include(pose({(k & 1) != 0 ? own.upper.x : own.lower.x,
+                      (k & 2) != 0 ? own.upper.y : own.lower.y,
+                      (k & 4) != 0 ? own.upper.z : own.lower.z}));
+  }
+  return box;
+}
+
 std::size_t face_count_of(const Part& part) { return part.faces().size() + part.polygons().size(); }
 
 std::size_t source_count_of(const Part& part) {
@@ -62,16 +74,17 @@ int sum_over_instances(const Model& model, const Count& count) {
 void Part::add_surface(const NurbsSurface& surface, std::string face_name,
                        std::vector<TrimLoop> loops) {
   assert(!connected_);
-  validate(surface, face_name);
+  const std::string shown_name = printable(face_name);
+  validate(surface, shown_name);
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    const std::string loop_name = face_name + ": trim loop " + std::to_string(i);
+    const std::string loop_name = shown_name + ": trim loop " + std::to_string(i);
     if (loops[i].curves.empty()) throw InvalidInput(loop_name + " has no curves");
     for (const NurbsCurve& curve : loops[i].curves) validate(curve, loop_name);
   }
   std::vector<PatchPiece> pieces = decompose(surface);
   Box box = box_;
   for (const PatchPiece& piece : pieces) include(box, piece.bezier.points);
-  validate_extent(box, face_name);
+  validate_extent(box, shown_name);
 
   const int face = to_int(faces_.size());
   faces_.push_back(
@@ -89,11 +102,12 @@ void Part::add_surface(const NurbsSurface& surface, std::string face_name,
 
 void Part::add_curve(const NurbsCurve& curve, std::string edge_name) {
   assert(!connected_);
-  validate(curve, edge_name);
+  const std::string shown_name = printable(edge_name);
+  validate(curve, shown_name);
   std::vector<CurvePiece> pieces = decompose(curve);
   Box box = box_;
   for (const CurvePiece& piece : pieces) include(box, piece.bezier.points);
-  validate_extent(box, edge_name);
+  validate_extent(box, shown_name);
 
   const int edge = to_int(edges_.size());
   edges_.push_back({std::move(edge_name), to_int(pieces_.size()), to_int(pieces.size()), {}});
@@ -111,12 +125,13 @@ void Part::add_point(const dvec3& point) { add_points({&point, 1}); }
 
 void Part::add_points(std::span<const dvec3> points) {
   assert(!connected_);
+  const std::string shown_name = printable(name);
   const auto name_of = [&](std::size_t i) {
-    return name + (name.empty() ? "" : ": ") + "point " + std::to_string(vertices_.size() + i);
+    return shown_name + (name.empty() ? "" : ": ") + "point " + std::to_string(vertices_.size() + i);
   };
   if (points.size() > std::size_t(std::numeric_limits<int>::max()) - vertices_.size()) {
-    throw LimitExceeded(name + ": more than " + std::to_string(std::numeric_limits<int>::max()) +
-                        " points");
+    throw LimitExceeded(shown_name + ": more than " +
+                        std::to_string(std::numeric_limits<int>::max()) + " points");
   }
   Box box = box_;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -152,7 +167,9 @@ void Part::add_polygons(const PolygonMesh& mesh) {
 
 int Model::add_part(Part part, double smooth_angle) {
   if (!part.connected()) part.connect(smooth_angle);
-  validate_room(part, "part " + part.name);
+  const std::string shown_name = "part " + printable(part.name);
+  validate_room(part, shown_name);
+  validate_extent(with(box_, part, {}), shown_name);
   const int index = to_int(parts_.size());
   parts_.push_back(std::move(part));
   add_instance(index, {});
@@ -167,6 +184,9 @@ void Model::add_instance(int part, const RigidMotion& pose) {
   validate(pose, name);
   const Part& placed = parts_[to_size(part)];
   validate_room(placed, name);
+  const Box box = with(box_, placed, pose);
+  validate_extent(box, name);
+  box_ = box;
   instances_.push_back({part, pose});
   first_source_.push_back(source_count_);
   source_count_ += to_int(source_count_of(placed));
@@ -178,6 +198,7 @@ void Model::clear_instances() {
   first_source_.clear();
   source_count_ = 0;
   patch_count_ = 0;
+  box_ = {};
 }
 
 void Model::validate_room(const Part& part, const std::string& name) const {

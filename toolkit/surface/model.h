@@ -170,10 +170,12 @@ struct Source {
 class Model {
  public:
   /// Adds the part, which is connected now if it was not yet, and one instance of it at rest.
-  /// Returns the part's index. @throws LimitExceeded as add_instance() does
+  /// Returns the part's index. @throws InvalidInput if the model's extent overflows,
+  /// LimitExceeded as add_instance() does
   int add_part(Part part, double smooth_angle);
   /// Places a part once more. @throws InvalidInput if the index is out of range, the rotation is
-  /// not orthogonal with determinant 1 within rotation_tolerance or the translation is not finite;
+  /// not orthogonal with determinant 1 within rotation_tolerance, the translation is not finite
+  /// or the model's extent overflows;
   /// LimitExceeded if sources or patches no longer could be numbered by an int
   void add_instance(int part, const RigidMotion& pose);
   /// Takes the instances out (those at rest too), to be placed anew.
@@ -208,6 +210,7 @@ class Model {
   std::vector<int> first_source_;  // per instance
   int source_count_ = 0;
   int patch_count_ = 0;
+  Box box_;  // of the parts' control boxes at their places
 };
 
 }  // namespace taut

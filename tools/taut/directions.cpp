@@ -95,9 +95,9 @@ dvec3 parse_direction(const std::vector<std::string_view>& fields, const std::st
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view field = fields[std::size_t(axis)];
     const auto value = parse_number(field);
-    if (!value) throw IoError(place + "'" + std::string(field.substr(0, 40)) + "' is no number");
+    if (!value) throw IoError(place + "'" + printable(field, 40) + "' is no number");
     if (!std::isfinite(*value)) {
-      throw InvalidInput(place + "'" + std::string(field.substr(0, 40)) + "' is not finite");
+      throw InvalidInput(place + "'" + printable(field, 40) + "' is not finite");
     }
     direction[axis] = *value;
   }

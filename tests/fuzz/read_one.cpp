@@ -1,0 +1,240 @@
+#include "read_one.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <stop_token>
+
+#include "taut/hull/convex_hull.h"
+#include "taut/io/model_document.h"
+#include "taut/io/read_mesh.h"
+#include "taut/io/read_model.h"
+#include "tools/taut/directions.h"
+
+namespace taut_test {
+namespace {
+
+using namespace taut;
+
+/// Models beyond are not taken further than their reader.
+constexpr std::size_t most_points = 2000;
+
+/// A sentence and the longest path; longer is no message for a person.
+constexpr std::size_t longest_message = 5000;
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw Finding(what);
+}
+
+void require_line(std::string_view text) {
+  require(!text.empty() && text.size() <= longest_message,
+          "a message of " + std::to_string(text.size()) + " characters");
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    require(code >= 0x20 && code != 0x7f,
+            "a control character in the message: " + std::string(text));
+  }
+}
+
+/// Collects warnings, and stops after a while.
+class Listener {
+ public:
+  explicit Listener(Outcome& outcome) : outcome_(outcome) {}
+
+  Progress progress() {
+    Progress progress;
+    progress.stop = stop_.get_token();
+    progress.warn = [this](std::string_view code, std::string_view text) {
+      require(!code.empty(), "a warning has no code");
+      require_line(code);
+      require_line(text);
+      outcome_.warnings.emplace_back(text);
+      require(outcome_.warnings.size() < 1000, "too many warnings");
+    };
+    progress.report = [this](std::string_view, double share) {
+      require(0 <= share && share <= 1, "a share of " + std::to_string(share) + " is done");
+      if (may_stop && std::chrono::steady_clock::now() > end_) stop_.request_stop();
+    };
+    return progress;
+  }
+
+  bool may_stop = false;
+
+ private:
+  Outcome& outcome_;
+  std::stop_source stop_;
+  std::chrono::steady_clock::time_point end_ =
+      std::chrono::steady_clock::now() + std::chrono::seconds(1);
+};
+
+std::size_t points_in(const Part& part) {
+  std::size_t count = part.vertices().size();
+  for (const std::vector<int>& polygon : part.polygons()) count += polygon.size();
+  for (const Patch& patch : part.patches()) count += patch.bezier.points.size();
+  for (const EdgePiece& piece : part.pieces()) count += piece.bezier.points.size();
+  return count;
+}
+
+bool is_small(const Model& model) {
+  std::size_t count = 0;
+  for (const Part& part : model.parts()) count += 1 + points_in(part);
+  for (const Instance& instance : model.instances()) {
+    if (count > most_points) return false;
+    count += 1 + points_in(model.parts()[static_cast<std::size_t>(instance.part)]);
+  }
+  return count <= most_points;
+}
+
+void check_document(const Model& model) {
+  for (const DocumentEncoding encoding : {DocumentEncoding::json, DocumentEncoding::cbor}) {
+    std::string document;
+    try {
+      document = to_document(model, encoding);
+    } catch (const InvalidInput&) {
+      return;  // a trim loop's Euclidean coordinate overflows
+    }
+    Model back;
+    try {
+      read_document("document", document, encoding, back);
+    } catch (const Error& error) {
+      throw Finding(std::string("the model's document is refused: ") + error.what());
+    }
+    require(to_document(back, encoding) == document, "the document of the document is another");
+  }
+}
+
+void check_hull(const Model& model, Listener& listener) {
+  HullOptions options;
+  options.relative = 1e-2;
+  options.max_vertices = 2000;
+  options.threads = 1;
+  options.progress = listener.progress();
+  listener.may_stop = true;
+  Hull hull;
+  try {
+    hull = convex_hull(model, options);
+  } catch (const BackendError& error) {
+    throw Finding(std::string("a library refused the hull: ") + error.what());
+  } catch (const Error& error) {
+    require_line(error.what());
+    return;
+  }
+  require(hull.distance_bound >= 0 && std::isfinite(hull.distance_bound),
+          "the bound of the hull's distance is " + std::to_string(hull.distance_bound));
+  for (const auto vertex : hull.mesh.vertices()) {
+    const dvec3 p = position(hull.mesh, vertex);
+    require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
+            "a vertex of the hull is not finite");
+  }
+  if (hull.kind != HullKind::solid) return;
+  require(hull.mesh.n_faces() >= 4, "a solid hull has fewer than four faces");
+  for (const auto edge : hull.mesh.halfedges()) {
+    require(!hull.mesh.is_boundary(edge), "a solid hull is not closed");
+  }
+}
+
+void check_model(const Model& model, Listener& listener) {
+  if (!is_small(model)) return;
+  check_document(model);
+  check_hull(model, listener);
+}
+
+void check_mesh(const PolygonMesh& mesh) {
+  for (const dvec3& p : mesh.points) {
+    require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
+            "a point is not finite");
+  }
+  for (const std::vector<int>& polygon : mesh.polygons) {
+    require(polygon.size() >= 3, "a polygon has fewer than three corners");
+    for (const int v : polygon) {
+      require(0 <= v && static_cast<std::size_t>(v) < mesh.points.size(),
+              "a corner is out of range");
+    }
+  }
+}
+
+/// A file in memory.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view data) : descriptor_(memfd_create("directions", 0)) {
+    if (descriptor_ < 0) throw std::runtime_error("no file in memory");
+    while (!data.empty()) {
+      const ssize_t count = write(descriptor_, data.data(), data.size());
+      if (count < 0) throw std::runtime_error("a file in memory cannot be written");
+      data.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string name() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+void read_and_check(const Reader& reader, std::string_view data, const std::string& name,
+                    Listener& listener) {
+  if (reader.kind == Reader::Kind::directions) {
+    for (const dvec3& d : tool::read_directions(name, {})) {
+      require(std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z) && d != dvec3(0.0),
+              "a direction is not valid");
+    }
+  } else if (reader.kind == Reader::Kind::mesh) {
+    check_mesh(read_mesh(data, name, reader.format));
+  } else {
+    Model model;
+    ReadOptions options;
+    options.progress = listener.progress();
+    try {
+      read_model(data, name, reader.format, model, options);
+    } catch (const Error&) {
+      require(model.parts().empty() && model.instances().empty(), "a file in error left a part");
+      throw;
+    }
+    check_model(model, listener);
+  }
+}
+
+}  // namespace
+
+const std::vector<Reader>& readers() {
+  using enum Reader::Kind;
+  static const std::vector<Reader> all = {{model, ".bpt"},       {model, ".mlp"},
+                                          {model, ".obj"},       {model, ".off"},
+                                          {model, ".ply"},       {model, ".stl"},
+                                          {model, ".taut.cbor"}, {model, ".taut.json"},
+                                          {model, ".xyz"},       {mesh, ".obj"},
+                                          {mesh, ".off"},        {mesh, ".ply"},
+                                          {mesh, ".stl"},        {directions, "directions"}};
+  return all;
+}
+
+Outcome read_one(const Reader& reader, std::string_view data, const std::string& name) {
+  if (reader.kind == Reader::Kind::directions && !name.starts_with("/proc/")) {
+    const MemoryFile file(data);
+    return read_one(reader, data, file.name());
+  }
+  Outcome outcome;
+  Listener listener(outcome);
+  try {
+    read_and_check(reader, data, name, listener);
+    outcome.accepted = true;
+  } catch (const Error& error) {
+    outcome.error = error.what();
+    require_line(outcome.error);
+    require(outcome.error.starts_with(name + ":"),
+            "the message does not begin with the file's name: " + outcome.error);
+  } catch (const Finding&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Finding(std::string("an exception that is not Taut's: ") + error.what());
+  }
+  return outcome;
+}
+
+}  // namespace taut_test

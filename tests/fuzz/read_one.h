@@ -1,0 +1,46 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut_test {
+
+/// A reader and what it takes: the formats of models and meshes by their extensions (".obj"), or
+/// the directions of `taut support`, whose format is "directions".
+struct Reader {
+  enum class Kind { model, mesh, directions };
+  Kind kind = Kind::model;
+  std::string format;
+
+  /// The folder of the corpus that holds its inputs: "obj", "taut.json".
+  std::string corpus() const { return format.substr(format.starts_with('.') ? 1 : 0); }
+};
+
+/// All there are.
+const std::vector<Reader>& readers();
+
+/// What a reader must never do.
+class Finding : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+/// What became of an input.
+struct Outcome {
+  bool accepted = false;
+  std::string error;  ///< the message, where it was refused
+  std::vector<std::string> warnings;
+};
+
+/// Gives one input to a reader and checks that it is refused by an error that a person can read,
+/// in one line that begins with the name, or that the result holds together: a small model
+/// survives its document in both encodings, and its hull is closed and finite.
+///
+/// `name` is what the input is called; the layers of a project are sought beside it. (What
+/// directions are read from has a name of its own.)
+/// @throws Finding
+Outcome read_one(const Reader& reader, std::string_view data, const std::string& name);
+
+}  // namespace taut_test
