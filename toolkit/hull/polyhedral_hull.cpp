@@ -129,6 +129,7 @@ void PolyhedralHull::make_planar(std::span<const int> candidates,
     return;
   }
   std::vector<dvec3> corners;
+  corners.reserve(outline.size());
   std::vector<int> loop(outline.size());
   for (const int c : outline) corners.push_back(point(c));
   std::iota(loop.begin(), loop.end(), 0);
