@@ -1190,6 +1190,34 @@ TEST(Model, InstancesAreValidated) {
   EXPECT_NO_THROW(model.add_instance(0, pose));
 }
 
+TEST(Model, ExtentsThatOverflowAreRefused) {
+  const auto far = [](double x) {
+    Part part;
+    part.name = "far";
+    part.add_point(dvec3(x, 0, 0));
+    return part;
+  };
+  Model model;
+  model.add_part(far(1.7e308), smooth_join_angle);
+  expect_invalid([&] { model.add_part(far(-1.7e308), smooth_join_angle); }, "part far: the extent");
+  EXPECT_EQ(model.parts().size(), 1U);
+  EXPECT_EQ(model.instances().size(), 1U);
+  for (const dvec3& to : {dvec3(0, 1.7e308, 1.7e308), dvec3(1e308, 0, 0)}) {
+    expect_invalid([&] { model.add_instance(0, {dmat3(1.0), to}); }, "instance 1: the extent");
+  }
+  model.clear_instances();
+  EXPECT_NO_THROW(model.add_part(far(-1.7e308), smooth_join_angle));
+}
+
+TEST(Model, NamesInMessagesAreShortAndPrintable) {
+  Part part;
+  part.name = "a\n" + std::string(200, 'b');
+  const std::string shown = "a?" + std::string(78, 'b') + "...";
+  expect_invalid([&] { part.add_point(dvec3(0, 0, infinity)); }, shown + ": point 0 is not");
+  const NurbsCurve line{1, {0, 0, 1, 1}, {homogeneous(dvec3(0.0)), homogeneous(dvec3(infinity))}};
+  expect_invalid([&] { part.add_curve(line, "c\x1b"); }, "c?: control point 1");
+}
+
 TEST(Model, SourcesBeyondIntAreRefused) {
   Part part;
   const int points = 1 << 16;

@@ -210,7 +210,8 @@ TEST_F(ReadModel, FilesThatCannotBeRead) {
             path("none.bpt").string() + ": cannot be opened: No such file or directory");
   std::filesystem::create_directory(path("folder.bpt"));
   EXPECT_EQ(message(path("folder.bpt")), path("folder.bpt").string() + ": is a directory");
-  const std::string known = "; known are .bpt, .mlp, .obj, .off, .ply, .stl, .taut.cbor, .taut.json, .xyz";
+  const std::string known =
+      "; known are .bpt, .mlp, .obj, .off, .ply, .stl, .taut.cbor, .taut.json, .xyz";
   EXPECT_EQ(message(file("a.step", "")),
             path("a.step").string() + ": no format of models has the extension \".step\"" + known);
   EXPECT_EQ(message(file("a", "")),
@@ -856,8 +857,10 @@ TEST_F(ReadModel, ObjTrimThatWouldFillMemory) {
   for (int i = 0; i < 1000; ++i) text += " 1";
   text += "\nparm u 0" + numbers(0, 999) + " 999\nend\ncstype bezier\nsurf 0 1 0 1 1 2 3 4\ntrim";
   for (int i = 0; i < 100000; ++i) text += " 0 999 1";
-  EXPECT_EQ(message<taut::LimitExceeded>("a.obj", text + "\nend\n"),
-            ":13: the Bezier pieces of this file have more than 67108864 control points");
+  text += "\nend\n";
+  EXPECT_EQ(message<taut::LimitExceeded>("a.obj", text),
+            ":13: the trimming loops of this file have more than " +
+                std::to_string((1 << 20) + text.size()) + " control points");
 }
 
 TEST_F(ReadModel, ObjOtherElementsMalformed) {

@@ -292,6 +292,31 @@ TEST_F(ReadProject, EntitiesAreNotExpanded) {
                 ": cannot be opened: No such file or directory");
 }
 
+TEST_F(ReadProject, FileRepeatedUnderOtherMatrices) {
+  std::string polygon = "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n1048575";
+  for (int i = 0; i < 1048575; ++i) polygon += i % 3 == 0 ? " 0" : i % 3 == 1 ? " 1" : " 2";
+  file("large.off", polygon);
+  std::string layers;
+  for (int i = 0; i < 70; ++i) layers += layer("large.off", stretched);
+  const std::string what = message<taut::LimitExceeded>(project(layers));
+  EXPECT_NE(what.find("more than 67108864 control points"), std::string::npos) << what;
+}
+
+TEST_F(ReadProject, NamesOfFilesWithControlCharacters) {
+  EXPECT_EQ(message<IoError>(project(layer("a&#10;&#27;.ply", ""))),
+            ":4: layer \"the a??.ply\": " + path("a??.ply").string() +
+                ": the name has control characters or is too long");
+}
+
+TEST_F(ReadProject, LayersTooFarApart) {
+  file("far.xyz", "1.7e308 0 0\n");
+  const auto there = [&](const std::string& x) {
+    return layer("far.xyz", "1 0 0 " + x + " 0 1 0 0 0 0 1 0 0 0 0 1");
+  };
+  const std::string what = message<InvalidInput>(project(there("0") + there("1.7e308")));
+  EXPECT_TRUE(what.ends_with("the extent overflows")) << what;
+}
+
 TEST_F(ReadProject, DeepAndLargeDocuments) {
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "<a>";
@@ -299,6 +324,10 @@ TEST_F(ReadProject, DeepAndLargeDocuments) {
   const std::string large((std::size_t{1} << 26) + 1, ' ');
   EXPECT_EQ(message<taut::LimitExceeded>(large),
             ": is larger than 64 MiB, the most that a project may have");
+  // Many lines and warnings: would take minutes if each were looked for from the beginning.
+  std::string many;
+  for (int i = 0; i < 400000; ++i) many += "<MLMesh visible=\"0\"/>\n";
+  EXPECT_TRUE(message<InvalidInput>(project(many)).ends_with("no layers that are visible"));
 }
 
 TEST_F(ReadProject, DamagedFiles) {

@@ -22,6 +22,9 @@ using namespace taut;
 /// Models beyond are not taken further than their reader.
 constexpr std::size_t most_points = 2000;
 
+/// Hulls that take longer are stopped; there are many to try.
+constexpr std::chrono::milliseconds longest_hull(300);
+
 /// A sentence and the longest path; longer is no message for a person.
 constexpr std::size_t longest_message = 5000;
 
@@ -66,8 +69,7 @@ class Listener {
  private:
   Outcome& outcome_;
   std::stop_source stop_;
-  std::chrono::steady_clock::time_point end_ =
-      std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + longest_hull;
 };
 
 std::size_t points_in(const Part& part) {

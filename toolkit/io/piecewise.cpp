@@ -75,12 +75,16 @@ NurbsSurface joined(const std::vector<PatchPiece>& pieces) {
 }
 
 NurbsCurve restricted(const NurbsCurve& curve, const Interval& range) {
+  return restricted(decompose(curve), range);
+}
+
+NurbsCurve restricted(const std::vector<CurvePiece>& curve, const Interval& range) {
   std::vector<CurvePiece> pieces;
-  for (const CurvePiece& piece : decompose(curve)) {
+  for (const CurvePiece& piece : curve) {
     const Overlap t = overlap(piece.t, range);
     if (!t.empty()) pieces.push_back({restricted(piece.bezier, t.local), t.common});
   }
-  if (pieces.empty()) return {curve.degree, {}, {}};
+  if (pieces.empty()) return {curve.front().bezier.degree(), {}, {}};
   return joined(pieces);
 }
 

@@ -29,16 +29,18 @@ struct ReadOptions {
 
 /// Reads a file into the model as one more part, by the file name's extension: `.bpt` (Bezier
 /// patches), `.obj` (free-form statements, polygons and points), `.off`, `.ply`, `.stl` (polygons)
-/// or `.xyz` (points), or the parts and instances of a model document, `.taut.json` or `.taut.cbor`;
-/// of a project, `.mlp`, the visible layers become instances. A part is named after its file.
+/// or `.xyz` (points), or the parts and instances of a model document, `.taut.json` or
+/// `.taut.cbor`; of a project, `.mlp`, the visible layers become instances. A part is named after
+/// its file.
 ///
 /// Nothing that a file says is trusted: counts, indices and numbers are checked before memory is
 /// taken, and the model is unchanged if anything is wrong.
 /// @throws IoError (FILE:LINE: ... or FILE:byte N: ...) if the file cannot be read or is not what
 /// its format says, also for cages of schemes other than bilinear, which are not evaluated;
 /// InvalidInput (likewise with place) if its numbers are no valid geometry or there is none;
-/// LimitExceeded for files above 2 GiB or surfaces with more than 2^26 control points once
-/// decomposed; Cancelled
+/// LimitExceeded for files above 2 GiB, surfaces with more than 2^26 control points once decomposed
+/// or trimming loops that name curves far more often than their file is large, and as
+/// Model::add_instance() does; Cancelled
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options = {});
 
 /// Reads what a file of the format (".obj") holds; the name stands in messages and names the part.

@@ -17,6 +17,10 @@ namespace {
 /// B-spline of degree 31 has a thousand for each control point in the file.
 constexpr std::size_t max_piece_points = std::size_t{1} << 26;
 
+/// Most of them in trimming loops, on top of one for each byte of the file: a few bytes suffice to
+/// name a long curve again.
+constexpr std::size_t max_trim_points = std::size_t{1} << 20;
+
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// A B-spline's knots in one direction, and how many control points belong to them.
@@ -38,7 +42,9 @@ bool same(const Interval& a, const Interval& b) { return a.lower == b.lower && a
 /// Turns the elements of an OBJ file into the faces and edges of a part.
 class Builder {
  public:
-  Builder(const TextScanner& scanner, ObjFile& file) : scanner_(scanner), file_(file) {}
+  /// `bytes`: the size of the file.
+  Builder(const TextScanner& scanner, ObjFile& file, std::size_t bytes)
+      : scanner_(scanner), file_(file), most_trim_points_(max_trim_points + bytes) {}
 
   void add(const ObjElement& element);
   PolygonMesh used_polygons();
@@ -47,7 +53,7 @@ class Builder {
  private:
   struct ParameterCurve {
     NurbsCurve curve;
-    double piece_points = 0;
+    std::vector<CurvePiece> pieces;
   };
 
   Basis basis(const ObjElement& e, Direction direction) const;
@@ -56,6 +62,7 @@ class Builder {
   void require_range(long line, const Interval& range, const Interval& domain) const;
   void require_vertices(const ObjElement& e, std::size_t count) const;
   void count_piece_points(long line, double points);
+  void count_trim_points(long line, std::size_t points);
   const ParameterCurve& parameter_curve(std::size_t i);
   TrimLoop trim_loop(const ObjLoop& loop);
   void add_curve(const ObjElement& e);
@@ -67,6 +74,8 @@ class Builder {
   Part part_;
   std::map<std::size_t, ParameterCurve> parameter_curves_;
   double piece_points_ = 0;
+  std::size_t most_trim_points_;
+  std::size_t trim_points_ = 0;
 };
 
 void Builder::add(const ObjElement& element) {
@@ -148,6 +157,14 @@ void Builder::count_piece_points(long line, double points) {
                       std::to_string(max_piece_points) + " control points");
 }
 
+void Builder::count_trim_points(long line, std::size_t points) {
+  trim_points_ += points;
+  if (trim_points_ <= most_trim_points_) return;
+  throw LimitExceeded(scanner_.file() + ":" + std::to_string(line) +
+                      ": the trimming loops of this file have more than " +
+                      std::to_string(most_trim_points_) + " control points");
+}
+
 void Builder::add_curve(const ObjElement& e) {
   Basis u = basis(e, Direction::u);
   require_vertices(e, u.count);
@@ -169,26 +186,28 @@ const Builder::ParameterCurve& Builder::parameter_curve(std::size_t i) {
   const ObjElement& e = file_.parameter_curves[i];
   Basis u = basis(e, Direction::u);
   require_vertices(e, u.count);
-  const double piece_points = static_cast<double>(u.spans() * (to_size(u.degree) + 1));
+  count_piece_points(e.line, static_cast<double>(u.spans() * (to_size(u.degree) + 1)));
   NurbsCurve curve{u.degree, std::move(u.knots), {}};
   for (const std::size_t k : e.vertices) {
     curve.points.push_back(
         weighted(e, file_.parameter_points[k], "parameter point " + std::to_string(k + 1)));
   }
   scanner_.placed(e.line, [&] { validate(curve, "curv2 " + std::to_string(i + 1)); });
-  return parameter_curves_.emplace(i, ParameterCurve{std::move(curve), piece_points}).first->second;
+  std::vector<CurvePiece> pieces = decompose(curve);
+  return parameter_curves_.emplace(i, ParameterCurve{std::move(curve), std::move(pieces)})
+      .first->second;
 }
 
 TrimLoop Builder::trim_loop(const ObjLoop& loop) {
-  for (const ObjTrimCurve& trim : loop.curves) {
-    count_piece_points(loop.line, parameter_curve(trim.curve).piece_points);
-  }
   TrimLoop result;
   for (const ObjTrimCurve& trim : loop.curves) {
-    const NurbsCurve& whole = parameter_curve(trim.curve).curve;
+    const auto& [whole, pieces] = parameter_curve(trim.curve);
     require_range(loop.line, trim.range, whole.domain());
     const bool is_whole = same(trim.range, whole.domain());
-    result.curves.push_back(is_whole ? whole : restricted(whole, trim.range));
+    result.curves.push_back(is_whole ? whole : restricted(pieces, trim.range));
+    const std::size_t order = to_size(whole.degree) + 1;
+    count_trim_points(loop.line,
+                      is_whole ? pieces.size() * order : result.curves.back().points.size());
     scanner_.placed(loop.line, [&] { validate(result.curves.back(), "trimming curve"); });
   }
   return runs_counter_clockwise(result) == loop.hole ? reversed(result) : result;
@@ -253,7 +272,7 @@ FileContent read_obj(const std::string& name, std::string_view data, const ReadO
     throw InvalidInput(name + ": holds no geometry" +
                        (file.vertices.empty() ? "" : ", only vertices that nothing uses"));
   }
-  Builder builder(scanner, file);
+  Builder builder(scanner, file, data.size());
   for (const ObjElement& element : file.elements) {
     options.progress.check();
     builder.add(element);

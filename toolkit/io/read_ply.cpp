@@ -198,7 +198,8 @@ void HeaderReader::check_room() {
       bytes += ascii ? 2 : size_of(p.length_type.value_or(p.type));
     }
     if (bytes > 0 && element.count > (scanner_.bytes_left() + 1) / bytes) {
-      scanner_.refuse(element.line, std::to_string(element.count) + " of " + printable(element.name) +
+      scanner_.refuse(element.line, std::to_string(element.count) + " of " +
+                                        printable(element.name) +
                                         " announced, more than the remaining " +
                                         std::to_string(scanner_.bytes_left()) + " bytes can hold");
     }

@@ -20,6 +20,13 @@ namespace {
 /// Far above every project; a document takes many times the memory of its text.
 constexpr std::size_t max_project_bytes = std::size_t{1} << 26;
 
+/// The first layers of a project that is all invisible are enough.
+constexpr int most_invisible_warnings = 20;
+
+/// Most control points, corners and points of files that are repeated under maps which are not
+/// rigid: a few bytes name a file again, and each becomes a part.
+constexpr std::size_t max_repeated_points = std::size_t{1} << 26;
+
 /// Of a file's name in messages.
 constexpr std::size_t longest_path = 4096;
 
@@ -39,10 +46,10 @@ class ProjectParser {
   std::vector<Layer> parse();
 
  private:
-  long line_at(std::ptrdiff_t offset) const;
+  long line_at(std::ptrdiff_t offset);
   void read_group(const pugi::xml_node& group);
   void read_layer(const pugi::xml_node& node);
-  AffineMap read_matrix(const pugi::xml_node& node) const;
+  AffineMap read_matrix(const pugi::xml_node& node);
   void warn(long line, std::string_view code, const std::string& what) const {
     progress_.warning(code, file_ + ":" + std::to_string(line) + ": " + what);
   }
@@ -53,6 +60,10 @@ class ProjectParser {
   const Progress& progress_;
   std::vector<Layer> layers_;
   int invisible_ = 0;
+  bool has_rasters_ = false;
+  // Where line_at() was asked last.
+  std::ptrdiff_t offset_ = 0;
+  long line_ = 1;
 };
 
 std::vector<Layer> ProjectParser::parse() {
@@ -72,7 +83,8 @@ std::vector<Layer> ProjectParser::parse() {
   }
   for (const pugi::xml_node& child : root.children()) {
     if (std::string_view(child.name()) == "MeshGroup") read_group(child);
-    if (std::string_view(child.name()) == "RasterGroup" && child.child("MLRaster")) {
+    if (std::string_view(child.name()) == "RasterGroup" && child.child("MLRaster") &&
+        !std::exchange(has_rasters_, true)) {
       warn(line_at(child.offset_debug()), "raster-layer", "rasters are left out");
     }
   }
@@ -83,16 +95,24 @@ std::vector<Layer> ProjectParser::parse() {
   return std::move(layers_);
 }
 
-long ProjectParser::line_at(std::ptrdiff_t offset) const {
-  const std::ptrdiff_t end = std::min(offset, static_cast<std::ptrdiff_t>(data_.size()));
-  return 1 + std::count(data_.begin(), data_.begin() + std::max(end, std::ptrdiff_t{0}), '\n');
+/// Counts on from the last offset, since nodes are met in the order of the file.
+long ProjectParser::line_at(std::ptrdiff_t offset) {
+  const std::ptrdiff_t end =
+      std::clamp(offset, std::ptrdiff_t{0}, static_cast<std::ptrdiff_t>(data_.size()));
+  if (end < offset_) {
+    offset_ = 0;
+    line_ = 1;
+  }
+  line_ += std::count(data_.begin() + offset_, data_.begin() + end, '\n');
+  offset_ = end;
+  return line_;
 }
 
 void ProjectParser::read_group(const pugi::xml_node& group) {
   for (const pugi::xml_node& node : group.children("MLMesh")) {
     const std::string_view visible = node.attribute("visible").value();
     if (visible == "0" || visible == "false") {
-      ++invisible_;
+      if (++invisible_ > most_invisible_warnings) continue;
       warn(line_at(node.offset_debug()), "invisible-layer",
            "layer " + in_quotes(node.attribute("label").value()) + " is not visible and left out");
     } else {
@@ -118,7 +138,7 @@ void ProjectParser::read_layer(const pugi::xml_node& node) {
   layers_.push_back(std::move(layer));
 }
 
-AffineMap ProjectParser::read_matrix(const pugi::xml_node& node) const {
+AffineMap ProjectParser::read_matrix(const pugi::xml_node& node) {
   const long line = line_at(node.offset_debug());
   const std::string_view text = node.child_value();
   TextScanner words(file_, text);
@@ -143,6 +163,15 @@ AffineMap ProjectParser::read_matrix(const pugi::xml_node& node) const {
   return map;
 }
 
+/// Its control points, corners and points.
+std::size_t size_of(const Part& part) {
+  std::size_t size = part.vertices().size();
+  for (const std::vector<int>& polygon : part.polygons()) size += polygon.size();
+  for (const Patch& patch : part.patches()) size += patch.bezier.points.size();
+  for (const EdgePiece& piece : part.pieces()) size += piece.bezier.points.size();
+  return size;
+}
+
 /// Reads the files of the layers and puts the parts into a model.
 class ProjectLoader {
  public:
@@ -157,6 +186,7 @@ class ProjectLoader {
   struct File {
     Part part;
     std::optional<std::size_t> slot;
+    bool used = false;
   };
 
   File& file(const std::filesystem::path& path);
@@ -166,6 +196,7 @@ class ProjectLoader {
   const ReadOptions& options_;
   std::map<std::string, File> files_;
   std::deque<Part> images_;
+  std::size_t repeated_points_ = 0;
   std::vector<Part*> parts_;
   std::vector<Instance> instances_;
 };
@@ -189,11 +220,18 @@ void ProjectLoader::add(const Layer& layer) {
 void ProjectLoader::add_placed(const Layer& layer) {
   File& source = file(std::filesystem::path(file_).parent_path() / layer.file);
   if (!is_rigid(layer.map)) {
+    if (std::exchange(source.used, true)) repeated_points_ += size_of(source.part);
+    if (repeated_points_ > max_repeated_points) {
+      throw LimitExceeded(
+          "files that are repeated under matrices which are not rigid have more than " +
+          std::to_string(max_repeated_points) + " control points");
+    }
     images_.push_back(transformed(source.part, layer.map));
     instances_.push_back({static_cast<int>(parts_.size()), {}});
     parts_.push_back(&images_.back());
     return;
   }
+  source.used = true;
   if (!source.slot) {
     source.slot = parts_.size();
     parts_.push_back(&source.part);
@@ -220,7 +258,7 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
     throw IoError(name + ": is no file");
   }
   FileContent content = read_content(read_file(path), name, format, options_);
-  return files_.emplace(key, File{as_part(std::move(content), name), {}}).first->second;
+  return files_.emplace(key, File{as_part(std::move(content), name), {}, false}).first->second;
 }
 
 void ProjectLoader::put_into(Model& model) {
