@@ -62,6 +62,22 @@ void expect_hull_of(const Points& points, const Hull& hull) {
   EXPECT_LE(highest, hull.distance_bound + 1e-17 * diagonal(box));
 }
 
+/// No point reaches out of the mesh by more than the bound, as seen in these directions.
+void expect_within_bound(const Points& points, const Hull& hull, const Points& directions) {
+  const PolygonMesh mesh = polygons(hull.mesh);
+  Box box;
+  for (const dvec3& p : points) box.include(p);
+  const dvec3 origin = points.front();
+  for (const dvec3& n : directions) {
+    real highest = -std::numeric_limits<real>::infinity();
+    for (const dvec3& p : points) {
+      highest = std::max(highest, glm::dot(rvec3(p) - rvec3(origin), rvec3(n)));
+    }
+    EXPECT_LE(highest - mesh_support(mesh, n, origin),
+              real(hull.distance_bound) + 1e-17L * diagonal(box));
+  }
+}
+
 TEST(PolyhedralHull, CubeIsExact) {
   const Points cube = grid(2);
   const Hull hull = hull_of(cube);
@@ -128,6 +144,27 @@ TEST(PolyhedralHull, RoundedPlanesAndLinesAreFlat) {
     EXPECT_EQ(planar.mesh.n_vertices(), 4U);
     EXPECT_LE(planar.distance_bound, 2e-11);
     EXPECT_EQ(hull_of(mapped(line, skew_rotation(), shift)).kind, HullKind::segment);
+  }
+}
+
+TEST(PolyhedralHull, BoundsOfSharpCones) {
+  // Of facets so narrow, normals are rounded beyond use.
+  Random random(2);
+  for (int k = 0; k < 1000; ++k) {
+    const double slope = log_uniform(random, 1e-16, 1e-3);
+    Points points = {dvec3(0.0)};
+    for (int i = pick(random, 4, 40); i > 0; --i) {
+      const double x = uniform(random, 0, 1);
+      const double t = uniform(random, 0, 7);
+      points.emplace_back(x, slope * x * std::cos(t), slope * x * std::sin(t));
+    }
+    const dmat3 turn = random_rotation(random);
+    Points directions;
+    for (int i = 0; i < 60; ++i) {
+      directions.push_back(turn * dvec3(0, std::cos(0.1 * i), std::sin(0.1 * i)));
+    }
+    points = mapped(points, turn);
+    expect_within_bound(points, hull_of(points), directions);
   }
 }
 
