@@ -168,6 +168,43 @@ TEST(PolyhedralHull, BoundsOfSharpCones) {
   }
 }
 
+TEST(PolyhedralHull, BoundCoversWhatPlacingCancels) {
+  Part part;
+  part.add_points(mapped(grid(2), dmat3(0.1), dvec3(1e9)));
+  Model model;
+  model.add_part(std::move(part), smooth_join_angle);
+  model.clear_instances();
+  const RigidMotion pose = {skew_rotation(), -(skew_rotation() * dvec3(1e9))};
+  model.add_instance(0, pose);
+  const Hull hull = polyhedral_hull(model);
+  real farthest = 0;
+  for (const auto v : hull.mesh.vertices()) {
+    const rvec3 x = source_point(model, hull.mesh.data(v).source, 0, 0);
+    farthest = std::max(farthest, glm::length(x - rvec3(position(hull.mesh, v))));
+  }
+  EXPECT_GT(farthest, 1e-9);
+  EXPECT_LE(farthest, hull.distance_bound);
+}
+
+TEST(PolyhedralHull, MixedSizesAreExact) {
+  // A pyramid whose base is folded along a diagonal by next to nothing.
+  for (const double size : {1e70, 1e300}) {
+    for (const double fold : {1e-250, 1e-320}) {
+      const Points points = {
+          {0, 0, 0}, {size, 0, fold}, {size, size, 0}, {0, size, fold}, {0, 0, size}};
+      const Hull hull = hull_of(points);
+      EXPECT_TRUE(mesh_facts(polygons(hull.mesh)).is_convex_polytope());
+      EXPECT_EQ(hull.mesh.n_vertices(), 5U);
+      EXPECT_EQ(hull.mesh.n_faces(), 6U);
+      EXPECT_EQ(hull.distance_bound, 0);
+      for (const auto v : hull.mesh.vertices()) {
+        const auto& n = hull.mesh.normal(v);
+        EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-6);
+      }
+    }
+  }
+}
+
 TEST(PolyhedralHull, PointsOneUlpApartAreAHull) {
   const double ulp = std::numeric_limits<double>::epsilon();
   for (const double at : {1.0, 8e5, 1e15}) {

@@ -31,8 +31,9 @@ class PolyhedralHull {
   PolyhedralHull(const Model& model, const HullOptions& options)
       : points_(model),
         options_(options),
-        width_(
-            std::min(coordinate_rounding * points_.reach(), spurious_share * points_.diagonal())) {}
+        width_(points_.product_scale() == 1 ? std::min(coordinate_rounding * points_.reach(),
+                                                       spurious_share * points_.diagonal())
+                                            : 0) {}
 
   Hull run();
 
@@ -62,7 +63,7 @@ class PolyhedralHull {
 
   ModelPoints points_;
   const HullOptions& options_;
-  double width_;  ///< what is put down to rounding, scaled as the points are
+  double width_;  ///< what is put down to rounding, scaled as the points are; zero: nothing
   Hull result_;
   std::vector<int> corners_;    ///< per vertex of the mesh: its number among the points
   std::vector<dvec3> normals_;  ///< per face of the mesh
@@ -121,7 +122,7 @@ void PolyhedralHull::make_planar(std::span<const int> candidates,
   for (const int c : candidates) points.push_back(point(c));
   const PlaneView view(point(witnesses[0]), point(witnesses[1]), point(witnesses[2]));
   const std::vector<int> exact = convex_outline(points, view);
-  std::vector<int> outline = simplified_outline(exact, points, width_);
+  std::vector<int> outline = width_ > 0 ? simplified_outline(exact, points, width_) : exact;
   const double in_plane = outline.size() < exact.size() ? width_ : 0;
   for (int& corner : outline) corner = candidates[std::size_t(corner)];
   if (outline.size() < 3) {
@@ -206,7 +207,7 @@ dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f) const {
   std::optional<dvec3> first;
   dvec3 before(0.0);
   for (const auto v : result_.mesh.fv_range(f)) {
-    const dvec3& p = point_at(v);
+    const dvec3 p = points_.product_scale() * point_at(v);
     if (!first) first = before = p;
     normal += glm::cross(before - *first, p - *first);
     before = p;
