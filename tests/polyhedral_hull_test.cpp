@@ -147,6 +147,29 @@ TEST(PolyhedralHull, RoundedPlanesAndLinesAreFlat) {
   }
 }
 
+TEST(PolyhedralHull, BoundsCountBothSidesOfAPlane) {
+  // One corner of a planar outline lies as deep below the plane as another point, behind it along
+  // an axis, lies above.
+  const dvec3 n = unit(dvec3(1, 1, 1));
+  const dvec3 a = unit(dvec3(1, -1, 0));
+  const dvec3 b = glm::cross(n, a);
+  Random random(1);
+  Points directions;
+  for (int k = 0; k < 60; ++k)
+    directions.push_back(std::sin(0.05 * k) * n - std::cos(0.05 * k) * b);
+  int planar = 0;
+  for (int k = 0; k < 200; ++k) {
+    const double depth = 34 * uniform(random, 0.8, 1.2) * rounding_unit;
+    Points points = {-a, a, 0.9 * b, -0.3 * b - depth * n};
+    points.push_back(points.back());
+    points.back()[k % 3] += 3.2 * depth;
+    const Hull hull = hull_of(points);
+    planar += hull.kind == HullKind::planar ? 1 : 0;
+    expect_within_bound(points, hull, directions);
+  }
+  EXPECT_GT(planar, 20);
+}
+
 TEST(PolyhedralHull, BoundsOfSharpCones) {
   // Of facets so narrow, normals are rounded beyond use.
   Random random(2);
