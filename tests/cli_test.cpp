@@ -367,6 +367,115 @@ TEST_F(Cli, InfoConvertsToModelDocuments) {
   EXPECT_EQ(file_count(), 3U);
 }
 
+TEST_F(Cli, HullsBelowDimensionThree) {
+  struct Case {
+    const char* points;
+    int dimension;
+    const char* hull;
+    int vertices, edges, faces;
+  };
+  const Case cases[] = {{"1 2 3\n1 2 3\n", 0, "point", 1, 0, 0},
+                        {"0 0 0\n1 2 3\n0.5 1 1.5\n", 1, "segment", 2, 1, 0},
+                        {"0 0 1\n2 0 1\n2 2 1\n0 2 1\n1 0 1\n1 1 1\n", 2, "planar", 4, 4, 2}};
+  for (const Case& c : cases) {
+    const std::string name = plant("p.xyz", c.points);
+    const Result result = run("hull " + name + " -o h.ply --report r.json");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find(std::string("hull      ") + c.hull), std::string::npos) << result.out;
+    EXPECT_EQ(result.err, "");
+    const Json report = Json::parse(content(path("r.json")));
+    EXPECT_EQ(report["dimension"], c.dimension);
+    EXPECT_EQ(report["mesh"]["vertices"], c.vertices);
+    EXPECT_EQ(report["mesh"]["edges"], c.edges);
+    EXPECT_EQ(report["mesh"]["faces"], c.faces);
+    EXPECT_EQ(report["mesh"]["distance_bound"], 0);
+    EXPECT_EQ(report["mesh"]["volume"], 0);
+    EXPECT_EQ(run("verify h.ply " + name).exit_code, 0);
+  }
+  expect_failure("hull " + plant("none.xyz", "# none\n") + " -o n.ply", 4, "no geometry");
+  expect_failure("hull " + plant("two.xyz", "0 0 0\n1 1 1\n") + " -o n.stl", 3, "segment");
+  EXPECT_FALSE(fs::exists(path("n.ply")));
+  EXPECT_FALSE(fs::exists(path("n.stl")));
+}
+
+TEST_F(Cli, StandardInputAndOutput) {
+  const std::string cube = plant("cube.off", R"(OFF
+8 6 0
+0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+)");
+  const Result hull = run("hull - -o - --format off <" + cube);
+  EXPECT_EQ(hull.exit_code, 0) << hull.err;
+  EXPECT_TRUE(hull.out.starts_with("OFF\n8 6 12\n")) << hull.out;
+  EXPECT_EQ(run("verify - " + cube + " --format .off <" + plant("h.off", hull.out)).exit_code, 0);
+  EXPECT_EQ(run("info - --format off <" + cube).exit_code, 0);
+  EXPECT_NE(run("support - --format off --directions " + plant("d.txt", "1 1 1\n") + " <" + cube)
+                .out.find("1.7320508075688"),
+            std::string::npos);
+  expect_failure("hull - -o h.ply <" + cube, 2, "--format");
+  expect_failure("hull " + cube + " -o -", 2, "--format");
+  expect_failure("hull " + cube + " -o - --format ply --json", 2, "standard output");
+  expect_failure("hull - - -o h.ply --format off <" + cube, 2, "once");
+  expect_failure("support - --directions - --format off <" + cube, 2, "both");
+  expect_failure("hull - -o h.ply --format off <" + plant("bad.off", "OFF\n1\n"), 3,
+                 "standard input:");
+}
+
+TEST_F(Cli, CagesAndTrimmedFacesAreRefusedClearly) {
+  const std::string cage = plant("cage.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  expect_failure("hull " + cage + " --scheme catmark -o h.ply", 3, "cage.obj:");
+  expect_failure("hull " + cage + " --scheme cubic -o h.ply", 2, "cubic");
+  EXPECT_EQ(run("hull " + cage + " --scheme bilinear -o h.ply").exit_code, 0);
+  const std::string trimmed = plant("trimmed.obj", R"(v 0 0 0
+v 1 0 0
+v 0 1 0
+v 1 1 1
+vp 0.2 0.2
+vp 0.8 0.2
+vp 0.5 0.8
+vp 0.2 0.2
+cstype bspline
+deg 1
+curv2 1 2 3 4
+parm u 0 0 1 2 3 3
+end
+cstype bezier
+deg 1 1
+surf 0 1 0 1 1 2 3 4
+parm u 0 1
+parm v 0 1
+trim 0 3 1
+end
+)");
+  expect_failure("hull " + trimmed + " -o t.ply", 4, "is trimmed");
+  const Result info = run("info " + trimmed + " --json");
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  const Json json = Json::parse(info.out);
+  EXPECT_EQ(json["files"][0]["trimmed"], 1);
+  EXPECT_TRUE(json["files"][0]["box"].is_null());
+  EXPECT_EQ(run("info " + trimmed + " -o t.taut.json").exit_code, 0);
+  expect_failure("hull t.taut.json -o t.ply", 4, "is trimmed");
+}
+
+TEST_F(Cli, StlReportsItsRounding) {
+  ASSERT_EQ(run("hull " + teapot_ + " -o h.stl -o h.ply --report r.json").exit_code, 0);
+  const Json files = Json::parse(content(path("r.json")))["mesh"]["files"];
+  EXPECT_EQ(files[0]["file"], "h.stl");
+  EXPECT_GT(files[0]["rounding"], 1e-8);
+  EXPECT_LT(files[0]["rounding"], 1e-6);
+  EXPECT_EQ(files[1]["rounding"], 0);
+  // Far from the origin floats lose more than was asked for.
+  const std::string far = plant("far.xyz", "1e6 0 0.1\n1e6 1 0\n1000001 0 0\n1000000.3 0 1\n");
+  const Result result = run("hull " + far + " -o far.stl --tolerance 1e-6");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("taut: warning: far.stl"), std::string::npos) << result.err;
+}
+
 TEST_F(Cli, PluginsListsFormats) {
   const Result text = run("plugins");
   EXPECT_EQ(text.exit_code, 0);

@@ -62,6 +62,22 @@ void expect_hull_of(const Points& points, const Hull& hull) {
   EXPECT_LE(highest, hull.distance_bound + 1e-17 * diagonal(box));
 }
 
+/// No point reaches out of the mesh by more than the bound, as seen in these directions.
+void expect_within_bound(const Points& points, const Hull& hull, const Points& directions) {
+  const PolygonMesh mesh = polygons(hull.mesh);
+  Box box;
+  for (const dvec3& p : points) box.include(p);
+  const dvec3 origin = points.front();
+  for (const dvec3& n : directions) {
+    real highest = -std::numeric_limits<real>::infinity();
+    for (const dvec3& p : points) {
+      highest = std::max(highest, glm::dot(rvec3(p) - rvec3(origin), rvec3(n)));
+    }
+    EXPECT_LE(highest - mesh_support(mesh, n, origin),
+              real(hull.distance_bound) + 1e-17L * diagonal(box));
+  }
+}
+
 TEST(PolyhedralHull, CubeIsExact) {
   const Points cube = grid(2);
   const Hull hull = hull_of(cube);
@@ -128,6 +144,87 @@ TEST(PolyhedralHull, RoundedPlanesAndLinesAreFlat) {
     EXPECT_EQ(planar.mesh.n_vertices(), 4U);
     EXPECT_LE(planar.distance_bound, 2e-11);
     EXPECT_EQ(hull_of(mapped(line, skew_rotation(), shift)).kind, HullKind::segment);
+  }
+}
+
+TEST(PolyhedralHull, BoundsCountBothSidesOfAPlane) {
+  // One corner of a planar outline lies as deep below the plane as another point, behind it along
+  // an axis, lies above.
+  const dvec3 n = unit(dvec3(1, 1, 1));
+  const dvec3 a = unit(dvec3(1, -1, 0));
+  const dvec3 b = glm::cross(n, a);
+  Random random(1);
+  Points directions;
+  for (int k = 0; k < 60; ++k)
+    directions.push_back(std::sin(0.05 * k) * n - std::cos(0.05 * k) * b);
+  int planar = 0;
+  for (int k = 0; k < 200; ++k) {
+    const double depth = 34 * uniform(random, 0.8, 1.2) * rounding_unit;
+    Points points = {-a, a, 0.9 * b, -0.3 * b - depth * n};
+    points.push_back(points.back());
+    points.back()[k % 3] += 3.2 * depth;
+    const Hull hull = hull_of(points);
+    planar += hull.kind == HullKind::planar ? 1 : 0;
+    expect_within_bound(points, hull, directions);
+  }
+  EXPECT_GT(planar, 20);
+}
+
+TEST(PolyhedralHull, BoundsOfSharpCones) {
+  // Of facets so narrow, normals are rounded beyond use.
+  Random random(2);
+  for (int k = 0; k < 1000; ++k) {
+    const double slope = log_uniform(random, 1e-16, 1e-3);
+    Points points = {dvec3(0.0)};
+    for (int i = pick(random, 4, 40); i > 0; --i) {
+      const double x = uniform(random, 0, 1);
+      const double t = uniform(random, 0, 7);
+      points.emplace_back(x, slope * x * std::cos(t), slope * x * std::sin(t));
+    }
+    const dmat3 turn = random_rotation(random);
+    Points directions;
+    for (int i = 0; i < 60; ++i) {
+      directions.push_back(turn * dvec3(0, std::cos(0.1 * i), std::sin(0.1 * i)));
+    }
+    points = mapped(points, turn);
+    expect_within_bound(points, hull_of(points), directions);
+  }
+}
+
+TEST(PolyhedralHull, BoundCoversWhatPlacingCancels) {
+  Part part;
+  part.add_points(mapped(grid(2), dmat3(0.1), dvec3(1e9)));
+  Model model;
+  model.add_part(std::move(part), smooth_join_angle);
+  model.clear_instances();
+  const RigidMotion pose = {skew_rotation(), -(skew_rotation() * dvec3(1e9))};
+  model.add_instance(0, pose);
+  const Hull hull = polyhedral_hull(model);
+  real farthest = 0;
+  for (const auto v : hull.mesh.vertices()) {
+    const rvec3 x = source_point(model, hull.mesh.data(v).source, 0, 0);
+    farthest = std::max(farthest, glm::length(x - rvec3(position(hull.mesh, v))));
+  }
+  EXPECT_GT(farthest, 1e-9);
+  EXPECT_LE(farthest, hull.distance_bound);
+}
+
+TEST(PolyhedralHull, MixedSizesAreExact) {
+  // A pyramid whose base is folded along a diagonal by next to nothing.
+  for (const double size : {1e70, 1e300}) {
+    for (const double fold : {1e-250, 1e-320}) {
+      const Points points = {
+          {0, 0, 0}, {size, 0, fold}, {size, size, 0}, {0, size, fold}, {0, 0, size}};
+      const Hull hull = hull_of(points);
+      EXPECT_TRUE(mesh_facts(polygons(hull.mesh)).is_convex_polytope());
+      EXPECT_EQ(hull.mesh.n_vertices(), 5U);
+      EXPECT_EQ(hull.mesh.n_faces(), 6U);
+      EXPECT_EQ(hull.distance_bound, 0);
+      for (const auto v : hull.mesh.vertices()) {
+        const auto& n = hull.mesh.normal(v);
+        EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-6);
+      }
+    }
   }
 }
 

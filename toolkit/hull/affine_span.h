@@ -21,7 +21,8 @@ struct AffineSpan {
 };
 
 /// The span of points, to within rounding. Those of the result's lower-dimensional parts deviate
-/// from the line or plane through the witnesses by less than the width.
+/// from the line or plane through the witnesses by less than the width, to within rounding of
+/// their distances.
 /// @pre there are points; their differences' squares neither over- nor underflow
 AffineSpan affine_span(std::span<const dvec3> points, double width);
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/affine_span.h"
 #include "taut/hull/certificate.h"
 #include "taut/hull/polytope_support.h"
@@ -69,23 +70,23 @@ class Coarsener {
   PolytopeSupport support_;
   double width_;
   CoarseHull result_;
-  std::vector<double> heights_;  ///< per facet: of the highest point above it; -1: not known
+  std::vector<int> tops_;  ///< per facet: the point highest above it; -1: not known
 };
 
 bool Coarsener::grow() {
   PointHull& hull = result_.hull;
-  heights_.resize(hull.facets().size(), -1);
+  tops_.resize(hull.facets().size(), -1);
   std::vector<Candidate> candidates;
-  for (std::size_t f = 0; f < heights_.size(); ++f) {
+  for (std::size_t f = 0; f < tops_.size(); ++f) {
     const PointHull::Facet& facet = hull.facet(int(f));
-    if (!facet.alive || heights_[f] >= 0) continue;
+    if (!facet.alive || tops_[f] >= 0) continue;
     const dvec3 n = normal_of(hull, int(f));
     const auto height_of = [&](int p) {
       return glm::dot(fine_.point(p) - hull.point(facet.vertex[0]), n);
     };
     int top = support_(n, result_.original[std::size_t(facet.vertex[0])]);
     double height = height_of(top);
-    heights_[f] = std::max(height, 0.0);
+    tops_[f] = top;
     const int corner = support_(unit(n + tie_break * skew), top);
     if (height_of(corner) > std::max(width_, 0.5 * height)) {
       top = corner;
@@ -102,32 +103,38 @@ bool Coarsener::grow() {
     if (!facet.alive || facet.vertex != c.vertex) continue;
     if (!hull.insert(fine_.point(c.point), c.facet)) continue;
     result_.original.push_back(c.point);
-    heights_.resize(hull.facets().size(), -1);
-    for (const int f : hull.created()) heights_[std::size_t(f)] = -1;
+    tops_.resize(hull.facets().size(), -1);
+    for (const int f : hull.created()) tops_[std::size_t(f)] = -1;
     grown = true;
   }
   return grown;
 }
 
-/// As for sampled hulls (certificate.h).
+/// As for sampled hulls (certificate.h). A sliver's normal is rounded far off its plane, so that
+/// each of its corners has a gap of its own.
 void Coarsener::bound_distance() {
   const PointHull& hull = result_.hull;
+  // Differences, products and sums round by four units of lengths at most the diagonal.
+  const double rounding = 8 * rounding_unit * diagonal(box_of(fine_));
   std::vector<std::vector<int>> facets(hull.points().size());
-  for (std::size_t f = 0; f < heights_.size(); ++f) {
+  for (std::size_t f = 0; f < tops_.size(); ++f) {
     if (!hull.facet(int(f)).alive) continue;
     for (const int v : hull.facet(int(f)).vertex) facets[std::size_t(v)].push_back(int(f));
   }
   std::vector<dvec3> normals;
-  for (const std::vector<int>& fan : facets) {
+  for (std::size_t v = 0; v < facets.size(); ++v) {
+    const std::vector<int>& fan = facets[v];
     if (fan.empty()) continue;
     normals.clear();
     double highest = 0;
     for (const int f : fan) {
       normals.push_back(normal_of(hull, f));
-      highest = std::max(highest, heights_[std::size_t(f)]);
+      const dvec3& top = fine_.point(tops_[std::size_t(f)]);
+      highest = std::max(highest, glm::dot(top - hull.point(int(v)), normals.back()));
     }
     const double depth = cone_depth(normals);
-    const double bound = depth > 0 ? highest / depth : std::numeric_limits<double>::infinity();
+    const double bound =
+        depth > 0 ? (highest + rounding) / depth : std::numeric_limits<double>::infinity();
     result_.distance_bound = std::max(result_.distance_bound, bound);
   }
 }

@@ -121,6 +121,7 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
   Hull hull;
   hull.kind = kind;
   std::vector<dvec3> points;
+  points.reserve(corners.size());
   std::vector<int> loop(corners.size());
   std::iota(loop.begin(), loop.end(), 0);
   for (const int c : corners) points.push_back(start_.points[std::size_t(c)]);

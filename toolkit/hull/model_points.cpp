@@ -19,37 +19,54 @@ double scale_for(double largest) {
   return std::ldexp(1.0, std::min(-exponent, 1023));
 }
 
+double reach_of(const dvec3& largest) { return largest.x + largest.y + largest.z; }
+
 }  // namespace
 
 ModelPoints::ModelPoints(const Model& model) : model_(model) {
-  const Box box = model.control_box();
-  dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-  scale_ = scale_for(std::max({reach.x, reach.y, reach.z}));
-  reach *= scale_;
-  reach_ = reach.x + reach.y + reach.z;
-  diagonal_ = taut::diagonal({scale_ * box.lower, scale_ * box.upper});
   int count = 0;
   for (const Instance& instance : model.instances()) {
     first_.push_back(count);
     count += part_of(instance).point_count();
   }
-  if (scale_ == 1 && model.instances().size() == 1 && model.instances().front().pose.at_rest()) {
-    points_ = part_of(model.instances().front()).vertices();
-    return;
+  const Box box = model.control_box();
+  const dvec3 largest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  scale_ = scale_for(std::max({largest.x, largest.y, largest.z}));
+  if (!place()) {
+    product_scale_ = scale_;
+    scale_ = 1;
+    place();
   }
-  moved_.reserve(std::size_t(count));
+  reach_ = reach_of(scale_ * largest);
+  diagonal_ = taut::diagonal({scale_ * box.lower, scale_ * box.upper});
   for (const Instance& instance : model.instances()) {
+    if (instance.pose.at_rest()) continue;
+    // What cancels in the sums has been rounded all the same.
+    const Box& own = part_of(instance).control_box();
+    if (own.empty()) continue;
+    const double reach = reach_of(scale_ * glm::max(glm::abs(own.lower), glm::abs(own.upper))) +
+                         reach_of(scale_ * glm::abs(instance.pose.translation));
+    placement_bound_ = std::max(placement_bound_, coordinate_rounding * reach);
+  }
+}
+
+bool ModelPoints::place() {
+  if (scale_ == 1 && model_.instances().size() == 1 && model_.instances().front().pose.at_rest()) {
+    points_ = part_of(model_.instances().front()).vertices();
+    return true;
+  }
+  bool exact = true;
+  moved_.clear();
+  for (const Instance& instance : model_.instances()) {
     const bool moves = !instance.pose.at_rest();
-    any_moved_ = any_moved_ || moves;
     for (const dvec3& x : part_of(instance).vertices()) {
-      moved_.push_back(scale_ * (moves ? instance.pose(x) : x));
+      const dvec3 p = moves ? instance.pose(x) : x;
+      moved_.push_back(scale_ * p);
+      exact = exact && moved_.back() / scale_ == p;
     }
   }
   points_ = moved_;
-}
-
-double ModelPoints::placement_bound() const {
-  return any_moved_ ? coordinate_rounding * reach_ : 0;
+  return exact;
 }
 
 dvec3 ModelPoints::model_point(int point) const {

@@ -7,20 +7,23 @@
 
 namespace taut {
 
-/// All points of a polyhedral model, placed by its instances and numbered through, in coordinates
-/// that no arithmetic takes out of the range of doubles. The model must outlive it.
+/// All points of a polyhedral model, placed by its instances and numbered through, multiplied so
+/// that no arithmetic leaves the range of doubles where that is exact. The model must outlive it.
 class ModelPoints {
  public:
   explicit ModelPoints(const Model& model);
 
   std::span<const dvec3> points() const { return points_; }
-  /// A power of two that the points were multiplied by: one for all usual sizes.
+  /// A power of two that the points were multiplied by: one for all usual sizes, and where some are
+  /// so much smaller than others that they would be rounded.
   double scale() const { return scale_; }
+  /// By what they must be multiplied yet, rounding some, before products are taken; else one.
+  double product_scale() const { return product_scale_; }
   /// Of the points' box, and the sum of their largest coordinates' sizes; scaled as they are.
   double diagonal() const { return diagonal_; }
   double reach() const { return reach_; }
   /// How far the points may lie from the instances' true ones; scaled.
-  double placement_bound() const;
+  double placement_bound() const { return placement_bound_; }
 
   /// The source of the point of this number.
   int source(int point) const { return model_.source_id(place_of(point)); }
@@ -45,6 +48,8 @@ class ModelPoints {
   const Part& part_of(const Instance& instance) const {
     return model_.parts()[std::size_t(instance.part)];
   }
+  /// False if scaling has rounded a point.
+  bool place();
   Source place_of(int point) const;
 
   const Model& model_;
@@ -52,9 +57,10 @@ class ModelPoints {
   std::vector<dvec3> moved_;
   std::span<const dvec3> points_;
   double scale_ = 1;
+  double product_scale_ = 1;
   double diagonal_ = 0;
   double reach_ = 0;
-  bool any_moved_ = false;
+  double placement_bound_ = 0;
 };
 
 }  // namespace taut

@@ -100,6 +100,7 @@ std::vector<int> simplified_outline(const std::vector<int>& outline, std::span<c
     }
   }
   std::vector<int> result;
+  result.reserve(kept.size());
   for (const std::size_t k : kept) result.push_back(outline[k % count]);
   return result;
 }

@@ -31,8 +31,9 @@ class PolyhedralHull {
   PolyhedralHull(const Model& model, const HullOptions& options)
       : points_(model),
         options_(options),
-        width_(
-            std::min(coordinate_rounding * points_.reach(), spurious_share * points_.diagonal())) {}
+        width_(points_.product_scale() == 1 ? std::min(coordinate_rounding * points_.reach(),
+                                                       spurious_share * points_.diagonal())
+                                            : 0) {}
 
   Hull run();
 
@@ -46,7 +47,7 @@ class PolyhedralHull {
   void make_point(int p);
   void make_segment(int a, int b, double distance_bound);
   void make_planar(std::span<const int> candidates, const std::array<int, 4>& witnesses,
-                   double off_plane);
+                   double thickness);
   void make_solid(const PointHull& hull);
   void make_polytope(const PointHull& hull, const std::vector<int>* original = nullptr);
   void finish(std::vector<int> corners);
@@ -55,6 +56,8 @@ class PolyhedralHull {
   double height(const dvec3& p, OpenMesh::FaceHandle f) const;
   void label_faces();
 
+  /// Of a length or height that is computed from differences of points, each operation's at most.
+  double rounding() const { return 8 * rounding_unit * points_.diagonal(); }
   const dvec3& point(int i) const { return points_.points()[std::size_t(i)]; }
   const dvec3& point_at(OpenMesh::VertexHandle v) const {
     return point(corners_[std::size_t(v.idx())]);
@@ -62,7 +65,7 @@ class PolyhedralHull {
 
   ModelPoints points_;
   const HullOptions& options_;
-  double width_;  ///< what is put down to rounding, scaled as the points are
+  double width_;  ///< what is put down to rounding, scaled as the points are; zero: nothing
   Hull result_;
   std::vector<int> corners_;    ///< per vertex of the mesh: its number among the points
   std::vector<dvec3> normals_;  ///< per face of the mesh
@@ -113,33 +116,37 @@ void PolyhedralHull::make_segment(int a, int b, double distance_bound) {
   finish({a, b});
 }
 
-/// The outline of points of a plane, or of points that differ from one by at most off_plane.
+/// The outline of points of a plane, or of points between two parallels to it, so far apart.
 void PolyhedralHull::make_planar(std::span<const int> candidates,
-                                 const std::array<int, 4>& witnesses, double off_plane) {
+                                 const std::array<int, 4>& witnesses, double thickness) {
   std::vector<dvec3> points;
   points.reserve(candidates.size());
   for (const int c : candidates) points.push_back(point(c));
   const PlaneView view(point(witnesses[0]), point(witnesses[1]), point(witnesses[2]));
   const std::vector<int> exact = convex_outline(points, view);
-  std::vector<int> outline = simplified_outline(exact, points, width_);
-  const double in_plane = outline.size() < exact.size() ? width_ : 0;
+  std::vector<int> outline = width_ > 0 ? simplified_outline(exact, points, width_) : exact;
+  // Along the axis of the view, which is no more than 55 degrees from the normal, every point has
+  // some of the exact outline's hull across from it.
+  double bound = std::sqrt(3.0) * thickness;
+  if (outline.size() < exact.size()) bound += width_ + rounding();
   for (int& corner : outline) corner = candidates[std::size_t(corner)];
   if (outline.size() < 3) {
-    make_segment(outline.front(), outline.back(), in_plane + off_plane);
+    make_segment(outline.front(), outline.back(), bound);
     return;
   }
   std::vector<dvec3> corners;
+  corners.reserve(outline.size());
   std::vector<int> loop(outline.size());
   for (const int c : outline) corners.push_back(point(c));
   std::iota(loop.begin(), loop.end(), 0);
   result_.kind = HullKind::planar;
-  result_.distance_bound = in_plane + off_plane;
+  result_.distance_bound = bound;
   result_.mesh = make_hull_mesh(corners, {loop, {loop.rbegin(), loop.rend()}});
   finish(outline);
 }
 
 void PolyhedralHull::make_solid(const PointHull& hull) {
-  if (width_ == 0 || !has_nearly_flat_edges(hull, width_)) {
+  if (width_ == 0) {
     make_polytope(hull);
     return;
   }
@@ -161,9 +168,18 @@ void PolyhedralHull::make_solid(const PointHull& hull) {
     witness = vertices[std::size_t(witness)];
   }
   if (span.dimension == 1) {
-    make_segment(span.witnesses[0], span.witnesses[1], width_);
+    make_segment(span.witnesses[0], span.witnesses[1], width_ + rounding());
   } else if (span.dimension == 2) {
-    make_planar(vertices, span.witnesses, width_);
+    double low = 0;
+    double high = 0;
+    for (const dvec3& p : positions) {
+      const double height = glm::dot(p - point(span.witnesses[0]), span.normal);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    make_planar(vertices, span.witnesses, high - low + 2 * rounding());
+  } else if (!has_nearly_flat_edges(hull, width_)) {
+    make_polytope(hull);
   } else {
     const CoarseHull coarse = coarse_hull(hull, span.witnesses, width_, options_.progress);
     if (coarse.distance_bound <= spurious_share * points_.diagonal()) {
@@ -206,7 +222,7 @@ dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f) const {
   std::optional<dvec3> first;
   dvec3 before(0.0);
   for (const auto v : result_.mesh.fv_range(f)) {
-    const dvec3& p = point_at(v);
+    const dvec3 p = points_.product_scale() * point_at(v);
     if (!first) first = before = p;
     normal += glm::cross(before - *first, p - *first);
     before = p;

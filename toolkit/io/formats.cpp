@@ -23,7 +23,7 @@ std::string extension(const std::filesystem::path& path) {
   for (char& c : name) {
     if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  for (const std::string double_extension : {".taut.json", ".taut.cbor", ".hull.json"}) {
+  for (const char* double_extension : {".taut.json", ".taut.cbor", ".hull.json"}) {
     if (name.ends_with(double_extension)) return double_extension;
   }
   return std::filesystem::path(name).extension().string();

@@ -47,7 +47,8 @@ inline dvec4 homogeneous(const dvec3& p, double w = 1) { return {w * p, w}; }
 bool is_polynomial(const std::vector<dvec4>& points);
 
 /// @throws InvalidInput if degrees are below 1 or above max_degree, the number of points does not
-/// match, or a number is not finite or a weight not positive; `name` begins the message
+/// match, a number is not finite, or a weight is not positive or differs from another by more than
+/// max_weight_ratio; `name` begins the message
 void validate(const BezierCurve& curve, const std::string& name);
 void validate(const BezierPatch& patch, const std::string& name);
 /// The parts of it that B-splines share: the degree, and the numbers of homogeneous points.

@@ -49,7 +49,7 @@ struct PatchPiece {
 
 /// @throws InvalidInput if a degree is out of range, counts do not match, knots decrease or are
 /// not finite, their range overflows, the domain is empty, a knot has multiplicity above degree +
-/// 1, a coordinate is not finite or a weight is not positive; `name` begins the message
+/// 1, or control points are not as validate_points() wants them; `name` begins the message
 void validate(const NurbsCurve& curve, const std::string& name);
 void validate(const NurbsSurface& surface, const std::string& name);
 

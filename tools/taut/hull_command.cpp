@@ -10,6 +10,7 @@
 #include "command.h"
 #include "input.h"
 #include "output.h"
+#include "standard_input.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measures.h"
 #include "taut/io/report.h"
@@ -40,7 +41,11 @@ void check(const HullArguments& arguments, bool json) {
   if (arguments.outputs.empty() && arguments.report.empty() && !json) {
     throw UsageError("nothing to write: give -o FILE, --report FILE or --json");
   }
-  check_outputs(arguments.outputs, arguments.report, arguments.inputs.files);
+  const auto on_stdout = std::count(arguments.outputs.begin(), arguments.outputs.end(), "-") +
+                         (json ? 1 : 0) + (arguments.report == "-" && !json ? 1 : 0);
+  if (on_stdout > 1) throw UsageError("only one thing can be written to standard output");
+  check_outputs(arguments.outputs, arguments.inputs.extension(), arguments.report,
+                arguments.inputs.files);
 }
 
 /// In model units.
@@ -133,8 +138,35 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
   text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
                               number(s.build, 2) + ", sample " + number(s.sample, 2) + ", mesh " +
                               number(s.mesh, 2) + ", write " + number(s.write, 2));
+  for (const Report::Mesh::File& file : report.mesh.files) {
+    if (file.rounding == 0) continue;
+    text += line("rounding", "to float moved vertices of " + file.file + " by at most " +
+                                 number(file.rounding, 3));
+  }
   for (const std::string& file : written) text += line("wrote", file);
   return text;
+}
+
+/// Writes the meshes, tells the report how they were rounded, and warns where that is more than the
+/// tolerance.
+void write_outputs(const HullArguments& arguments, const Hull& hull, Report& report,
+                   Console& console) {
+  for (const std::string& file : arguments.outputs) {
+    console.progress().check();
+    WrittenMesh written;
+    if (file == "-") {
+      std::string data;
+      written = write_mesh(data, standard_output, arguments.inputs.extension(), hull.mesh);
+      console.print(data);
+    } else {
+      written = write_mesh(file, hull.mesh);
+    }
+    report.mesh.files.push_back({file, written.rounding});
+    if (written.rounding <= report.mesh.tolerance) continue;
+    console.warn("rounded-to-float", file + ": its floats move vertices by up to " +
+                                         number(written.rounding, 3) +
+                                         ", more than the tolerance; .ply holds doubles");
+  }
 }
 
 ExitCode run(const HullArguments& arguments, Console& console) {
@@ -149,10 +181,7 @@ ExitCode run(const HullArguments& arguments, Console& console) {
 
   Report report = make_report(input, outcome.hull, arguments, options.tolerance);
   const Stopwatch writing;
-  for (const std::string& file : arguments.outputs) {
-    options.progress.check();
-    write_mesh(file, outcome.hull.mesh);
-  }
+  write_outputs(arguments, outcome.hull, report, console);
   options.progress.check();
   report.seconds.write = writing.seconds();
   report.seconds.total = console.seconds();
@@ -162,13 +191,14 @@ ExitCode run(const HullArguments& arguments, Console& console) {
 
   const std::string json = taut::to_json(report);
   std::vector<std::string> written = arguments.outputs;
+  const bool mesh_on_stdout = std::erase(written, "-") > 0;
   if (!arguments.report.empty() && arguments.report != "-") {
     write_text(arguments.report, json);
     written.push_back(arguments.report);
   }
   if (console.options().json || arguments.report == "-") {
     console.print(json);
-  } else if (!console.options().quiet) {
+  } else if (!console.options().quiet && !mesh_on_stdout) {
     console.print(summary(report, written));
   }
   if (!outcome.failure) return ExitCode::done;
@@ -191,8 +221,9 @@ Command add_hull(CLI::App& parent) {
   const auto arguments = std::make_shared<HullArguments>();
   CLI::App& app = *command.app;
   add_inputs(app, arguments->inputs);
-  app.add_option("-o,--output", arguments->outputs,
-                 "Mesh to write: .ply .obj .off .stl; may be repeated")
+  app.add_option(
+         "-o,--output", arguments->outputs,
+         "Mesh to write: .ply .obj .off .stl; may be repeated; - is standard\noutput, see --format")
       ->allow_extra_args(false)
       ->type_name("FILE");
   app.add_option("--method", arguments->method,

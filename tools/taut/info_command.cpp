@@ -172,7 +172,7 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
   if (kind != ".taut.json" && kind != ".taut.cbor") {
     throw UsageError(output + ": a model is written as .taut.json or .taut.cbor only");
   }
-  check_outputs({}, output, inputs);
+  check_outputs({}, "", output, inputs);
 }
 
 /// `output`: the model document that all inputs are written to, or empty.

@@ -25,12 +25,15 @@ void read_from_standard_input(const InputArguments& arguments, Model& model,
   if (arguments.format.empty()) {
     throw UsageError("standard input needs --format, such as --format ply");
   }
-  const bool has_dot = arguments.format.starts_with(".");
-  read_model(read_standard_input(options.progress.stop), standard_input,
-             (has_dot ? "" : ".") + arguments.format, model, options);
+  read_model(read_standard_input(options.progress.stop), standard_input, arguments.extension(),
+             model, options);
 }
 
 }  // namespace
+
+std::string InputArguments::extension() const {
+  return format.empty() || format.starts_with(".") ? format : "." + format;
+}
 
 Input::Input(const InputArguments& arguments, Console& console)
     : console_(console), files_(arguments.files) {

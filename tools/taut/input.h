@@ -16,8 +16,11 @@ using Json = nlohmann::ordered_json;
 /// Which files make the model, and how they are read.
 struct InputArguments {
   std::vector<std::string> files;  ///< "-" is standard input
-  std::string format;              ///< of standard input: an extension, with or without its dot
+  std::string format;              ///< of standard input and output; may begin with a dot
   std::string scheme;              ///< empty: by the files
+
+  /// The format as an extension, with its dot; empty if it is not given.
+  std::string extension() const;
 };
 
 /// Input files read as one model, and its scene where that is asked for.

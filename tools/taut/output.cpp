@@ -20,11 +20,11 @@ namespace fs = std::filesystem;
 
 std::string reason() { return std::error_code(errno, std::generic_category()).message(); }
 
-void check_extension(const std::string& file) {
-  if (file == "-") {
-    throw UsageError("a mesh cannot be written to standard output: give a file's name");
+void check_extension(const std::string& file, const std::string& stdout_format) {
+  if (file == "-" && stdout_format.empty()) {
+    throw UsageError("standard output needs --format, such as --format ply");
   }
-  const std::string wanted = extension(file);
+  const std::string wanted = file == "-" ? stdout_format : extension(file);
   std::vector<std::string> known;
   for (const Format& format : formats()) {
     if (!format.writes_mesh) continue;
@@ -77,10 +77,11 @@ void write_whole(std::FILE* file, const std::string& path, std::string_view text
 
 }  // namespace
 
-void check_outputs(const std::vector<std::string>& meshes, const std::string& report,
-                   const std::vector<std::string>& inputs) {
-  for (const std::string& file : meshes) check_extension(file);
+void check_outputs(const std::vector<std::string>& meshes, const std::string& stdout_format,
+                   const std::string& report, const std::vector<std::string>& inputs) {
+  for (const std::string& file : meshes) check_extension(file, stdout_format);
   std::vector<std::string> outputs = meshes;
+  std::erase(outputs, "-");
   if (!report.empty() && report != "-") outputs.push_back(report);
   for (const std::string& file : outputs) check_place(file);
   for (std::size_t i = 0; i < outputs.size(); ++i) {

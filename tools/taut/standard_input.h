@@ -6,8 +6,9 @@
 
 namespace taut::tool {
 
-/// What standard input is called in messages.
+/// What the streams are called in messages.
 inline constexpr const char* standard_input = "standard input";
+inline constexpr const char* standard_output = "standard output";
 
 /// Reads what is there, at least a byte, from a file, terminal or pipe; wakes up now and then to
 /// see whether it should stop. Returns the number of bytes, 0 at the end.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -6,6 +7,7 @@
 
 #include "command.h"
 #include "input.h"
+#include "standard_input.h"
 #include "taut/hull/verify.h"
 #include "taut/io/read_mesh.h"
 #include "text.h"
@@ -97,11 +99,19 @@ std::string faults_of(const std::vector<Check>& checks) {
   return joined(faults);
 }
 
-ExitCode run(const VerifyArguments& arguments, Console& console) {
-  if (arguments.hull == "-") {
-    throw UsageError("a mesh cannot be read from standard input: give a file's name");
+PolygonMesh read_hull(const VerifyArguments& arguments, Console& console) {
+  if (arguments.hull != "-") return read_mesh(arguments.hull);
+  const std::vector<std::string>& files = arguments.inputs.files;
+  if (std::find(files.begin(), files.end(), "-") != files.end()) {
+    throw UsageError("standard input cannot be both the hull and the model");
   }
-  const PolygonMesh mesh = read_mesh(arguments.hull);
+  const std::string format = arguments.inputs.extension();
+  if (format.empty()) throw UsageError("standard input needs --format, such as --format ply");
+  return read_mesh(read_standard_input(console.progress().stop), standard_input, format);
+}
+
+ExitCode run(const VerifyArguments& arguments, Console& console) {
+  const PolygonMesh mesh = read_hull(arguments, console);
   Input input(arguments.inputs, console);
   const double diagonal = input.scene().diagonal();
   const Stopwatch watch;
@@ -141,7 +151,8 @@ Command add_verify(CLI::App& parent) {
       "  taut verify hull.ply teapot.bpt\n"
       "  taut verify hull.stl teapot.bpt --relative 1e-3");
   const auto arguments = std::make_shared<VerifyArguments>();
-  command.app->add_option("HULL", arguments->hull, "Mesh file to check")
+  command.app
+      ->add_option("HULL", arguments->hull, "Mesh file to check; - is standard input, see --format")
       ->required()
       ->option_text("FILE");
   add_inputs(*command.app, arguments->inputs);
