@@ -355,7 +355,11 @@ TEST(SampledHull, AbsurdToleranceIsNotConverged) {
       sampled_hull(
           make_scene(shape),
           {.tolerance = tolerance, .threads = 1, .max_vertices = max_vertices, .progress = {}});
-    } catch (const NotConverged& error) {
+    } catch (const HullNotConverged& error) {
+      // The best hull comes with it.
+      EXPECT_EQ(error.best->distance_bound, error.reached);
+      EXPECT_TRUE(mesh_facts(polygons(error.best->mesh)).is_convex_polytope());
+      EXPECT_LE(int(error.best->mesh.n_vertices()), std::max(max_vertices, 40));
       return error.reached;
     }
     return -1.0;
@@ -366,6 +370,7 @@ TEST(SampledHull, AbsurdToleranceIsNotConverged) {
   const double cut_short = reached(sphere(), 1e-9, 1000);
   EXPECT_GT(cut_short, 1e-9);
   EXPECT_LT(cut_short, 0.1);
+  EXPECT_GT(reached(sphere(), 1e-9, 4), 0.1);
 }
 
 TEST(SampledHull, CancelAndProgress) {

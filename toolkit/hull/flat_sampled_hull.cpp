@@ -129,7 +129,8 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
   if (kind == HullKind::planar) polygons = {loop, {loop.rbegin(), loop.rend()}};
   hull.mesh = make_hull_mesh(points, polygons);
   const auto bound_in_model = [&](double bound) {
-    return std::max(scene_.frame().length_to_model(bound + across), vertex_rounding(scene_));
+    const double in_model = scene_.frame().length_to_model(bound + across);
+    return std::max(std::min(in_model, scene_.diagonal()), vertex_rounding(scene_));
   };
   for (const auto v : hull.mesh.vertices()) {
     const auto k = std::size_t(v.idx());
@@ -173,9 +174,8 @@ Hull FlatSampler::run() {
     }
     // Samples that do not change the outline bring nothing more.
     if (full || start_.points.size() == before || outline(view) == corners) {
-      throw NotConverged(full ? "the limit of vertices was met before the tolerance"
-                              : "the tolerance is below what double precision can certify here",
-                         std::min(scene_.frame().length_to_model(bound_), scene_.diagonal()));
+      throw HullNotConverged(full ? vertex_limit_met : tolerance_too_fine,
+                             make_hull(HullKind::planar, corners));
     }
   }
 }
