@@ -125,6 +125,22 @@ TEST(SampledHull, Needle) {
   }
 }
 
+TEST(SampledHull, BoundsCountBothSidesOfAPlane) {
+  // Flat to 6e-12: the points of one corner are on either side of the others.
+  const double z = 3e-12;
+  const dvec3 twice(0.5, 0.5, z);
+  const Shape shape = {{}, {}, {{-2, -2, 0}, {2, -2, 0}, {-2, 2, 0}, {0.5, 0.5, -z}, twice}};
+  const Hull hull = sampled_hull(make_scene(shape), {.threads = 1, .progress = {}});
+  ASSERT_EQ(hull.kind, HullKind::planar);
+  double nearest = 10;
+  for (const auto v : hull.mesh.vertices()) {
+    nearest = std::min(nearest, glm::distance(position(hull.mesh, v), twice));
+  }
+  const double other = glm::distance(shape.points[3], twice);
+  EXPECT_TRUE(nearest == 0 || nearest == other);
+  EXPECT_LE(other, hull.distance_bound);
+}
+
 TEST(SampledHull, NearlyFlat) {
   for (const double thickness : {1e-3, 1e-6, 1e-9}) {
     // Thinner than the distance within which borders are joined, both sides have one rim.

@@ -77,7 +77,8 @@ const FlatSampler::Side& FlatSampler::side(int from, int to) {
   return found->second;
 }
 
-/// How far the scene leaves the span's line or plane, or its point, in the frame.
+/// How far apart the scene and the mesh may be across the span's line or plane, or from its point,
+/// in the frame.
 double FlatSampler::across_bound(int sample) {
   double bound = 0;
   for (const dvec3& n : directions_across(start_.span)) {
@@ -85,7 +86,9 @@ double FlatSampler::across_bound(int sample) {
   }
   // Every direction across lies in a cone of neighbouring ones of at least this depth.
   constexpr std::array depth = {0.8, 0.9, 1.0};
-  return bound / depth[std::size_t(start_.span.dimension)];
+  // The mesh's other corners may lie on the far side of the sample.
+  const int sides = start_.span.dimension == 0 ? 1 : 2;
+  return sides * bound / depth[std::size_t(start_.span.dimension)];
 }
 
 /// The certificate of certificate.h, in the plane.
