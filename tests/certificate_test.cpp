@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -220,6 +221,26 @@ TEST(ConeDepth, FlatFansOfDirections) {
     }
     directions = turned(directions, random_rotation(random));
     expect_depth(directions, true_depth(directions), "width " + std::to_string(width));
+  }
+}
+
+/// Normals about the end of a needle: two nearly opposite and one across, in which the points of
+/// least norm of the triangle and of its side are one but for rounding.
+TEST(ConeDepth, TwoNearlyOppositeDirectionsAndOneAcross) {
+  for (const double tilt : {1e-4, 1e-6, 3e-8}) {
+    for (const double lean : {0.0, 3.6e-4, 0.1}) {
+      const dvec3 across(-1, 0, 0);
+      const dvec3 up = unit(dvec3(0, 1, lean + tilt));
+      const dvec3 down = unit(dvec3(0, -1, -lean + tilt));
+      const real truth = true_depth({across, up, down});
+      ASSERT_GT(truth, tilt / 2);
+      for (const auto& order : {std::array{across, up, down}, std::array{up, across, down},
+                                std::array{down, up, across}}) {
+        const double depth = cone_depth(order);
+        EXPECT_LE(depth, truth + rounding) << tilt << " " << lean;
+        EXPECT_GE(depth, 0.9L * truth) << tilt << " " << lean;
+      }
+    }
   }
 }
 

@@ -17,7 +17,10 @@ struct Nearest {
   double norm2 = std::numeric_limits<double>::infinity();
 
   void offer(const dvec3& p, std::span<const dvec3> points) {
-    if (!(glm::dot(p, p) < norm2)) return;
+    // Of a triangle and its side the triangle, where their points of least norm are one but for
+    // rounding: only the former may prove that no direction lies lower.
+    constexpr double same = 1 + 1e-6;
+    if (!(glm::dot(p, p) < (int(points.size()) > size ? same : 1) * norm2)) return;
     point = p;
     norm2 = glm::dot(p, p);
     size = int(points.size());
@@ -37,8 +40,10 @@ struct Nearest {
     const double n2 = glm::dot(n, n);
     if (n2 == 0) return;
     const dvec3 foot = glm::dot(a, n) / n2 * n;
+    // (q - p) x (foot - p) . n, whose part of the foot vanishes; a foot close to a side, as that of
+    // a needle's normals is, would not be told from one beyond it.
     const auto inside = [&](const dvec3& p, const dvec3& q) {
-      return glm::dot(glm::cross(q - p, foot - p), n) >= 0;
+      return glm::dot(glm::cross(p, q), n) >= 0;
     };
     if (inside(a, b) && inside(b, c) && inside(c, a)) offer(foot, std::array{a, b, c});
   }
@@ -73,11 +78,19 @@ double cone_depth(std::span<const dvec3> directions) {
         directions.begin(), directions.end(),
         [&](const dvec3& a, const dvec3& b) { return glm::dot(a, x) < glm::dot(b, x); });
   };
+  struct Bound {
+    dvec3 direction;
+    double bound;
+  };
+  const auto bound_at = [&](const dvec3& x) -> Bound {
+    const dvec3 w = lowest(x);
+    return {w, glm::dot(w, unit(x)) - 8 * rounding_unit};
+  };
   if (directions.empty()) return 1;
   dvec3 mean(0.0);
   for (const dvec3& d : directions) mean += d;
   mean = unit(mean);
-  double best = glm::dot(lowest(mean), mean) - 8 * rounding_unit;
+  double best = bound_at(mean).bound;
   if (best > narrow) return best;
 
   Nearest nearest;
@@ -85,13 +98,16 @@ double cone_depth(std::span<const dvec3> directions) {
   for (int k = 0; k < iterations; ++k) {
     const double length = glm::length(nearest.point);
     if (!(length > 0)) break;
-    const dvec3 w = lowest(nearest.point);
-    const double bound = glm::dot(w, nearest.point) / length - 8 * rounding_unit;
+    const auto [w, bound] = bound_at(nearest.point);
     best = std::max(best, bound);
     if (length - bound < 0.01 * length) break;
     const Nearest next = nearest_with(nearest, w);
-    if (!(next.norm2 < nearest.norm2)) break;  // the origin is inside, or rounding is reached
+    const bool closer = next.norm2 < nearest.norm2;
     nearest = next;
+    if (!closer) {  // the origin is inside, or rounding is reached
+      best = std::max(best, bound_at(nearest.point).bound);
+      break;
+    }
   }
   return std::min(best, 1.0);
 }
