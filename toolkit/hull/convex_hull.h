@@ -61,7 +61,8 @@ Hull convex_hull(const Scene& scene, const HullOptions& options = {});
 /// no face of zero area in any case. The tolerance does not matter.
 ///
 /// Duplicates, points within and empty parts change nothing. Same bits for any number of threads.
-/// Faces carry the first polygon that lies in them and touches one of their corners as source.
+/// Faces carry as source the first polygon that lies in them and touches a corner of their hull
+/// face.
 /// @pre model.polyhedral() @throws InvalidInput if the tolerance is not valid, Cancelled
 Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 
@@ -73,9 +74,9 @@ Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 /// most the tolerance, rounding apart. Same bits for any number of threads. Safe to call
 /// concurrently.
 ///
-/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a segment or a
-/// point; its corners are support points too, and a planar outline is convex as seen along the
-/// axis that foreshortens it least.
+/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a
+/// segment or a point; its corners are support points too, and a planar outline is convex as seen
+/// along the axis that foreshortens it least.
 ///
 /// @throws InvalidInput if the tolerance is not valid, NotConverged if it is below what double
 /// precision can certify for this scene (about 1e-12 of its size) or max_vertices was met,
