@@ -76,7 +76,8 @@ Hull convex_hull(const Scene& scene, const HullOptions& options = {});
 /// no face of zero area in any case. The tolerance does not matter.
 ///
 /// Duplicates, points within and empty parts change nothing. Same bits for any number of threads.
-/// Faces carry the first polygon that lies in them and touches one of their corners as source.
+/// Faces carry as source the first polygon that lies in them and touches a corner of their hull
+/// face.
 /// @pre model.polyhedral() @throws InvalidInput if the tolerance is not valid, Cancelled
 Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 
