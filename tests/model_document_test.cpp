@@ -447,7 +447,7 @@ TEST(ModelDocument, CancelsAndRefusesOverflow) {
   EXPECT_THROW(read_document("f", example, DocumentEncoding::json, model, options), Cancelled);
 
   Part part;
-  const NurbsCurve loop{1, {0, 0, 1, 1}, {{1e300, 0, 0, 1e-300}, {1, 0, 0, 1}}};
+  const NurbsCurve loop{1, {0, 0, 1, 1}, {{1e300, 0, 0, 1e-300}, {1, 0, 0, 1e-300}}};
   part.add_surface(box(1, 1, 1).surfaces[0], "face", {TrimLoop{{loop}}});
   model.add_part(std::move(part), smooth_join_angle);
   EXPECT_THROW(to_document(model, DocumentEncoding::json), InvalidInput);

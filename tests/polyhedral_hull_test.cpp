@@ -317,6 +317,24 @@ TEST(PolyhedralHull, FacesNameThePolygonsThatLieInThem) {
   }
 }
 
+TEST(PolyhedralHull, AllTrianglesOfATurnedFaceNameItsPolygon) {
+  PolygonMesh box = {
+      mapped(grid(2), skew_rotation(), {0.3, 0.1, 0.7}),
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  Part part;
+  part.add_polygons(box);
+  Model model;
+  model.add_part(std::move(part), smooth_join_angle);
+  const Hull hull = polyhedral_hull(model);
+  EXPECT_EQ(hull.mesh.n_faces(), 12U);
+  std::set<std::pair<int, int>> sources;
+  for (const auto f : hull.mesh.faces()) {
+    EXPECT_GE(hull.mesh.data(f).source, 0);
+    sources.emplace(hull.mesh.data(f).hull_face, hull.mesh.data(f).source);
+  }
+  EXPECT_EQ(sources.size(), 6U);
+}
+
 TEST(PolyhedralHull, RefusesWrongTolerancesAndCanBeCancelled) {
   const Model model = model_of(grid(2));
   EXPECT_THROW(polyhedral_hull(model, {.tolerance = -1, .progress = {}}), InvalidInput);

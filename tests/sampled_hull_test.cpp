@@ -125,6 +125,22 @@ TEST(SampledHull, Needle) {
   }
 }
 
+TEST(SampledHull, BoundsCountBothSidesOfAPlane) {
+  // Flat to 6e-12: the points of one corner are on either side of the others.
+  const double z = 3e-12;
+  const dvec3 twice(0.5, 0.5, z);
+  const Shape shape = {{}, {}, {{-2, -2, 0}, {2, -2, 0}, {-2, 2, 0}, {0.5, 0.5, -z}, twice}};
+  const Hull hull = sampled_hull(make_scene(shape), {.threads = 1, .progress = {}});
+  ASSERT_EQ(hull.kind, HullKind::planar);
+  double nearest = 10;
+  for (const auto v : hull.mesh.vertices()) {
+    nearest = std::min(nearest, glm::distance(position(hull.mesh, v), twice));
+  }
+  const double other = glm::distance(shape.points[3], twice);
+  EXPECT_TRUE(nearest == 0 || nearest == other);
+  EXPECT_LE(other, hull.distance_bound);
+}
+
 TEST(SampledHull, NearlyFlat) {
   for (const double thickness : {1e-3, 1e-6, 1e-9}) {
     // Thinner than the distance within which borders are joined, both sides have one rim.
@@ -355,7 +371,11 @@ TEST(SampledHull, AbsurdToleranceIsNotConverged) {
       sampled_hull(
           make_scene(shape),
           {.tolerance = tolerance, .threads = 1, .max_vertices = max_vertices, .progress = {}});
-    } catch (const NotConverged& error) {
+    } catch (const HullNotConverged& error) {
+      // The best hull comes with it.
+      EXPECT_EQ(error.best->distance_bound, error.reached);
+      EXPECT_TRUE(mesh_facts(polygons(error.best->mesh)).is_convex_polytope());
+      EXPECT_LE(int(error.best->mesh.n_vertices()), std::max(max_vertices, 40));
       return error.reached;
     }
     return -1.0;
@@ -366,6 +386,7 @@ TEST(SampledHull, AbsurdToleranceIsNotConverged) {
   const double cut_short = reached(sphere(), 1e-9, 1000);
   EXPECT_GT(cut_short, 1e-9);
   EXPECT_LT(cut_short, 0.1);
+  EXPECT_GT(reached(sphere(), 1e-9, 4), 0.1);
 }
 
 TEST(SampledHull, CancelAndProgress) {

@@ -1,5 +1,6 @@
 #include "taut/core/parallel.h"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -16,7 +17,9 @@ void parallel_for(std::size_t count, std::size_t grain, int threads,
     for (std::size_t r = 0; r < ranges; ++r) run(r);
     return;
   }
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  // More threads than the machine has bring a warning from the library, and nothing else.
+  const int most = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, ranges, run); });
 }
 

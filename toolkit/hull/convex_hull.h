@@ -1,5 +1,9 @@
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
+
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
 #include "taut/hull/hull_mesh.h"
@@ -14,7 +18,8 @@ struct HullOptions {
   double relative = 1e-4;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;
-  /// Vertices after which refinement gives up (NotConverged is thrown with what was reached). Each
+  /// Vertices, some thirty to begin with apart, after which refinement gives up (HullNotConverged
+  /// is thrown). Each
   /// takes about 700 bytes meanwhile.
   int max_vertices = 4'000'000;
   Progress progress;
@@ -43,6 +48,16 @@ struct Hull {
   int dimension() const { return static_cast<int>(kind); }
 };
 
+/// The tolerance was not reached; `best` is the hull found, a valid one whose distance_bound says
+/// how far it came (no farther than the diagonal where nothing could be certified).
+class HullNotConverged : public NotConverged {
+ public:
+  HullNotConverged(const std::string& message, Hull hull)
+      : NotConverged(message, hull.distance_bound),
+        best(std::make_shared<const Hull>(std::move(hull))) {}
+  std::shared_ptr<const Hull> best;
+};
+
 /// Convex hull of a model: polyhedral_hull() where it is made of points and polygons alone,
 /// sampled_hull() otherwise. A model without geometry has the empty hull.
 /// @throws as these do
@@ -61,7 +76,8 @@ Hull convex_hull(const Scene& scene, const HullOptions& options = {});
 /// no face of zero area in any case. The tolerance does not matter.
 ///
 /// Duplicates, points within and empty parts change nothing. Same bits for any number of threads.
-/// Faces carry the first polygon that lies in them and touches one of their corners as source.
+/// Faces carry as source the first polygon that lies in them and touches a corner of their hull
+/// face.
 /// @pre model.polyhedral() @throws InvalidInput if the tolerance is not valid, Cancelled
 Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 
@@ -73,11 +89,11 @@ Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 /// most the tolerance, rounding apart. Same bits for any number of threads. Safe to call
 /// concurrently.
 ///
-/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a segment or a
-/// point; its corners are support points too, and a planar outline is convex as seen along the
-/// axis that foreshortens it least.
+/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a
+/// segment or a point; its corners are support points too, and a planar outline is convex as seen
+/// along the axis that foreshortens it least.
 ///
-/// @throws InvalidInput if the tolerance is not valid, NotConverged if it is below what double
+/// @throws InvalidInput if the tolerance is not valid, HullNotConverged if it is below what double
 /// precision can certify for this scene (about 1e-12 of its size) or max_vertices was met,
 /// Cancelled
 Hull sampled_hull(const Scene& scene, const HullOptions& options = {});

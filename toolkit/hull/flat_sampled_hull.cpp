@@ -77,7 +77,8 @@ const FlatSampler::Side& FlatSampler::side(int from, int to) {
   return found->second;
 }
 
-/// How far the scene leaves the span's line or plane, or its point, in the frame.
+/// How far apart the scene and the mesh may be across the span's line or plane, or from its point,
+/// in the frame.
 double FlatSampler::across_bound(int sample) {
   double bound = 0;
   for (const dvec3& n : directions_across(start_.span)) {
@@ -85,7 +86,9 @@ double FlatSampler::across_bound(int sample) {
   }
   // Every direction across lies in a cone of neighbouring ones of at least this depth.
   constexpr std::array depth = {0.8, 0.9, 1.0};
-  return bound / depth[std::size_t(start_.span.dimension)];
+  // The mesh's other corners may lie on the far side of the sample.
+  const int sides = start_.span.dimension == 0 ? 1 : 2;
+  return sides * bound / depth[std::size_t(start_.span.dimension)];
 }
 
 /// The certificate of certificate.h, in the plane.
@@ -129,7 +132,8 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
   if (kind == HullKind::planar) polygons = {loop, {loop.rbegin(), loop.rend()}};
   hull.mesh = make_hull_mesh(points, polygons);
   const auto bound_in_model = [&](double bound) {
-    return std::max(scene_.frame().length_to_model(bound + across), vertex_rounding(scene_));
+    const double in_model = scene_.frame().length_to_model(bound + across);
+    return std::max(std::min(in_model, scene_.diagonal()), vertex_rounding(scene_));
   };
   for (const auto v : hull.mesh.vertices()) {
     const auto k = std::size_t(v.idx());
@@ -173,9 +177,8 @@ Hull FlatSampler::run() {
     }
     // Samples that do not change the outline bring nothing more.
     if (full || start_.points.size() == before || outline(view) == corners) {
-      throw NotConverged(full ? "the limit of vertices was met before the tolerance"
-                              : "the tolerance is below what double precision can certify here",
-                         std::min(scene_.frame().length_to_model(bound_), scene_.diagonal()));
+      throw HullNotConverged(full ? vertex_limit_met : tolerance_too_fine,
+                             make_hull(HullKind::planar, corners));
     }
   }
 }

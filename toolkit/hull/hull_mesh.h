@@ -60,7 +60,7 @@ inline dvec3 position(const HullMesh& mesh, OpenMesh::VertexHandle v) {
 }
 
 /// The mesh of these vertices and polygons, unlabelled; without polygons, two vertices are joined
-/// by an edge. @pre the polygons bound a surface @throws BackendError if OpenMesh refuses a polygon
+/// by an edge. @pre the polygons bound a surface: every side belongs to two, in opposite directions
 HullMesh make_hull_mesh(const std::vector<dvec3>& vertices,
                         const std::vector<std::vector<int>>& polygons);
 

@@ -14,8 +14,9 @@ struct Measures {
   dmat3 inertia = dmat3(0.0);
 };
 
-/// By the divergence theorem over fans of triangles, relative to the box's centre, summed with
-/// compensation: relative error about 1e-15 times the number of faces' square root.
+/// By the divergence theorem over fans of triangles, relative to the box's centre, summed in long
+/// double: relative error about 1e-15. Of thin solids the volume errs by about 1e-19 (where long
+/// double has 64 bits) of the area times the size.
 /// @pre closed and oriented outward; polygons are planar
 Measures measure(const PolygonMesh& mesh);
 

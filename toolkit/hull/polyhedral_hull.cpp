@@ -299,21 +299,42 @@ void PolyhedralHull::join_hull_faces() {
   }
 }
 
-/// Finds for every face the first polygon of the input that lies in it and touches a corner.
+/// Finds for every face the first polygon of the input that lies in it and touches a corner of its
+/// hull face.
 void PolyhedralHull::label_faces() {
   HullMesh& mesh = result_.mesh;
   std::vector<int> vertex_of(points_.points().size(), -1);
   for (std::size_t v = 0; v < corners_.size(); ++v) vertex_of[std::size_t(corners_[v])] = int(v);
+  std::vector<int> valences(corners_.size(), 0);
+  for (const auto h : mesh.halfedges()) {
+    ++valences[std::size_t(mesh.to_vertex_handle(h).idx())];
+  }
+  std::vector<OpenMesh::FaceHandle> stack;
   points_.for_each_polygon([&](int source, const std::vector<int>& corners) {
-    const auto touching = std::find_if(corners.begin(), corners.end(),
-                                       [&](int c) { return vertex_of[std::size_t(c)] >= 0; });
-    if (touching == corners.end()) return;
-    for (const auto f : mesh.vf_range(OpenMesh::VertexHandle(vertex_of[std::size_t(*touching)]))) {
-      if (mesh.data(f).source >= 0) continue;
+    // All corners lie on the same face; the tip of a cone has many more.
+    int touching = -1;
+    for (const int c : corners) {
+      const int v = vertex_of[std::size_t(c)];
+      if (v < 0) continue;
+      if (touching < 0 || valences[std::size_t(v)] < valences[std::size_t(touching)]) touching = v;
+    }
+    if (touching < 0) return;
+    const auto visit = [&](OpenMesh::FaceHandle f) {
+      if (mesh.data(f).source >= 0) return;
       const bool lies_in = std::all_of(corners.begin(), corners.end(), [&](int c) {
         return std::abs(height(point(c), f)) <= width_;
       });
-      if (lies_in) mesh.data(f).source = source;
+      if (!lies_in) return;
+      mesh.data(f).source = source;
+      stack.push_back(f);
+    };
+    for (const auto f : mesh.vf_range(OpenMesh::VertexHandle(touching))) visit(f);
+    while (!stack.empty()) {
+      const auto f = stack.back();
+      stack.pop_back();
+      for (const auto g : mesh.ff_range(f)) {
+        if (mesh.data(g).hull_face == mesh.data(f).hull_face) visit(g);
+      }
     }
   });
 }

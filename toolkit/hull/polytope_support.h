@@ -25,9 +25,13 @@ class PolytopeSupport {
   }
 
  private:
+  int climbed(const dvec3& n, const dvec3& origin, int vertex) const;
+  int way_up(const dvec3& n, int top) const;
+
   const PointHull& hull_;
   std::vector<int> first_, neighbors_;  // per vertex, its neighbours
   int start_ = 0;
+  double extent_ = 0;
 };
 
 }  // namespace taut

@@ -188,6 +188,7 @@ bool Sampler::refine() {
   });
   bool inserted = false;
   for (const Candidate& c : candidates) {
+    if (int(hull_.points().size()) >= options_.max_vertices) break;
     // A facet that an earlier insertion replaced has lost its plane.
     const Plane plane = planes_[std::size_t(c.facet)];
     if (!plane.known || plane.n != c.n) continue;
@@ -209,7 +210,8 @@ HullMesh Sampler::make_mesh() {
   }
   std::vector<double> bounds;
   for (std::size_t v = 0; v < vertex_gaps_.size(); ++v) {
-    bounds.push_back(scene_.frame().length_to_model(distance_bound(vertex_gaps_[v], int(v))));
+    const double bound = scene_.frame().length_to_model(distance_bound(vertex_gaps_[v], int(v)));
+    bounds.push_back(std::min(bound, scene_.diagonal()));
   }
   return polytope_mesh(scene_, hull_, samples_, gaps, flat_width, bounds);
 }
@@ -217,19 +219,17 @@ HullMesh Sampler::make_mesh() {
 Hull Sampler::run(SampledStart start) {
   const auto start_time = Clock::now();
   begin(std::move(start));
-  for (;;) {
+  const char* failure = nullptr;
+  while (failure == nullptr) {
     find_planes();
     bound_vertices();
     // Vertices grow as the inverse of the distance: the orders of magnitude done tell the rounds.
     options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
     if (bound_ <= tolerance_) break;
-    const bool full = int(hull_.points().size()) >= options_.max_vertices;
-    if (full || !refine()) {
-      // Where nothing is certified, everything lies within the diagonal all the same.
-      const double reached = std::min(scene_.frame().length_to_model(bound_), scene_.diagonal());
-      throw NotConverged(full ? "the limit of vertices was met before the tolerance"
-                              : "the tolerance is below what double precision can certify here",
-                         reached);
+    if (int(hull_.points().size()) >= options_.max_vertices) {
+      failure = vertex_limit_met;
+    } else if (!refine()) {
+      failure = tolerance_too_fine;
     }
   }
   Hull result;
@@ -239,8 +239,11 @@ Hull Sampler::run(SampledStart start) {
   options_.progress.update("mesh", 0);
   result.mesh = make_mesh();
   statistics_.seconds_mesh = seconds_since(mesh_time);
-  result.distance_bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
+  // Where nothing is certified, everything lies within the diagonal all the same.
+  const double bound = std::min(scene_.frame().length_to_model(bound_), scene_.diagonal());
+  result.distance_bound = std::max(bound, vertex_rounding(scene_));
   result.statistics = statistics_;
+  if (failure != nullptr) throw HullNotConverged(failure, std::move(result));
   return result;
 }
 

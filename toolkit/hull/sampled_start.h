@@ -30,8 +30,14 @@ double vertex_rounding(const Scene& scene);
 /// Rounding of a gap in the scene's frame, where coordinates are at most about two.
 inline constexpr double gap_rounding = 16 * rounding_unit;
 
+/// Why a tolerance is not reached.
+inline constexpr const char* vertex_limit_met =
+    "the limit of vertices was met before the tolerance";
+inline constexpr const char* tolerance_too_fine =
+    "the tolerance is below what double precision can certify here";
+
 /// The hull of a scene that spans less than space. `tolerance` in model units.
-/// @pre start.span.dimension < 3 @throws NotConverged, Cancelled as sampled_hull()
+/// @pre start.span.dimension < 3 @throws HullNotConverged, Cancelled as sampled_hull()
 Hull flat_sampled_hull(const Scene& scene, const HullOptions& options, double tolerance,
                        SampledStart start, SupportQuery& query);
 

@@ -135,7 +135,11 @@ void Verifier::check_topology() {
   check_fans();
   // The two sides of a planar hull hold no volume, up to rounding.
   const Measures measures = measure(mesh_);
-  if (result_.oriented) result_.oriented = measures.volume > -flat_width * measures.area;
+  Box box;
+  for (const dvec3& p : mesh_.points) box.include(p);
+  const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double rounding = flat_width + coordinate_rounding * (reach.x + reach.y + reach.z);
+  if (result_.oriented) result_.oriented = measures.volume > -rounding * measures.area;
 }
 
 /// The polygon corners about a vertex are one fan iff edges join them all.
@@ -259,13 +263,16 @@ void Verifier::measure_distances() {
   const dvec3 center = scene_.frame().scale * scene_.frame().center;
   std::vector<dvec3> normals(mesh_.polygons.size(), dvec3(0.0));
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const auto& c = corners_[f];
-    if (c[0] < 0) continue;
-    normals[f] = unit(glm::cross(point(c[1]) - point(c[0]), point(c[2]) - point(c[0])));
+    const std::vector<int>& p = mesh_.polygons[f];
+    for (std::size_t k = 1; k + 1 < p.size(); ++k) {
+      normals[f] += glm::cross(point(p[k]) - point(p[0]), point(p[k + 1]) - point(p[0]));
+    }
+    normals[f] = unit(normals[f]);
   }
   const PointSupport mesh_support(mesh_.points);
   int top = -1;
   for (std::size_t f = 0; f < normals.size(); ++f) {
+    if (result_.convex) break;  // exactly so: nothing to measure
     const double above = mesh_support.value(normals[f], point(mesh_.polygons[f][0]), top);
     result_.largest_violation = std::max(result_.largest_violation, above);
   }

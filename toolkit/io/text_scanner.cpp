@@ -64,6 +64,7 @@ std::string read_file(const std::filesystem::path& path) {
   const std::string name = path.string();
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw IoError(name + ": is a directory");
+  if (std::filesystem::is_character_file(path, error)) throw IoError(name + ": is a device");
   const std::unique_ptr<std::FILE, Close> file(std::fopen(name.c_str(), "rb"));
   if (!file) throw IoError(name + ": cannot be opened: " + std::strerror(errno));
 

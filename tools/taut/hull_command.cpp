@@ -62,31 +62,19 @@ double tolerance(const HullArguments& arguments, double diagonal) {
   return tolerance;
 }
 
-/// The hull within the tolerance asked for or, where `failure` is set, within the best that could
-/// be reached.
+/// The hull within the tolerance asked for or, where `failure` is set, the best that was found.
 struct Outcome {
-  Hull hull;
-  std::optional<NotConverged> failure;
+  std::shared_ptr<const Hull> hull;
+  std::optional<HullNotConverged> failure;
 };
 
-/// @throws NotConverged if there is not even a best result
-Outcome compute(Input& input, HullOptions options) {
-  if (input.model().polyhedral()) return {polyhedral_hull(input.model(), options), {}};
-  const Scene& scene = input.scene();
+Outcome compute(Input& input, const HullOptions& options) {
   try {
-    return {sampled_hull(scene, options), {}};
-  } catch (const NotConverged& failure) {
-    const auto give_up = [&] {
-      return NotConverged(std::string(failure.what()) + "; nothing is written", failure.reached);
-    };
-    // The exception tells only how far the computation came, so it is done again up to there.
-    if (!(failure.reached > options.tolerance) || !std::isfinite(failure.reached)) throw give_up();
-    options.tolerance = failure.reached;
-    try {
-      return {sampled_hull(scene, options), failure};
-    } catch (const NotConverged&) {
-      throw give_up();
-    }
+    Hull hull = input.model().polyhedral() ? polyhedral_hull(input.model(), options)
+                                           : sampled_hull(input.scene(), options);
+    return {std::make_shared<const Hull>(std::move(hull)), {}};
+  } catch (const HullNotConverged& failure) {
+    return {failure.best, failure};
   }
 }
 
@@ -179,9 +167,9 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   options.progress = console.progress();
   const Outcome outcome = compute(input, options);
 
-  Report report = make_report(input, outcome.hull, arguments, options.tolerance);
+  Report report = make_report(input, *outcome.hull, arguments, options.tolerance);
   const Stopwatch writing;
-  write_outputs(arguments, outcome.hull, report, console);
+  write_outputs(arguments, *outcome.hull, report, console);
   options.progress.check();
   report.seconds.write = writing.seconds();
   report.seconds.total = console.seconds();
