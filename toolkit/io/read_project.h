@@ -16,8 +16,8 @@ namespace taut {
 ///
 /// `data` is the whole file; `file` its name for messages, and its folder is that of the name.
 /// @throws as read_model(), errors of a layer's file with the place in the project before them;
-/// also LimitExceeded for a project above 64 MiB, or for more than 2^26 control points of files that
-/// are repeated under matrices which are not rigid. The model is then unchanged.
+/// also LimitExceeded for a project above 64 MiB, or for more than 2^26 control points of files
+/// that are repeated under matrices which are not rigid. The model is then unchanged.
 void read_project(const std::string& file, std::string_view data, Model& model,
                   const ReadOptions& options);
 
