@@ -157,6 +157,15 @@ bool has_nearly_flat_edges(const PointHull& hull, double width) {
   return false;
 }
 
+double coarsening_work(const PointHull& hull) {
+  std::vector<int> valence(hull.points().size(), 0);
+  for (const PointHull::Facet& facet : hull.facets()) {
+    if (!facet.alive) continue;
+    for (const int v : facet.vertex) ++valence[std::size_t(v)];
+  }
+  return double(hull.facet_count()) * *std::max_element(valence.begin(), valence.end());
+}
+
 CoarseHull coarse_hull(const PointHull& hull, const std::array<int, 4>& spanning, double width,
                        const Progress& progress) {
   return Coarsener(hull, spanning, width).run(progress);

@@ -20,6 +20,10 @@ struct CoarseHull {
 /// one facet's far corner lies below the other's plane by less than the width, but not in it.
 bool has_nearly_flat_edges(const PointHull& hull, double width);
 
+/// Neighbours of vertices that coarse_hull() may have to look at: for each facet, those of the
+/// vertex that has most. The tip of a cone of a hundred thousand sides is not worth it.
+double coarsening_work(const PointHull& hull);
+
 /// The hull of some vertices that leave none higher than the width above any facet, to within
 /// rounding: hardly more than the corners that the original would have had without noise of that
 /// width. `spanning` are four of its points that span space by more than the width.

@@ -71,9 +71,10 @@ Hull convex_hull(const Scene& scene, const HullOptions& options = {});
 /// coordinate_rounding (tolerances.h), and no farther than spurious_share of the diagonal, only
 /// enough are kept that no others reach farther than that above any facet, and distance_bound says
 /// how far that is. A turned cube of points so has twelve triangles or six squares and a turned
-/// polygon is planar, whatever rounding did to them. Where nothing of the kind is there, and always
-/// where the points are as close as their rounding, the hull is exact. It is exactly convex and has
-/// no face of zero area in any case. The tolerance does not matter.
+/// polygon is planar, whatever rounding did to them. Where nothing of the kind is there, always
+/// where the points are as close as their rounding, and where a vertex has too many neighbours for
+/// the search (ten thousand and more), the hull is exact. It is exactly convex and has no face of
+/// zero area in any case. The tolerance does not matter.
 ///
 /// Duplicates, points within and empty parts change nothing. Same bits for any number of threads.
 /// Faces carry as source the first polygon that lies in them and touches a corner of their hull

@@ -71,6 +71,9 @@ class PolyhedralHull {
   std::vector<dvec3> normals_;  ///< per face of the mesh
 };
 
+/// Neighbours of vertices that coarse_hull() may look at: some seconds.
+constexpr double most_work = 3e8;
+
 Hull PolyhedralHull::run() {
   const auto start = Clock::now();
   options_.progress.update("sample", 0);
@@ -178,7 +181,7 @@ void PolyhedralHull::make_solid(const PointHull& hull) {
       high = std::max(high, height);
     }
     make_planar(vertices, span.witnesses, high - low + 2 * rounding());
-  } else if (!has_nearly_flat_edges(hull, width_)) {
+  } else if (!has_nearly_flat_edges(hull, width_) || coarsening_work(hull) > most_work) {
     make_polytope(hull);
   } else {
     const CoarseHull coarse = coarse_hull(hull, span.witnesses, width_, options_.progress);

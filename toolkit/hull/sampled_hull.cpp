@@ -160,6 +160,8 @@ void Sampler::bound_vertices() {
     vertex_depths_[v] = cone_depth(own);
     bound_ = std::max(bound_, distance_bound(vertex_gaps_[v], int(v)));
   }
+  // Where nothing is certified, everything lies within the diagonal all the same.
+  bound_ = std::min(bound_, scene_.frame().scale * scene_.diagonal());
 }
 
 /// Inserts the support points of all facets that keep a vertex from its tolerance, the largest
@@ -239,9 +241,7 @@ Hull Sampler::run(SampledStart start) {
   options_.progress.update("mesh", 0);
   result.mesh = make_mesh();
   statistics_.seconds_mesh = seconds_since(mesh_time);
-  // Where nothing is certified, everything lies within the diagonal all the same.
-  const double bound = std::min(scene_.frame().length_to_model(bound_), scene_.diagonal());
-  result.distance_bound = std::max(bound, vertex_rounding(scene_));
+  result.distance_bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
   result.statistics = statistics_;
   if (failure != nullptr) throw HullNotConverged(failure, std::move(result));
   return result;
