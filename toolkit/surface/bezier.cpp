@@ -197,10 +197,9 @@ void validate_points(const std::vector<dvec4>& points, const std::string& name) 
   const auto lighter = [](const dvec4& a, const dvec4& b) { return a.w < b.w; };
   const auto [least, most] = std::minmax_element(points.begin(), points.end(), lighter);
   if (!points.empty() && most->w / least->w > max_weight_ratio) {
-    throw InvalidInput(name + ": the weights of control points " +
-                       std::to_string(least - points.begin()) + " and " +
-                       std::to_string(most - points.begin()) +
-                       " differ by a factor of more than 1e12");
+    throw InvalidInput(
+        name + ": the weights of control points " + std::to_string(least - points.begin()) +
+        " and " + std::to_string(most - points.begin()) + " differ by a factor of more than 1e12");
   }
 }
 
