@@ -47,9 +47,9 @@ Box with(Box box, const Part& part, const RigidMotion& pose) {
   const Box& own = part.control_box();
   if (own.empty()) return box;
   for (int k = 0; k < 8; ++k) {
-    box.include(pose({(k & 1) != 0 ? own.upper.x : own.lower.x,
-                      (k & 2) != 0 ? own.upper.y : own.lower.y,
-                      (k & 4) != 0 ? own.upper.z : own.lower.z}));
+    box.include(
+        pose({(k & 1) != 0 ? own.upper.x : own.lower.x, (k & 2) != 0 ? own.upper.y : own.lower.y,
+              (k & 4) != 0 ? own.upper.z : own.lower.z}));
   }
   return box;
 }
@@ -127,7 +127,8 @@ void Part::add_points(std::span<const dvec3> points) {
   assert(!connected_);
   const std::string shown_name = printable(name);
   const auto name_of = [&](std::size_t i) {
-    return shown_name + (name.empty() ? "" : ": ") + "point " + std::to_string(vertices_.size() + i);
+    return shown_name + (name.empty() ? "" : ": ") + "point " +
+           std::to_string(vertices_.size() + i);
   };
   if (points.size() > std::size_t(std::numeric_limits<int>::max()) - vertices_.size()) {
     throw LimitExceeded(shown_name + ": more than " +
