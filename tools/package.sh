@@ -58,7 +58,8 @@ install_inside() {
 # From where this machine gets its packages, in the way that it does.
 # shellcheck disable=SC2016
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Codename: bookworm' | head -n 1)
-say "a fresh Debian 12 from ${mirror:=http://deb.debian.org/debian}"
+[[ -n $mirror ]] || fail "apt has no source of Debian 12 (bookworm) to make a fresh system from"
+say "a fresh Debian 12"
 debootstrap --variant=minbase bookworm "$fresh" "$mirror" >build/package/debootstrap.log ||
   fail "debootstrap failed; see build/package/debootstrap.log"
 cp -rL /etc/apt/apt.conf.d /etc/apt/trusted.gpg.d "$fresh/etc/apt/"

@@ -40,7 +40,6 @@ class FlatSampler {
   int add(const dvec3& n, const Support& s);
   const Side& side(int from, int to);
   std::vector<int> line_ends();
-  void refine_outline();
   std::vector<int> outline(const PlaneView& view) const {
     return convex_outline(start_.points, view);
   }
