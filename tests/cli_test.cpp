@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "run_command.h"
 #include "taut/io/read_mesh.h"
 #include "temporary_folder.h"
 
@@ -25,14 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using taut_test::content;
+using taut_test::Result;
+using taut_test::run_line;
 using taut_test::TemporaryFolder;
-
-/// What one run of the command gave.
-struct Result {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
 
 /// Runs taut in a folder of the test's own.
 class Cli : public TemporaryFolder {
@@ -40,20 +36,9 @@ class Cli : public TemporaryFolder {
   /// `arguments` as a shell reads them; `before` stands before the command.
   Result run(const std::string& arguments, const std::string& before = "") const {
     const fs::path errors = fs::path(folder_.string() + ".stderr");
-    const std::string line = "cd '" + folder_.string() + "' && " + before +
-                             " '" TAUT_EXECUTABLE "' " + arguments + " 2>'" + errors.string() + "'";
-    Result result;
-    std::FILE* pipe = popen(line.c_str(), "r");
-    if (pipe == nullptr) return result;
-    std::array<char, 4096> buffer;
-    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-      result.out.append(buffer.data(), count);
-    }
-    const int status = pclose(pipe);
-    if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-    result.err = content(errors);
-    fs::remove(errors);
-    return result;
+    const std::string line =
+        "cd '" + folder_.string() + "' && " + before + " '" TAUT_EXECUTABLE "' " + arguments;
+    return run_line(line, errors);
   }
 
   /// Expects a failure: the exit code, one line on stderr, and nothing on stdout.

@@ -3,7 +3,6 @@
 // either, all others are read without one.
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "fuzz/read_one.h"
+#include "run_command.h"
 #include "temporary_folder.h"
 
 namespace taut_test {
@@ -85,13 +85,6 @@ TEST(Corpus, HoldsEveryFormat) {
   }
 }
 
-/// What one run of the command gave.
-struct Result {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
-
 class CommandOverCorpusOf : public testing::TestWithParam<std::string> {
  protected:
   Result run(const fs::path& file) const {
@@ -100,20 +93,8 @@ class CommandOverCorpusOf : public testing::TestWithParam<std::string> {
     const std::string saddle = TAUT_FUZZ_CORPUS "/bpt/saddle.bpt";
     const std::string before =
         GetParam() == "directions" ? "support '" + saddle + "' --directions " : "info ";
-    const std::string line =
-        "'" TAUT_EXECUTABLE "' " + before + "'" + file.string() + "' 2>'" + errors.string() + "'";
-    Result result;
-    std::FILE* pipe = popen(line.c_str(), "r");
-    if (pipe == nullptr) return result;
-    std::array<char, 4096> buffer;
-    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-      result.out.append(buffer.data(), count);
-    }
-    const int status = pclose(pipe);
-    if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-    result.err = content(errors);
-    fs::remove(errors);
-    return result;
+    const std::string line = "'" TAUT_EXECUTABLE "' " + before + "'" + file.string() + "'";
+    return run_line(line, errors);
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "taut/core/geometry.h"
@@ -23,5 +24,11 @@ namespace taut {
 /// Method: the point of least norm by Gilbert, Johnson and Keerthi 1988, any iterate of which gives
 /// a bound; narrow cones are answered by their mean.
 double cone_depth(std::span<const dvec3> directions);
+
+/// What a gap at a vertex whose cone is so deep bounds the distance by; infinite where the normals
+/// prove nothing.
+inline double distance_bound(double gap, double depth) {
+  return depth > 0 ? gap / depth : std::numeric_limits<double>::infinity();
+}
 
 }  // namespace taut

@@ -1,7 +1,6 @@
 #include "taut/hull/coarse_hull.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 #include "taut/core/tolerances.h"
@@ -132,10 +131,8 @@ void Coarsener::bound_distance() {
       const dvec3& top = fine_.point(tops_[std::size_t(f)]);
       highest = std::max(highest, glm::dot(top - hull.point(int(v)), normals.back()));
     }
-    const double depth = cone_depth(normals);
-    const double bound =
-        depth > 0 ? (highest + rounding) / depth : std::numeric_limits<double>::infinity();
-    result_.distance_bound = std::max(result_.distance_bound, bound);
+    result_.distance_bound = std::max(
+        result_.distance_bound, taut::distance_bound(highest + rounding, cone_depth(normals)));
   }
 }
 

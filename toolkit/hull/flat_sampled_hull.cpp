@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
@@ -98,10 +97,9 @@ double FlatSampler::certify(const std::vector<int>& corners) {
   for (std::size_t k = 0; k < count; ++k) {
     const Side in = side(corners[(k + count - 1) % count], corners[k]);
     const Side out = side(corners[k], corners[(k + 1) % count]);
-    const double depth = cone_depth(std::array{in.n, out.n});
     const double highest =
         std::max(gap(in.support, in.n, corners[k]), gap(out.support, out.n, corners[k]));
-    bounds_[k] = depth > 0 ? highest / depth : std::numeric_limits<double>::infinity();
+    bounds_[k] = distance_bound(highest, cone_depth(std::array{in.n, out.n}));
     largest = std::max(largest, bounds_[k]);
   }
   return largest;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -7,6 +6,7 @@
 #include <string>
 #include <tuple>
 
+#include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/affine_span.h"
 #include "taut/hull/coarse_hull.h"
@@ -18,12 +18,6 @@
 
 namespace taut {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Builds the hull of whatever dimension from all points.
 class PolyhedralHull {
@@ -75,14 +69,14 @@ class PolyhedralHull {
 constexpr double most_work = 3e8;
 
 Hull PolyhedralHull::run() {
-  const auto start = Clock::now();
+  const Stopwatch start;
   options_.progress.update("sample", 0);
   const std::span<const dvec3> all = points_.points();
   PointHull hull(box_of(all));
   hull.add(all, options_.progress);
   options_.progress.update("sample", 1);
-  result_.statistics.seconds_sample = seconds_since(start);
-  const auto mesh_start = Clock::now();
+  result_.statistics.seconds_sample = start.seconds();
+  const Stopwatch mesh_start;
   if (hull.dimension() == 3) {
     make_solid(hull);
   } else {
@@ -102,7 +96,7 @@ Hull PolyhedralHull::run() {
     }
   }
   result_.distance_bound = (result_.distance_bound + points_.placement_bound()) / points_.scale();
-  result_.statistics.seconds_mesh = seconds_since(mesh_start);
+  result_.statistics.seconds_mesh = mesh_start.seconds();
   return std::move(result_);
 }
 

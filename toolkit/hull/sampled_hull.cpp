@@ -1,13 +1,12 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
 
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
+#include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/certificate.h"
 #include "taut/hull/point_hull.h"
@@ -15,12 +14,6 @@
 
 namespace taut {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
@@ -61,11 +54,9 @@ class Sampler {
   double gap(const Plane& plane, int vertex) const {
     return plane.h_bound - glm::dot(plane.n, frame_points_[std::size_t(vertex)]) + gap_rounding;
   }
-  /// What a gap at a vertex means for the distance; infinite where the normals about the vertex
-  /// prove nothing.
+  /// What a gap at a vertex means for the distance.
   double distance_bound(double gap, int vertex) const {
-    const double depth = vertex_depths_[std::size_t(vertex)];
-    return depth > 0 ? gap / depth : std::numeric_limits<double>::infinity();
+    return taut::distance_bound(gap, vertex_depths_[std::size_t(vertex)]);
   }
   HullMesh make_mesh();
   const Scene& scene_;
@@ -219,7 +210,7 @@ HullMesh Sampler::make_mesh() {
 }
 
 Hull Sampler::run(SampledStart start) {
-  const auto start_time = Clock::now();
+  const Stopwatch start_time;
   begin(std::move(start));
   const char* failure = nullptr;
   while (failure == nullptr) {
@@ -236,11 +227,11 @@ Hull Sampler::run(SampledStart start) {
   }
   Hull result;
   result.kind = HullKind::solid;
-  statistics_.seconds_sample = seconds_since(start_time);
-  const auto mesh_time = Clock::now();
+  statistics_.seconds_sample = start_time.seconds();
+  const Stopwatch mesh_time;
   options_.progress.update("mesh", 0);
   result.mesh = make_mesh();
-  statistics_.seconds_mesh = seconds_since(mesh_time);
+  statistics_.seconds_mesh = mesh_time.seconds();
   result.distance_bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
   result.statistics = statistics_;
   if (failure != nullptr) throw HullNotConverged(failure, std::move(result));
@@ -251,7 +242,7 @@ Hull Sampler::run(SampledStart start) {
 
 Hull sampled_hull(const Scene& scene, const HullOptions& options) {
   const double tolerance = tolerance_for(options, scene.diagonal());
-  const auto start_time = Clock::now();
+  const Stopwatch start_time;
   SupportQuery query(scene);
   SampledStart start = sampled_start(scene, query);
   Hull hull;
@@ -259,7 +250,7 @@ Hull sampled_hull(const Scene& scene, const HullOptions& options) {
     hull = Sampler(scene, options, tolerance).run(std::move(start));
   } else {
     hull = flat_sampled_hull(scene, options, tolerance, std::move(start), query);
-    hull.statistics.seconds_sample = seconds_since(start_time);
+    hull.statistics.seconds_sample = start_time.seconds();
   }
   hull.statistics.support_queries += query.queries();
   hull.statistics.newton_iterations += query.newton_iterations();

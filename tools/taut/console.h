@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "progress_bar.h"
 #include "taut/core/progress.h"
+#include "taut/core/stopwatch.h"
 #include "taut/io/report.h"
 
 namespace taut::tool {
@@ -33,16 +33,6 @@ CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optio
 /// Adds an option whose value must be an integer in [lowest, highest].
 CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
                          int highest, const std::string& description);
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// One run of a command: its common options, what it says, and whether it should stop.
 class Console {
