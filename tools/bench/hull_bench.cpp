@@ -68,36 +68,11 @@ void compare(const Model& model, const Scene& scene, double relative, int runs) 
   HullOptions options;
   options.tolerance = relative * scene.diagonal();
   options.threads = 1;
-  const std::vector<dvec3> points = tessellation_of_accuracy(model, scene, options.tolerance);
-  long vertices = 0;
-  long faces = 0;
-  std::vector<double> taut_times;
-  const std::vector<Peer> others = peers();
-  std::vector<std::vector<double>> times(others.size());
-  std::vector<long> other_faces(others.size());
-  for (int run = 0; run < runs; ++run) {
-    taut_times.push_back(seconds([&] {
-      const Scene fresh(model, {.threads = 1, .progress = {}});
-      const Hull hull = sampled_hull(fresh, options);
-      vertices = long(hull.mesh.n_vertices());
-      faces = long(hull.mesh.n_faces());
-    }));
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      times[k].push_back(seconds([&] { other_faces[k] = others[k].faces(points); }));
-    }
-  }
-  std::printf("\naccuracy %g of the diagonal\n", relative);
-  std::printf("  %-20s %10.2f ms  %9ld faces  %9ld vertices, build included\n", "taut sampled",
-              1e3 * median(taut_times), faces, vertices);
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    std::vector<double> ratios;
-    for (std::size_t run = 0; run < times[k].size(); ++run) {
-      ratios.push_back(taut_times[run] / times[k][run]);
-    }
-    std::printf("  %-20s %10.2f ms  %9ld faces  %9zu points    time ratio %.3f, faces ratio %.3f\n",
-                others[k].name.c_str(), 1e3 * median(times[k]), other_faces[k], points.size(),
-                median(ratios), double(faces) / double(other_faces[k]));
-  }
+  std::printf("\naccuracy %g of the diagonal; scene build included\n", relative);
+  compare_with_peers(tessellation_of_accuracy(model, scene, options.tolerance), runs, [&] {
+    const Scene fresh(model, {.threads = 1, .progress = {}});
+    return long(sampled_hull(fresh, options).mesh.n_faces());
+  });
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 #include "peers.h"
 
 #include <algorithm>
-#include <chrono>
+#include <cstdio>
 
+#include "taut/core/stopwatch.h"
 #include "taut/hull/point_hull.h"
 
 #ifdef TAUT_WITH_CGAL
@@ -21,18 +22,17 @@ namespace taut_bench {
 using taut::Box;
 using taut::dvec3;
 using taut::PointHull;
+using taut::Stopwatch;
 
-double seconds(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+namespace {
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
                    values.end());
   return values[values.size() / 2];
 }
+
+}  // namespace
 
 std::vector<Peer> peers() {
   std::vector<Peer> result;
@@ -71,6 +71,32 @@ std::vector<Peer> peers() {
                     }});
 #endif
   return result;
+}
+
+void compare_with_peers(const std::vector<dvec3>& points, int runs,
+                        const std::function<long()>& taut) {
+  const std::vector<Peer> others = peers();
+  long faces = 0;
+  std::vector<long> other_faces(others.size());
+  std::vector<double> times;
+  std::vector<std::vector<double>> other_times(others.size()), ratios(others.size());
+  for (int run = 0; run < runs; ++run) {
+    const Stopwatch watch;
+    faces = taut();
+    times.push_back(watch.seconds());
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const Stopwatch other;
+      other_faces[k] = others[k].faces(points);
+      other_times[k].push_back(other.seconds());
+      ratios[k].push_back(times.back() / other_times[k].back());
+    }
+  }
+  std::printf("  %-20s %10.2f ms  %9ld faces\n", "taut", 1e3 * median(times), faces);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    std::printf("  %-20s %10.2f ms  %9ld faces  %9zu points    time ratio %.3f, faces ratio %.3f\n",
+                others[k].name.c_str(), 1e3 * median(other_times[k]), other_faces[k], points.size(),
+                median(ratios[k]), double(faces) / double(other_faces[k]));
+  }
 }
 
 }  // namespace taut_bench

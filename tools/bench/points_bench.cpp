@@ -36,29 +36,10 @@ void compare(std::size_t count, bool on_sphere, int runs) {
   part.add_points(points);
   Model model;
   model.add_part(std::move(part), 0);
-
-  long faces = 0;
-  std::vector<double> taut_times;
-  const std::vector<Peer> others = peers();
-  std::vector<std::vector<double>> times(others.size());
-  std::vector<long> other_faces(others.size());
-  for (int run = 0; run < runs; ++run) {
-    taut_times.push_back(seconds(
-        [&] { faces = long(convex_hull(model, {.threads = 1, .progress = {}}).mesh.n_faces()); }));
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      times[k].push_back(seconds([&] { other_faces[k] = others[k].faces(points); }));
-    }
-  }
   std::printf("\n%zu points %s\n", count, on_sphere ? "on a sphere" : "in a ball");
-  std::printf("  %-20s %10.0f ms  %9ld faces\n", "taut", 1e3 * median(taut_times), faces);
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    std::vector<double> ratios;
-    for (std::size_t run = 0; run < times[k].size(); ++run) {
-      ratios.push_back(taut_times[run] / times[k][run]);
-    }
-    std::printf("  %-20s %10.0f ms  %9ld faces    time ratio %.3f\n", others[k].name.c_str(),
-                1e3 * median(times[k]), other_faces[k], median(ratios));
-  }
+  compare_with_peers(points, runs, [&] {
+    return long(convex_hull(model, {.threads = 1, .progress = {}}).mesh.n_faces());
+  });
 }
 
 }  // namespace
