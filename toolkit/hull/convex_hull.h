@@ -6,6 +6,7 @@
 
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
+#include "taut/hull/hull_boundary.h"
 #include "taut/hull/hull_mesh.h"
 
 namespace taut {
@@ -29,7 +30,13 @@ struct HullOptions {
 struct HullStatistics {
   long support_queries = 0;
   long newton_iterations = 0;
+  /// Cells of the CBVHs at the finest level of culling, and those that were kept.
+  long cells = 0;
+  long cells_kept = 0;
   double seconds_sample = 0;
+  double seconds_cull = 0;
+  double seconds_trace = 0;
+  double seconds_stitch = 0;
   double seconds_mesh = 0;
 };
 
@@ -43,6 +50,8 @@ struct Hull {
   /// Proven upper bound of the Hausdorff distance between the mesh and the true convex hull, in
   /// model units, rounding included.
   double distance_bound = 0;
+  /// The exact boundary, where the method finds it.
+  std::shared_ptr<const HullBoundary> boundary;
   HullStatistics statistics;
 
   int dimension() const { return static_cast<int>(kind); }

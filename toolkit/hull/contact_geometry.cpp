@@ -1,0 +1,158 @@
+#include "taut/hull/contact_geometry.h"
+
+#include <cmath>
+
+#include "taut/bounds/scene_content.h"
+
+namespace taut {
+namespace {
+
+/// In the scene's units about the part's centre, as queries see it; w (x - c) is rounded once.
+std::vector<dvec4> moved(const std::vector<dvec4>& points, const dvec3& center, double scale) {
+  std::vector<dvec4> result;
+  result.reserve(points.size());
+  for (const dvec4& p : points) {
+    result.emplace_back(scale * std::fma(-p.w, center.x, p.x),
+                        scale * std::fma(-p.w, center.y, p.y),
+                        scale * std::fma(-p.w, center.z, p.z), p.w);
+  }
+  return result;
+}
+
+}  // namespace
+
+ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
+  const Scene::Content& content = scene.content();
+  const std::vector<Part>& parts = scene.model().parts();
+  parts_.resize(parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const Part& part = parts[k];
+    const dvec3& center = content.parts[k].center;
+    const double scale = content.frame.scale;
+    PartElements& own = parts_[k];
+    own.patches.reserve(part.patches().size());
+    own.pieces.reserve(part.pieces().size());
+    own.vertices.reserve(part.vertices().size());
+    own.sides.resize(part.pieces().size());
+    own.ends.resize(part.vertices().size());
+    for (std::size_t i = 0; i < part.patches().size(); ++i) {
+      const Patch& patch = part.patches()[i];
+      const BezierPatch& b = patch.bezier;
+      own.patches.push_back({b.degree_u, b.degree_v, moved(b.points, center, scale)});
+      for (const Side side : all_sides) {
+        const Border& border = patch.borders[std::size_t(side)];
+        if (border.kind != BorderKind::edge || border.piece < 0) continue;
+        own.sides[std::size_t(border.piece)].push_back({int(i), side, border.piece_reversed});
+      }
+    }
+    for (std::size_t i = 0; i < part.pieces().size(); ++i) {
+      const EdgePiece& piece = part.pieces()[i];
+      own.pieces.push_back({moved(piece.bezier.points, center, scale)});
+      for (int end = 0; end < 2; ++end) {
+        const int vertex = piece.end_vertex[std::size_t(end)];
+        if (vertex >= 0) own.ends[std::size_t(vertex)].push_back({int(i), end});
+      }
+    }
+    for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
+  }
+}
+
+const Part& ContactGeometry::part(const Contact& c) const {
+  const Model& model = scene_.model();
+  return model.parts()[std::size_t(model.instances()[std::size_t(c.instance)].part)];
+}
+
+const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c) const {
+  return parts_[std::size_t(scene_.model().instances()[std::size_t(c.instance)].part)];
+}
+
+dvec3 ContactGeometry::to_local(int instance, const dvec3& n) const {
+  const SceneInstance& own = scene_.content().instances[std::size_t(instance)];
+  return own.rotated ? glm::transpose(own.rotation) * n : n;
+}
+
+dvec3 ContactGeometry::to_frame(int instance, const dvec3& direction) const {
+  const SceneInstance& own = scene_.content().instances[std::size_t(instance)];
+  return own.rotated ? own.rotation * direction : direction;
+}
+
+ContactJet ContactGeometry::jet(const Contact& c) const {
+  const PartElements& own = elements(c);
+  const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
+  ContactJet result;
+  if (c.kind == SourceKind::face) {
+    const PatchJet2 j = jet2(own.patches[std::size_t(c.element)], c.u, c.v);
+    result = {2, j.S, {j.Su, j.Sv}, j.Suu, j.Suv, j.Svv};
+  } else if (c.kind == SourceKind::edge) {
+    const CurveJet j = taut::jet(own.pieces[std::size_t(c.element)], c.u);
+    result = {1, j.c, {j.ct, dvec3(0.0)}, j.ctt, dvec3(0.0), dvec3(0.0)};
+  } else {
+    result.x = own.vertices[std::size_t(c.element)];
+  }
+  if (instance.rotated) {
+    const dmat3& R = instance.rotation;
+    result.x = R * result.x;
+    result.dx = {R * result.dx[0], R * result.dx[1]};
+    result.dxx = R * result.dxx;
+    result.dxy = R * result.dxy;
+    result.dyy = R * result.dyy;
+  }
+  result.x += instance.translation;
+  return result;
+}
+
+PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
+  PatchJet3 j = jet3(elements(c).patches[std::size_t(c.element)], c.u, c.v);
+  const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
+  if (instance.rotated) {
+    for (dvec3* x :
+         {&j.S, &j.Su, &j.Sv, &j.Suu, &j.Suv, &j.Svv, &j.Suuu, &j.Suuv, &j.Suvv, &j.Svvv}) {
+      *x = instance.rotation * *x;
+    }
+  }
+  j.S += instance.translation;
+  return j;
+}
+
+Contact ContactGeometry::canonical(const Contact& c) const {
+  const auto at_vertex = [&](int vertex) {
+    return Contact{c.instance, SourceKind::vertex, vertex, 0, 0};
+  };
+  const auto on_piece = [&](int index, double t) {
+    const EdgePiece& piece = part(c).pieces()[std::size_t(index)];
+    if (t == 0 && piece.end_vertex[0] >= 0) return at_vertex(piece.end_vertex[0]);
+    if (t == 1 && piece.end_vertex[1] >= 0) return at_vertex(piece.end_vertex[1]);
+    return Contact{c.instance, SourceKind::edge, index, t, 0};
+  };
+  if (c.kind == SourceKind::vertex) return c;
+  if (c.kind == SourceKind::edge) return on_piece(c.element, c.u);
+  const Patch& patch = part(c).patches()[std::size_t(c.element)];
+  const std::array<bool, 4> at = {c.u == 0, c.u == 1, c.v == 0, c.v == 1};
+  for (const Side side : all_sides) {
+    const Border& border = patch.borders[std::size_t(side)];
+    if (at[std::size_t(side)] && border.kind == BorderKind::collapsed && border.vertex >= 0) {
+      return at_vertex(border.vertex);
+    }
+  }
+  if ((at[0] || at[1]) && (at[2] || at[3])) {
+    const int vertex = patch.corner_vertex[2 * std::size_t(at[1]) + std::size_t(at[3])];
+    if (vertex >= 0) return at_vertex(vertex);
+  }
+  for (const Side side : all_sides) {
+    const Border& border = patch.borders[std::size_t(side)];
+    if (!at[std::size_t(side)] || border.kind != BorderKind::edge || border.piece < 0) continue;
+    const double t = side == Side::u0 || side == Side::u1 ? c.v : c.u;
+    return on_piece(border.piece, border.piece_reversed ? 1 - t : t);
+  }
+  return c;
+}
+
+const std::vector<ContactGeometry::PieceSide>& ContactGeometry::sides(const Contact& c) const {
+  return elements(c).sides[std::size_t(c.element)];
+}
+
+const std::vector<ContactGeometry::PieceEnd>& ContactGeometry::ends(const Contact& c) const {
+  return elements(c).ends[std::size_t(c.element)];
+}
+
+}  // namespace taut

@@ -1,0 +1,233 @@
+#include "taut/hull/contact_system.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace taut {
+namespace {
+
+constexpr int max_unknowns = 2 + 2 * CommonSupport::capacity;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_unknowns,
+                             max_unknowns>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_unknowns, 1>;
+
+/// Two unit vectors that with n make a right-handed frame (Duff et al. 2017).
+std::array<dvec3, 2> tangent_frame(const dvec3& n) {
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1.0 / (sign + n.z);
+  const double b = n.x * n.y * a;
+  return {dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+          dvec3(b, sign + n.y * n.y * a, -n.y)};
+}
+
+/// The linearised equations of contacts at a direction. Unknowns: the coordinates of dn in the
+/// tangent frame, and for every parameter the length that the contact's point moves by.
+struct Linearized {
+  std::array<dvec3, 2> frame;
+  std::array<std::array<double, 2>, CommonSupport::capacity> scale{};  // |dx/da|
+  std::array<int, CommonSupport::capacity> first{};                    // unknown of each contact
+  Matrix matrix;
+  Vector right;
+  int unknowns = 2;
+  int rows = 0;
+
+  explicit Linearized(const CommonSupport& s) : frame(tangent_frame(s.n)) {
+    for (int i = 0; i < s.count; ++i) {
+      const auto k = std::size_t(i);
+      first[k] = unknowns;
+      unknowns += s.jet[k].dimension;
+      for (std::size_t a = 0; a < 2; ++a) {
+        const double length = glm::length(s.jet[k].dx[a]);
+        scale[k][a] = length > 0 ? length : 1;
+      }
+    }
+    matrix = Matrix::Zero(unknowns, unknowns);
+    right = Vector::Zero(unknowns);
+    for (int i = 0; i < s.count; ++i) add_stationary(s, i);
+    for (int i = 1; i < s.count; ++i) add_tie(s, i);
+  }
+
+  void add_direction(const dvec3& gradient) {
+    matrix(rows, 0) = glm::dot(gradient, frame[0]);
+    matrix(rows, 1) = glm::dot(gradient, frame[1]);
+  }
+  double& at(int contact, int parameter) {
+    return matrix(rows, first[std::size_t(contact)] + parameter);
+  }
+
+  void add_stationary(const CommonSupport& s, int i) {
+    const ContactJet& j = s.jet[std::size_t(i)];
+    const auto& size = scale[std::size_t(i)];
+    const double xx = glm::dot(j.dxx, s.n);
+    const double xy = glm::dot(j.dxy, s.n);
+    const double yy = glm::dot(j.dyy, s.n);
+    for (int a = 0; a < j.dimension; ++a) {
+      const double own = size[std::size_t(a)];
+      add_direction(j.dx[std::size_t(a)] / own);
+      at(i, 0) = (a == 0 ? xx : xy) / (own * size[0]);
+      if (j.dimension == 2) at(i, 1) = (a == 0 ? xy : yy) / (own * size[1]);
+      right[rows] = -glm::dot(j.dx[std::size_t(a)], s.n) / own;
+      ++rows;
+    }
+  }
+
+  void add_tie(const CommonSupport& s, int i) {
+    const dvec3 d = s.jet[0].x - s.jet[std::size_t(i)].x;
+    add_direction(d);
+    for (int a = 0; a < s.jet[0].dimension; ++a) {
+      at(0, a) = glm::dot(s.jet[0].dx[std::size_t(a)], s.n) / scale[0][std::size_t(a)];
+    }
+    for (int a = 0; a < s.jet[std::size_t(i)].dimension; ++a) {
+      at(i, a) = -glm::dot(s.jet[std::size_t(i)].dx[std::size_t(a)], s.n) /
+                 scale[std::size_t(i)][std::size_t(a)];
+    }
+    right[rows] = -glm::dot(d, s.n);
+    ++rows;
+  }
+
+  void add(const CommonSupport& s, const LinearEquation& e) {
+    add_direction(e.n);
+    for (int i = 0; i < s.count; ++i) {
+      const auto k = std::size_t(i);
+      for (int a = 0; a < s.jet[k].dimension; ++a) {
+        at(i, a) = e.parameter[k][a] / scale[k][std::size_t(a)];
+      }
+    }
+    right[rows] = -e.residual;
+    ++rows;
+  }
+
+  dvec3 direction(const Vector& x) const { return x[0] * frame[0] + x[1] * frame[1]; }
+  dvec2 parameters(const CommonSupport& s, const Vector& x, int i) const {
+    const auto k = std::size_t(i);
+    dvec2 change(0.0);
+    for (int a = 0; a < s.jet[k].dimension; ++a) {
+      change[a] = x[first[k] + a] / scale[k][std::size_t(a)];
+    }
+    return change;
+  }
+};
+
+}  // namespace
+
+CommonSupport::CommonSupport(const ContactGeometry& geometry, const Ruling& ruling) : n(ruling.n) {
+  for (const Contact& c : ruling.contact) add(geometry, c);
+}
+
+void CommonSupport::add(const ContactGeometry& geometry, const Contact& c) {
+  contact[std::size_t(count)] = c;
+  jet[std::size_t(count)] = geometry.jet(c);
+  ++count;
+}
+
+void CommonSupport::evaluate(const ContactGeometry& geometry) {
+  for (int i = 0; i < count; ++i) jet[std::size_t(i)] = geometry.jet(contact[std::size_t(i)]);
+}
+
+Ruling CommonSupport::ruling() const { return {n, {contact[0], contact[1]}, {jet[0].x, jet[1].x}}; }
+
+void LinearEquation::add_point(const CommonSupport& s, int i, const dvec3& g) {
+  const ContactJet& j = s.jet[std::size_t(i)];
+  parameter[std::size_t(i)] += dvec2(glm::dot(j.dx[0], g), glm::dot(j.dx[1], g));
+}
+
+std::optional<double> ContactSystem::step(CommonSupport& s, const LinearEquation* extra) const {
+  ++iterations_;
+  Linearized l(s);
+  if (extra != nullptr) l.add(s, *extra);
+  const Vector x = l.matrix.partialPivLu().solve(l.right);
+  const double length = x.norm();
+  if (!(length < step_bound)) return std::nullopt;
+  s.n = glm::normalize(s.n + l.direction(x));
+  for (int i = 0; i < s.count; ++i) {
+    const dvec2 change = l.parameters(s, x, i);
+    s.contact[std::size_t(i)].u += change.x;
+    s.contact[std::size_t(i)].v += change.y;
+  }
+  s.evaluate(geometry_);
+  return length;
+}
+
+double ContactSystem::residual(const CommonSupport& s) const {
+  const Linearized l(s);
+  return l.right.lpNorm<Eigen::Infinity>();
+}
+
+bool ContactSystem::solve(CommonSupport& s) const {
+  double last = infinity;
+  for (int k = 0; k < step_limit; ++k) {
+    const std::optional<double> length = step(s, nullptr);
+    if (!length) return false;
+    if (*length < converged_step || (*length<noise_step&& * length> 0.5 * last)) {
+      return residual(s) < residual_limit;
+    }
+    last = *length;
+  }
+  return false;
+}
+
+std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
+                                                   const CurveTangent* before) const {
+  const Linearized l(s);
+  // Across all rows of the system without its free one: the last column of Q in A^T = Q R.
+  const Matrix transposed = l.matrix.topRows(l.rows).transpose();
+  const Vector x = Eigen::HouseholderQR<Matrix>(transposed).householderQ() *
+                   Vector::Unit(l.unknowns, l.unknowns - 1);
+  CurveTangent t;
+  t.n = l.direction(x);
+  double square = glm::dot(t.n, t.n);
+  for (int i = 0; i < 2; ++i) {
+    const auto k = std::size_t(i);
+    t.parameter[k] = l.parameters(s, x, i);
+    t.x[k] = t.parameter[k].x * s.jet[k].dx[0] + t.parameter[k].y * s.jet[k].dx[1];
+    square += glm::dot(t.x[k], t.x[k]);
+  }
+  if (!(square > 0)) return std::nullopt;
+  double sign = 0;
+  if (before != nullptr) {
+    sign =
+        glm::dot(t.n, before->n) + glm::dot(t.x[0], before->x[0]) + glm::dot(t.x[1], before->x[1]);
+  } else {
+    sign = glm::dot(t.n, glm::cross(s.n, s.d()));
+  }
+  const double factor = std::copysign(1 / std::sqrt(square), sign);
+  t.n *= factor;
+  for (std::size_t k = 0; k < 2; ++k) {
+    t.parameter[k] *= factor;
+    t.x[k] *= factor;
+  }
+  return t;
+}
+
+Ruling ruling_between(const ContactSystem& system, const Ruling& from, const Ruling& to, double s) {
+  if (s <= 0) return from;
+  if (s >= 1) return to;
+  const auto mix = [&](double a, double b) { return (1 - s) * a + s * b; };
+  Ruling start = from;
+  start.n = glm::normalize((1 - s) * from.n + s * to.n);
+  for (std::size_t i = 0; i < 2; ++i) {
+    start.contact[i].u = mix(from.contact[i].u, to.contact[i].u);
+    start.contact[i].v = mix(from.contact[i].v, to.contact[i].v);
+  }
+  CommonSupport support(system.geometry(), start);
+  const bool merging = from.point[0] == from.point[1] || to.point[0] == to.point[1];
+  if (merging) return support.ruling();
+  const dvec3 dn = to.n - from.n;
+  const std::array<dvec3, 2> dx = {to.point[0] - from.point[0], to.point[1] - from.point[1]};
+  const double square = glm::dot(dn, dn) + glm::dot(dx[0], dx[0]) + glm::dot(dx[1], dx[1]);
+  if (square == 0) return from;
+  const bool solved = system.solve(support, [&](const CommonSupport& at) {
+    LinearEquation e;
+    e.n = dn / square;
+    e.residual = glm::dot(at.n - from.n, e.n) - s;
+    for (int i = 0; i < 2; ++i) {
+      const dvec3 g = dx[std::size_t(i)] / square;
+      e.residual += glm::dot(at.jet[std::size_t(i)].x - from.point[std::size_t(i)], g);
+      e.add_point(at, i, g);
+    }
+    return e;
+  });
+  return solved ? support.ruling() : CommonSupport(system.geometry(), start).ruling();
+}
+
+}  // namespace taut

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "taut/hull/contact_geometry.h"
+#include "taut/hull/hull_boundary.h"
+
+namespace taut {
+
+/// Contacts that are to support at one common direction, with their jets.
+struct CommonSupport {
+  static constexpr int capacity = 3;
+
+  dvec3 n = dvec3(0.0);
+  int count = 0;
+  std::array<Contact, capacity> contact;
+  std::array<ContactJet, capacity> jet;
+
+  CommonSupport() = default;
+  CommonSupport(const ContactGeometry& geometry, const Ruling& ruling);
+  void add(const ContactGeometry& geometry, const Contact& c);
+  void evaluate(const ContactGeometry& geometry);
+
+  dvec3 d() const { return jet[0].x - jet[1].x; }
+  Ruling ruling() const;
+};
+
+/// One more equation, linearised: residual + n . dn + sum_i parameter[i] . d(u_i, v_i) = 0.
+struct LinearEquation {
+  double residual = 0;
+  dvec3 n = dvec3(0.0);
+  std::array<dvec2, CommonSupport::capacity> parameter = {dvec2(0.0), dvec2(0.0), dvec2(0.0)};
+
+  /// Of the point of contact i: adds the gradient g . dx.
+  void add_point(const CommonSupport& s, int i, const dvec3& g);
+};
+
+/// Rates of change along a separating curve of two contacts, of unit length in (n, x_0, x_1).
+struct CurveTangent {
+  dvec3 n = dvec3(0.0);
+  std::array<dvec2, 2> parameter = {dvec2(0.0), dvec2(0.0)};
+  std::array<dvec3, 2> x = {dvec3(0.0), dvec3(0.0)};
+};
+
+/// The system of equations of contacts that support together:
+///     dx_i/da . n = 0  for every parameter a of every contact,   (x_0 - x_i) . n = 0,
+/// in the unknown parameters and n on the unit sphere. It is regular where the contacts' dual
+/// formulation divides by small curvatures (mathematics: dual formulation, conditioning): two
+/// contacts trace a curve, three meet in isolated directions.
+class ContactSystem {
+ public:
+  explicit ContactSystem(const ContactGeometry& geometry) : geometry_(geometry) {}
+
+  const ContactGeometry& geometry() const { return geometry_; }
+
+  /// Newton's method from `s`; `equation(s)` gives the equation that two contacts leave open.
+  /// False if it does not converge, `s` is of no use then.
+  template <class Equation>
+  bool solve(CommonSupport& s, Equation equation) const {
+    double last = infinity;
+    for (int k = 0; k < step_limit; ++k) {
+      const LinearEquation extra = equation(s);
+      const std::optional<double> length = step(s, &extra);
+      if (!length) return false;
+      if (*length < converged_step || (*length<noise_step&& * length> 0.5 * last)) {
+        return residual(s) < residual_limit;
+      }
+      last = *length;
+    }
+    return false;
+  }
+  /// The same of three contacts.
+  bool solve(CommonSupport& s) const;
+
+  /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1) or, where n turns
+  /// too little to tell, on as `before` does; none where the system is singular.
+  std::optional<CurveTangent> tangent(const CommonSupport& s, const CurveTangent* before) const;
+
+  long iterations() const { return iterations_; }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr int step_limit = 20;
+  static constexpr double step_bound = 0.7;
+  static constexpr double converged_step = 1e-11;
+  static constexpr double noise_step = 1e-7;
+  static constexpr double residual_limit = 1e-13;
+
+  std::optional<double> step(CommonSupport& s, const LinearEquation* extra) const;
+  double residual(const CommonSupport& s) const;
+
+  const ContactGeometry& geometry_;
+  mutable long iterations_ = 0;
+};
+
+/// The ruling of a piece of a separating curve between two neighbouring rulings, exact to rounding:
+/// at s in [0, 1] it is the one in the plane, across the chord from `from` to `to` in the space of
+/// (n, point 0, point 1), that divides the chord in the ratio s. Smooth in s; s = 0 and 1 give the
+/// two themselves. Where they merge into a free end (a ruling of length zero) it is interpolated.
+/// @pre the two have the same elements
+Ruling ruling_between(const ContactSystem& system, const Ruling& from, const Ruling& to, double s);
+
+}  // namespace taut

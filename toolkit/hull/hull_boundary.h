@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "taut/bounds/scene.h"
+#include "taut/hull/hull_mesh.h"
+
+namespace taut {
+
+/// A direction at which two contacts support at once, and the segment between them.
+struct Ruling {
+  dvec3 n = dvec3(0.0);  ///< unit, outward
+  std::array<Contact, 2> contact;
+  std::array<dvec3, 2> point = {dvec3(0.0), dvec3(0.0)};  ///< in the scene's frame
+};
+
+/// Part of a separating curve along which each of its two contacts stays in one element: a Bezier
+/// patch, a piece of an edge or a vertex. Both bounding elements are closed, so contacts may lie on
+/// their borders at the ends.
+struct ArcPiece {
+  /// In order, at least two. Where seen from outside of the sphere of directions, those supported
+  /// by contact 0 lie to the right, those supported by contact 1 to the left.
+  std::vector<Ruling> rulings;
+};
+
+/// A separating curve between two of its ends: a closed one has none (the last ruling of its last
+/// piece has the n of the first of its first). Consecutive pieces share n and points where they
+/// meet, not the element in which one of the contacts is expressed.
+struct SeparatingArc {
+  std::vector<ArcPiece> pieces;
+  bool closed = false;
+  /// The facet (number of its face in HullBoundary) in which it begins and ends; -1: the two
+  /// contacts merge there in a free end, at which the last ruling has length zero.
+  std::array<int, 2> facet = {-1, -1};
+};
+
+/// A stretch of consecutive pieces of an arc; of a closed arc it may run over its end. @c count
+/// pieces, the first is @c first, modulo their number.
+struct ArcRange {
+  int arc = -1;
+  int first = 0;
+  int count = 0;
+};
+
+enum class HullCurveKind {
+  bitangent,  ///< between a patch and a scroll
+  edge,       ///< on an edge of the model: a crease of the hull, or the border of a patch
+  join,       ///< between two patches, where two source faces meet smoothly
+  ruling,     ///< a segment: the end of a scroll, or between two facets
+};
+
+/// A curve of the hull's boundary: a maximal one along which its kind and its two faces stay the
+/// same.
+struct HullCurve {
+  HullCurveKind kind = HullCurveKind::ruling;
+  /// Numbers of faces: to the left and to the right of the curve, seen from outside. May be equal.
+  std::array<int, 2> faces = {-1, -1};
+  /// Points along it from its beginning to its end, in the scene's frame; the first one again at
+  /// the end of a closed curve. Dense enough that the curve is smooth between them.
+  std::vector<dvec3> points;
+  bool closed = false;
+  /// edge: the model's edge (Model::source). Else -1.
+  int source = -1;
+};
+
+/// A directed stretch of the outline of a region in a Bezier patch's parameters: the trace of a
+/// contact along a piece of an arc, or a stretch of the patch's border.
+struct TrimStretch {
+  /// The piece and which of its contacts lies in the patch, `reversed` if passed backwards; arc -1:
+  /// a stretch of the border.
+  int arc = -1;
+  int piece = -1;
+  int contact = 0;
+  bool reversed = false;
+  /// The border's free parameter, from .. to (from > to: backwards).
+  Side side = Side::u0;
+  double from = 0;
+  double to = 0;
+  /// The hull's curve that it is part of; -1 on seams within a source face and collapsed sides.
+  int curve = -1;
+};
+
+/// A connected part of a Bezier patch that lies on the hull, [0, 1]^2 in its parameters at most.
+struct PatchRegion {
+  int instance = -1;
+  int patch = -1;
+  /// The outward normal is along sign * (Su x Sv).
+  int sign = 1;
+  /// Closed loops of stretches, each beginning where the one before it ends, with the region to the
+  /// left in the (u, v) plane.
+  std::vector<std::vector<TrimStretch>> loops;
+};
+
+/// A face of the hull's boundary.
+struct HullFace {
+  FaceKind kind = FaceKind::facet;
+  /// Source that it lies on, -1 if none.
+  int source = -1;
+  /// patch: its parts on Bezier patches.
+  std::vector<PatchRegion> regions;
+  /// patch: its outlines, as curves (number, +1 along it or -1 against), the patch to the left seen
+  /// from outside.
+  std::vector<std::vector<std::pair<int, int>>> loops;
+  /// scroll: its rulings.
+  ArcRange scroll;
+  /// scroll: the curves along contacts 0 and 1, in order; none along a vertex.
+  std::array<std::vector<int>, 2> scroll_curves;
+  /// facet: the supporting plane x . n = offset, in the scene's frame, and its contacts,
+  /// counter-clockwise from outside, with their points.
+  dvec3 n = dvec3(0.0);
+  double offset = 0;
+  std::vector<Contact> contacts;
+  std::vector<dvec3> points;
+};
+
+/// A spot that could not be resolved, with the reason.
+struct Unresolved {
+  dvec3 n = dvec3(0.0);
+  const char* reason = "";
+};
+
+/// The exact boundary of a convex hull: trimmed patches of the model, developable scrolls and flat
+/// facets, joined by curves. Complete if nothing is unresolved; otherwise faces may be missing, and
+/// curves have -1 for those.
+struct HullBoundary {
+  std::vector<SeparatingArc> arcs;
+  std::vector<HullFace> faces;
+  std::vector<HullCurve> curves;
+  std::vector<Unresolved> unresolved;
+
+  int count(FaceKind kind) const {
+    int n = 0;
+    for (const HullFace& face : faces) n += face.kind == kind ? 1 : 0;
+    return n;
+  }
+};
+
+}  // namespace taut
