@@ -183,14 +183,13 @@ std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
     square += glm::dot(t.x[k], t.x[k]);
   }
   if (!(square > 0)) return std::nullopt;
-  double sign = 0;
-  if (before != nullptr) {
-    sign =
+  const double size = std::sqrt(square);
+  double sense = glm::dot(t.n, unit(glm::cross(s.n, s.d()))) / size;
+  if (before != nullptr && std::abs(sense) < least_turn) {
+    sense =
         glm::dot(t.n, before->n) + glm::dot(t.x[0], before->x[0]) + glm::dot(t.x[1], before->x[1]);
-  } else {
-    sign = glm::dot(t.n, glm::cross(s.n, s.d()));
   }
-  const double factor = std::copysign(1 / std::sqrt(square), sign);
+  const double factor = std::copysign(1 / size, sense);
   t.n *= factor;
   for (std::size_t k = 0; k < 2; ++k) {
     t.parameter[k] *= factor;
