@@ -28,6 +28,10 @@ constexpr double correction_limit = 0.15;
 constexpr double merge_distance = 4e-3;
 /// Margins below this are crossed.
 constexpr double margin_slack = 1e-12;
+/// Turn of n by the first step away from a pole.
+constexpr double pole_step = 1e-3;
+/// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
+constexpr double border_slack = 1e-9;
 constexpr int step_limit = 20000;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
@@ -41,8 +45,14 @@ struct Event {
 
 class Trace {
  public:
-  Trace(const ContactSystem& system, SupportQuery& query, const CommonSupport& start)
-      : system_(system), geometry_(system.geometry()), query_(query), start_(start), at_(start) {}
+  Trace(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
+        std::span<const Landmark> landmarks)
+      : system_(system),
+        geometry_(system.geometry()),
+        query_(query),
+        landmarks_(landmarks),
+        start_(start),
+        at_(start) {}
 
   TracedArc run(const Progress& progress);
 
@@ -69,8 +79,14 @@ class Trace {
   double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
     return exit_margin(geometry_, s, contact, exit).residual;
   }
+  /// A contact that the step takes across a pole, or -1, and the side.
+  std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
+  bool pass_pole(int contact, Side side, double length);
+  bool leave_pole();
+  bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
   bool merge();
+  bool settle();
   void begin_piece();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
   TracedArc lost(const char* reason) {
@@ -82,6 +98,7 @@ class Trace {
   const ContactSystem& system_;
   const ContactGeometry& geometry_;
   SupportQuery& query_;
+  std::span<const Landmark> landmarks_;
   CommonSupport start_;
   CommonSupport at_;
   CurveTangent tangent_;
@@ -164,6 +181,158 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
   return first;
 }
 
+std::pair<int, Side> Trace::pole_crossed(const CommonSupport& next) const {
+  for (int i = 0; i < 2; ++i) {
+    for (const ContactExit& exit : exits_[std::size_t(i)]) {
+      if (exit.kind != ContactExit::Kind::side) continue;
+      const Side side = all_sides[std::size_t(exit.index)];
+      if (is_pole(geometry_, next.contact[std::size_t(i)], side) && margin(next, i, exit) < 0) {
+        return {i, side};
+      }
+    }
+  }
+  return {-1, Side::u0};
+}
+
+/// A contact at the pole of its side, at the same parameter along the side.
+Contact at_pole(Contact c, Side side) {
+  (side == Side::u0 || side == Side::u1 ? c.u : c.v) = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  return c;
+}
+
+/// Goes to a pole, where the patch's parameters fail, if the curve does so to within support_tie,
+/// and on beyond it.
+bool Trace::pass_pole(int contact, Side side, double length) {
+  const auto i = std::size_t(contact);
+  const std::size_t other = 1 - i;
+  CommonSupport pole = at_;
+  pole.contact[i] = at_pole(at_.contact[i], side);
+  pole.n = unit_normal(geometry_, pole.contact[i]);
+  if (glm::dot(pole.n, at_.n) < 0) pole.n = -pole.n;
+  const std::optional<Contact> c = climbed(geometry_, at_.contact[other], pole.n);
+  if (!c || !same_element(*c, at_.contact[other])) return false;
+  pole.contact[other] = *c;
+  pole.evaluate(geometry_);
+  const double ahead = length_to(pole);
+  if (std::abs(glm::dot(pole.d(), pole.n)) > support_tie || ahead < 0 || ahead > 2 * length ||
+      query_(pole.n, pole.contact[i]).h > glm::dot(pole.jet[i].x, pole.n) + support_tie) {
+    return false;
+  }
+  at_ = pole;
+  push(at_);
+  return leave_pole();
+}
+
+/// From a common support with contacts at poles, the first step away from it, in a piece of its
+/// own.
+bool Trace::leave_pole() {
+  const dvec3 along = unit(glm::cross(at_.n, at_.d()));
+  CommonSupport next = at_;
+  next.n = glm::normalize(at_.n + pole_step * along);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool pole = pole_side(geometry_, at_.contact[i]).has_value();
+    const std::optional<Contact> c = pole ? beside_pole(geometry_, at_.contact[i], next.n)
+                                          : climbed(geometry_, at_.contact[i], next.n);
+    if (!c) return false;
+    next.contact[i] = *c;
+  }
+  next.evaluate(geometry_);
+  const dvec3 n = at_.n;
+  const auto corrected = [&] {
+    return system_.solve(next, [&](const CommonSupport& now) {
+      LinearEquation e;
+      e.residual = glm::dot(now.n - n, along) - pole_step;
+      e.n = along;
+      return e;
+    });
+  };
+  if (!corrected()) return false;
+  bool moved = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& own = next.contact[i];
+    const Contact inside{own.instance, own.kind, own.element, std::clamp(own.u, 0.0, 1.0),
+                         std::clamp(own.v, 0.0, 1.0)};
+    if (inside.u == own.u && inside.v == own.v) continue;
+    // Beyond the border of a patch about the pole.
+    const std::optional<Contact> c = climbed(geometry_, inside, next.n);
+    if (!c) return false;
+    own = *c;
+    moved = true;
+  }
+  next.evaluate(geometry_);
+  if ((moved && !corrected()) ||
+      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + support_tie) {
+    return false;
+  }
+  const CommonSupport pole = at_;
+  at_ = next;
+  tangent_ = CurveTangent();
+  if (!settle()) return false;
+  next = at_;
+  at_ = pole;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!pole_side(geometry_, at_.contact[i])) {
+      if (!same_element(at_.contact[i], next.contact[i])) return false;
+      continue;
+    }
+    // The pole as the patch that the contact moves into has it.
+    Contact& c = at_.contact[i];
+    c = next.contact[i];
+    for (const Side own : all_sides) {
+      const Contact there = at_pole(c, own);
+      if (is_pole(geometry_, c, own) &&
+          glm::distance(geometry_.point(there), pole.jet[i].x) < same_contact) {
+        c = there;
+        break;
+      }
+    }
+  }
+  at_.evaluate(geometry_);
+  begin_piece();
+  at_ = next;
+  push(at_);
+  return true;
+}
+
+/// Ends the arc in a landmark that lies within the step.
+bool Trace::arrives(const Landmark& landmark, double length) {
+  if (glm::distance(landmark.n, at_.n) > 1.5 * length) return false;
+  CommonSupport end = at_;
+  end.n = landmark.n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto nearest =
+        std::min_element(landmark.facet.points.begin(), landmark.facet.points.end(),
+                         [&](const dvec3& p, const dvec3& q) {
+                           return glm::distance(p, at_.jet[i].x) < glm::distance(q, at_.jet[i].x);
+                         });
+    const Contact& c =
+        landmark.facet.contacts[std::size_t(nearest - landmark.facet.points.begin())];
+    if (pole_side(geometry_, c)) {
+      for (const Side side : all_sides) {
+        if (!is_pole(geometry_, at_.contact[i], side)) continue;
+        const Contact pole = at_pole(at_.contact[i], side);
+        if (glm::distance(geometry_.point(pole), *nearest) < same_contact) end.contact[i] = pole;
+      }
+    } else {
+      const std::optional<Contact> there = climbed(geometry_, at_.contact[i], landmark.n);
+      if (!there || !same_element(*there, at_.contact[i])) return false;
+      end.contact[i] = *there;
+    }
+    if (glm::distance(geometry_.point(end.contact[i]), *nearest) > same_contact) return false;
+  }
+  end.evaluate(geometry_);
+  const double ahead = length_to(end);
+  if (ahead <= margin_slack || ahead > length + margin_slack ||
+      distance_to(end) > (1 + correction_limit) * length) {
+    return false;
+  }
+  push(end);
+  arc_.end = TracedArc::End::plane;
+  arc_.n = landmark.n;
+  arc_.contacts = landmark.facet.contacts;
+  return true;
+}
+
 bool Trace::is_closing(const CommonSupport& next, double length) const {
   const double ahead = length_to(start_);
   if (ahead <= margin_slack || ahead > length_to(next) + margin_slack) return false;
@@ -189,10 +358,7 @@ bool Trace::merge() {
   const double squared = rho * rho / (other * other - rho * rho);
   Ruling end = last;
   end.n = last.n + squared * (last.n - before->n);
-  const auto same = [](const Contact& a, const Contact& b) {
-    return a.instance == b.instance && a.kind == b.kind && a.element == b.element;
-  };
-  const bool one_element = same(last.contact[0], last.contact[1]);
+  const bool one_element = same_element(last.contact[0], last.contact[1]);
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = end.contact[i];
     const auto extrapolated = [&](double Contact::*t) {
@@ -207,6 +373,7 @@ bool Trace::merge() {
     c.u = extrapolated(&Contact::u);
     c.v = extrapolated(&Contact::v);
   }
+  move_together(geometry_, end.contact[0], end.contact[1]);
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
@@ -237,6 +404,45 @@ bool Trace::merge() {
   return true;
 }
 
+/// Where a contact moves along a smooth join, it is told as one of the patch into which its region
+/// extends. Sets the tangent anew; false if there is none.
+bool Trace::settle() {
+  const CurveTangent* before = tangent_.n == dvec3(0.0) ? nullptr : &tangent_;
+  const std::optional<CurveTangent> t = system_.tangent(at_, before);
+  if (!t) return false;
+  tangent_ = *t;
+  bool changed = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact c = at_.contact[i];
+    if (c.kind != SourceKind::face) continue;
+    for (const ContactExit& exit : exits(geometry_, c)) {
+      const LinearEquation e = exit_margin(geometry_, at_, int(i), exit);
+      const double along = glm::dot(e.parameter[i], tangent_.parameter[i]);
+      if (std::abs(e.residual) > border_slack || std::abs(along) > border_slack) continue;
+      // How the contact moves where the direction turns into its own region.
+      const ContactJet& j = at_.jet[i];
+      const dvec3 inward = i == 0 ? at_.d() : -at_.d();
+      const double uu = glm::dot(j.dxx, at_.n);
+      const double uv = glm::dot(j.dxy, at_.n);
+      const double vv = glm::dot(j.dyy, at_.n);
+      const double det = uu * vv - uv * uv;
+      const dvec2 slope(glm::dot(j.dx[0], inward), glm::dot(j.dx[1], inward));
+      const dvec2 rate = dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
+      if (!(det > 0) || glm::dot(e.parameter[i], rate) >= 0) continue;
+      const std::optional<Contact> over = beyond(geometry_, c, exit);
+      if (!over || over->kind != SourceKind::face) continue;
+      at_.contact[i] = *over;
+      changed = true;
+      break;
+    }
+  }
+  if (!changed) return true;
+  at_.evaluate(geometry_);
+  const std::optional<CurveTangent> again = system_.tangent(at_, before);
+  if (again) tangent_ = *again;
+  return again.has_value();
+}
+
 void Trace::begin_piece() {
   if (!arc_.pieces.empty() && arc_.pieces.back().rulings.size() < 2) arc_.pieces.pop_back();
   arc_.pieces.emplace_back();
@@ -245,10 +451,12 @@ void Trace::begin_piece() {
 }
 
 TracedArc Trace::run(const Progress& progress) {
-  const std::optional<CurveTangent> first = system_.tangent(at_, nullptr);
-  if (!first) return lost("a separating curve has no tangent");
-  tangent_ = *first;
-  begin_piece();
+  if (pole_side(geometry_, at_.contact[0]) || pole_side(geometry_, at_.contact[1])) {
+    if (!leave_pole()) return lost("a separating curve cannot be followed from a pole");
+  } else {
+    if (!settle()) return lost("a separating curve has no tangent");
+    begin_piece();
+  }
   double step = first_step;
   int idle = 0;
   for (int k = 0; k < step_limit; ++k) {
@@ -263,6 +471,9 @@ TracedArc Trace::run(const Progress& progress) {
       }
       step = -0.5 * apart / rate;
     }
+    for (const Landmark& landmark : landmarks_) {
+      if (arrives(landmark, step)) return std::move(arc_);
+    }
     std::optional<CommonSupport> next = stepped(step);
     std::optional<CurveTangent> turned;
     if (next) turned = system_.tangent(*next, &tangent_);
@@ -276,6 +487,13 @@ TracedArc Trace::run(const Progress& progress) {
     if (!turned) {
       step *= 0.5;
       if (step < shortest_step) return lost("a separating curve cannot be followed");
+      continue;
+    }
+    if (const auto [contact, side] = pole_crossed(*next); contact >= 0) {
+      if (!pass_pole(contact, side, step)) {
+        step *= 0.5;
+        if (step < shortest_step) return lost("a separating curve cannot be followed past a pole");
+      }
       continue;
     }
     const std::optional<Event> event = first_event(*next, step);
@@ -295,7 +513,8 @@ TracedArc Trace::run(const Progress& progress) {
         arc_.pieces.back().rulings.pop_back();
       push(*plane);
       arc_.end = TracedArc::End::plane;
-      arc_.plane = *plane;
+      arc_.n = plane->n;
+      arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
       return std::move(arc_);
     }
     if (closing) {
@@ -322,15 +541,14 @@ TracedArc Trace::run(const Progress& progress) {
       if (!over) return lost("a separating curve passes through a pole");
       at_.contact[i] = *over;
       at_.evaluate(geometry_);
+      if (!settle()) return lost("a separating curve has no tangent");
       begin_piece();
-      turned = system_.tangent(at_, &tangent_);
-      if (!turned) return lost("a separating curve has no tangent");
       step = std::max(0.5 * step, shortest_step);
     } else {
+      tangent_ = *turned;
       if (cosine > turn_small) step *= growth;
       step = std::min(longest_step, step);
     }
-    tangent_ = *turned;
   }
   return lost("a separating curve has no end");
 }
@@ -338,8 +556,8 @@ TracedArc Trace::run(const Progress& progress) {
 }  // namespace
 
 TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
-                    const Progress& progress) {
-  return Trace(system, query, start).run(progress);
+                    std::span<const Landmark> landmarks, const Progress& progress) {
+  return Trace(system, query, start, landmarks).run(progress);
 }
 
 }  // namespace taut

@@ -72,6 +72,59 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
+/// The contact moved to the side or end at which the exit lies.
+Contact at_exit(Contact c, const ContactExit& exit) {
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    (across_u(side) ? c.u : c.v) = at_end(side) ? 1 : 0;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    c.u = exit.index;
+  }
+  return c;
+}
+
+/// A contact whose parameter is so near to a collapsed side is at the pole.
+constexpr double pole_parameter = 1e-9;
+/// Parameters about a pole that are tried for the steepest way up, a patch.
+constexpr int pole_samples = 8;
+/// How far from a pole a climb begins at most.
+constexpr double off_pole = 0.3;
+/// A contact is at a pole for good if n is the pole's normal to within this.
+constexpr double pole_angle = 1e-8;
+
+/// From a pole whose normal is not n, a start of a climb on the steepest way up among all patches
+/// about it, at the maximum of the parabola along it. None at a vertex of another kind, and where
+/// no way leads up.
+std::optional<Contact> way_off_pole(const ContactGeometry& geometry, const Contact& c,
+                                    const dvec3& n) {
+  const dvec3 x = geometry.point(c);
+  const std::vector<Patch>& patches = geometry.part(c).patches();
+  std::optional<Contact> best;
+  double steepest = 0;
+  for (int p = 0; p < int(patches.size()); ++p) {
+    for (const Side side : all_sides) {
+      if (!is_pole(geometry, {c.instance, SourceKind::face, p, 0, 0}, side)) continue;
+      if (glm::distance(geometry.point(on_side(c.instance, p, side, 0.5)), x) > join_distance) {
+        continue;
+      }
+      for (int k = 0; k <= pole_samples; ++k) {
+        Contact at = on_side(c.instance, p, side, double(k) / pole_samples);
+        const ContactJet j = geometry.jet(at);
+        const dvec3 away = inward(j, side);
+        const double slope = elevation(away, n);
+        if (slope <= steepest) continue;
+        const double second = glm::dot(across_u(side) ? j.dxx : j.dyy, n);
+        const double rise = glm::dot(away, n);
+        const double step = second < 0 ? std::min(-rise / second, off_pole) : off_pole;
+        (across_u(side) ? at.u : at.v) = at_end(side) ? 1 - step : step;
+        steepest = slope;
+        best = at;
+      }
+    }
+  }
+  return best;
+}
+
 /// Climbs; one element at a time.
 class Climb {
  public:
@@ -96,6 +149,9 @@ class Climb {
   static constexpr double short_step = 1e-13;
   /// Slopes below this are rounding.
   static constexpr double flat = 1e-13;
+  /// Beside the tangents' own length: those about a pole are as short as they like, their rounding
+  /// is not.
+  static constexpr double small_tangent = 0.01;
   /// Share of a patch that steps may take where the value is not concave.
   static constexpr double stride = 0.2;
 
@@ -111,18 +167,12 @@ class Climb {
     const dvec2 slope(glm::dot(j.dx[0], n_), glm::dot(j.dx[1], n_));
     const dvec2 size(glm::length(j.dx[0]), glm::length(j.dx[1]));
     dvec2 at(c_.u, c_.v);
-    std::array<bool, 2> held = {false, false};
     for (int a = 0; a < 2; ++a) {
-      const bool low = at[a] <= 0 && slope[a] < -flat * size[a];
-      const bool high = at[a] >= 1 && slope[a] > flat * size[a];
+      const bool low = at[a] <= 0 && slope[a] < -flat * (size[a] + small_tangent);
+      const bool high = at[a] >= 1 && slope[a] > flat * (size[a] + small_tangent);
       if (!low && !high) continue;
       const Side side = a == 0 ? (low ? Side::u0 : Side::u1) : (low ? Side::v0 : Side::v1);
-      const Border& border =
-          geometry_.part(c_).patches()[std::size_t(c_.element)].borders[std::size_t(side)];
-      if (border.kind == BorderKind::collapsed && border.vertex < 0) {
-        held[std::size_t(a)] = true;  // a pole: it may be left along the other parameter
-        continue;
-      }
+      if (is_pole(geometry_, c_, side)) return off_the_pole();
       return leave({ContactExit::Kind::side, int(side)});
     }
     const double uu = glm::dot(j.dxx, n_);
@@ -130,34 +180,61 @@ class Climb {
     const double vv = glm::dot(j.dyy, n_);
     dvec2 step(0.0);
     const double det = uu * vv - uv * uv;
-    if (!held[0] && !held[1] && uu < 0 && det > 0) {
+    if (uu < 0 && det > 0) {
       step = {(uv * slope.y - vv * slope.x) / det, (uv * slope.x - uu * slope.y) / det};
     } else {
       for (int a = 0; a < 2; ++a) {
-        if (held[std::size_t(a)] || size[a] == 0) continue;
+        if (size[a] == 0) continue;
         const double second = a == 0 ? uu : vv;
         step[a] = second < 0
                       ? -slope[a] / second
                       : std::copysign(std::min(stride, std::abs(slope[a]) / size[a]), slope[a]);
       }
     }
-    if (glm::length(step * size) <= short_step) return Progress::arrived;
+    if (glm::length(step * size) <= short_step) {
+      return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
+    }
     const double longest = std::max(std::abs(step.x), std::abs(step.y));
     if (longest > 0.5) step *= 0.5 / longest;
     double share = 1;
     for (int a = 0; a < 2; ++a) {
-      const double room = step[a] < 0 ? at[a] : 1 - at[a];
+      const double room = room_for(a, step[a]);
       if (std::abs(step[a]) > room) share = std::min(share, room / std::abs(step[a]));
     }
     for (int a = 0; a < 2; ++a) {
-      const double room = step[a] < 0 ? at[a] : 1 - at[a];
+      const double room = room_for(a, step[a]);
       const bool meets = std::abs(step[a]) * share >= room && std::abs(step[a]) > room;
-      at[a] = meets ? (step[a] < 0 ? 0.0 : 1.0) : std::clamp(at[a] + share * step[a], 0.0, 1.0);
+      at[a] = meets && !at_pole(a, step[a]) ? (step[a] < 0 ? 0.0 : 1.0)
+                                            : std::clamp(at[a] + share * step[a], 0.0, 1.0);
     }
     const bool still = share * glm::length(step * size) <= short_step;
     c_.u = at.x;
     c_.v = at.y;
     return still && ++stuck_ > 4 ? Progress::lost : Progress::moved;
+  }
+
+  /// At a pole: arrived, unless it is not the maximum.
+  Progress off_the_pole() {
+    if (left_pole_) return Progress::lost;
+    const dvec3 normal = unit_normal(geometry_, c_);
+    if (glm::length(glm::cross(normal, n_)) < pole_angle) return Progress::arrived;
+    const std::optional<Contact> start = way_off_pole(geometry_, c_, n_);
+    if (!start) return Progress::lost;
+    left_pole_ = true;
+    c_ = *start;
+    return Progress::moved;
+  }
+  bool at_pole(int parameter, double step) const {
+    const Side side =
+        parameter == 0 ? (step < 0 ? Side::u0 : Side::u1) : (step < 0 ? Side::v0 : Side::v1);
+    return is_pole(geometry_, c_, side);
+  }
+  /// How far a step may go: to the border, but only most of the way to a pole, where the parameters
+  /// fail.
+  double room_for(int parameter, double step) const {
+    const double at = parameter == 0 ? c_.u : c_.v;
+    const double room = step < 0 ? at : 1 - at;
+    return at_pole(parameter, step) ? 0.95 * room : room;
   }
 
   Progress on_edge() {
@@ -198,6 +275,7 @@ class Climb {
   Contact c_;
   dvec3 n_;
   int stuck_ = 0;
+  bool left_pole_ = false;
 };
 
 }  // namespace
@@ -269,6 +347,49 @@ std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
     }
   }
   return std::nullopt;
+}
+
+bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side) {
+  const Border& border =
+      geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+  return border.kind == BorderKind::collapsed && border.vertex < 0;
+}
+
+dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c) {
+  const BezierPatch& patch = geometry.part(c).patches()[std::size_t(c.element)].bezier;
+  return geometry.to_frame(c.instance, unit_normal(patch, c.u, c.v));
+}
+
+std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const double t = across_u(side) ? c.u : c.v;
+    if ((at_end(side) ? 1 - t : t) < pole_parameter && is_pole(geometry, c, side)) return side;
+  }
+  return std::nullopt;
+}
+
+std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
+                                   const dvec3& n) {
+  const std::optional<Contact> start = way_off_pole(geometry, pole, n);
+  return start ? climbed(geometry, *start, n) : std::nullopt;
+}
+
+void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
+  const auto moved = [&](Contact& from, Contact& to) {
+    for (const ContactExit& exit : exits(geometry, from)) {
+      if (exit.kind == ContactExit::Kind::face || exit.kind == ContactExit::Kind::edge) continue;
+      const Contact border = at_exit(from, exit);
+      const std::optional<Contact> over = beyond(geometry, border, exit);
+      if (!over || over->kind != to.kind || over->element != to.element) continue;
+      from = border;
+      to = *over;
+      return true;
+    }
+    return false;
+  };
+  if (a.instance != b.instance || (a.kind == b.kind && a.element == b.element)) return;
+  if (!moved(a, b)) moved(b, a);
 }
 
 std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {

@@ -33,6 +33,25 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
                               const ContactExit& exit);
 
+/// A side collapsed to a point at which the surface is smooth.
+bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side);
+
+/// The side at whose pole the contact lies, if it does; parameters fail there.
+std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c);
+
+/// The outward normal in the direction of Su x Sv at the contact, in the scene's frame; at a pole
+/// the limit. Zero where there is none.
+dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c);
+
+/// The contact about the pole, in whichever patch, that supports locally in a direction near the
+/// pole's normal. @pre the contact lies at a pole
+std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
+                                   const dvec3& n);
+
+/// Two neighbouring elements' contacts that are about to merge, moved onto the border between them;
+/// as they are where there is none.
+void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
+
 /// The local maximum of x . n that a climb from the contact leads to, over smooth joins, onto and
 /// off edges and vertices. None where the climb gets lost.
 std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n);

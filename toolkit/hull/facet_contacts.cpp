@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "taut/hull/contact_exits.h"
 
@@ -15,6 +16,9 @@ constexpr int exchange_limit = 16;
 /// times distance, much more than support_tie; a contact that loses in the plane itself by more
 /// than that stays hidden.
 constexpr double side_turn = 1e-6;
+
+/// Directions turned all around: any other contact is within 60 degrees of one of three.
+constexpr int all_around = 3;
 
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_slack = 1e-9;
@@ -64,33 +68,51 @@ std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQu
 }
 
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
-                                            const CommonSupport& plane) {
+                                            const dvec3& n, const std::vector<Contact>& known) {
   FacetContacts f;
-  for (std::size_t i = 0; i < 3; ++i) {
-    f.contacts.push_back(clamped(plane.contact[i]));
-    f.points.push_back(plane.jet[i].x);
-  }
-  const dvec3& n = plane.n;
-  if (glm::dot(glm::cross(f.points[1] - f.points[0], f.points[2] - f.points[0]), n) < 0) {
-    std::swap(f.contacts[1], f.contacts[2]);
-    std::swap(f.points[1], f.points[2]);
+  const auto add = [&](std::size_t place, const Contact& c, const dvec3& x) {
+    f.contacts.insert(f.contacts.begin() + std::ptrdiff_t(place), c);
+    f.points.insert(f.points.begin() + std::ptrdiff_t(place), x);
+  };
+  for (const Contact& c : known) add(f.points.size(), clamped(c), geometry.point(clamped(c)));
+  if (known.empty()) {
+    const Support top = query(n);
+    add(0, geometry.canonical(top.contact), top.point);
   }
   const double h = glm::dot(f.points[0], n);
-  for (std::size_t i = 0; i < f.points.size();) {
-    if (f.points.size() > facet_corner_limit) return std::nullopt;
-    const dvec3& a = f.points[i];
-    const dvec3& b = f.points[(i + 1) % f.points.size()];
-    const dvec3 outward = unit(glm::cross(b - a, n));
-    const Support s = query(glm::normalize(n + side_turn * outward), f.contacts[i]);
+  /// A contact that ties with the others in n, seen from a direction turned by `towards`.
+  const auto found = [&](const dvec3& towards) -> std::optional<std::pair<Contact, dvec3>> {
+    const Support s = query(glm::normalize(n + side_turn * towards), f.contacts[0]);
     const std::optional<Contact> c = climbed(geometry, s.contact, n);
-    const dvec3 x = c ? geometry.point(*c) : s.point;
+    if (!c) return std::nullopt;
+    const dvec3 x = geometry.point(*c);
     const bool is_new = std::all_of(f.points.begin(), f.points.end(), [&](const dvec3& p) {
       return glm::distance(p, x) > same_contact;
     });
-    if (c && is_new && glm::dot(x, n) > h - support_tie &&
-        glm::dot(x - a, outward) > same_contact) {
-      f.points.insert(f.points.begin() + std::ptrdiff_t(i) + 1, x);
-      f.contacts.insert(f.contacts.begin() + std::ptrdiff_t(i) + 1, *c);
+    if (!is_new || glm::dot(x, n) < h - support_tie) return std::nullopt;
+    return std::pair(*c, x);
+  };
+  if (f.points.size() == 1) {
+    const auto [e1, e2] = tangent_frame(n);
+    for (int k = 0; k < all_around && f.points.size() == 1; ++k) {
+      const double angle = 2 * std::numbers::pi * k / all_around;
+      const auto more = found(std::cos(angle) * e1 + std::sin(angle) * e2);
+      if (more) add(1, more->first, more->second);
+    }
+  }
+  if (f.points.size() == 1) return f;
+  if (f.points.size() == 3 &&
+      glm::dot(glm::cross(f.points[1] - f.points[0], f.points[2] - f.points[0]), n) < 0) {
+    std::swap(f.contacts[1], f.contacts[2]);
+    std::swap(f.points[1], f.points[2]);
+  }
+  for (std::size_t i = 0; i < f.points.size();) {
+    if (f.points.size() > facet_corner_limit) return std::nullopt;
+    const dvec3 a = f.points[i];
+    const dvec3 outward = unit(glm::cross(f.points[(i + 1) % f.points.size()] - a, n));
+    const auto more = found(outward);
+    if (more && glm::dot(more->second - a, outward) > same_contact) {
+      add(i + 1, more->first, more->second);
     } else {
       ++i;
     }

@@ -28,11 +28,12 @@ struct FacetContacts {
   std::vector<dvec3> points;
 };
 
-/// All contacts of the supporting plane of three: the corners of the convex hull of their points,
-/// found by support queries in directions turned a little towards each of its sides. None where
-/// there are more than facet_corner_limit (contact along a curve).
+/// All contacts of a direction: the corners of the convex hull of its contact set, found by support
+/// queries in directions turned a little all around and towards each of its sides. Begins with the
+/// contacts known, none or more. One or two contacts are no facet. None where there are more than
+/// facet_corner_limit (contact along a curve).
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
-                                            const CommonSupport& plane);
+                                            const dvec3& n, const std::vector<Contact>& known);
 inline constexpr std::size_t facet_corner_limit = 24;
 
 }  // namespace taut

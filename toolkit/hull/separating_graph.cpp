@@ -47,7 +47,9 @@ class GraphTracer {
   void trace_waiting();
   void add(TracedArc&& traced, int begin_node, int begin_slot);
   void connect(int arc, int end, int node, const dvec3& first, const dvec3& second);
-  int node_of(const CommonSupport& plane);
+  int node_of(const dvec3& n, const std::vector<Contact>& contacts);
+  int add_node(const dvec3& n, FacetContacts facet);
+  void find_poles();
   void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
 
   const ContactGeometry& geometry_;
@@ -55,7 +57,8 @@ class GraphTracer {
   SupportQuery& query_;
   const Progress& progress_;
   SeparatingGraph graph_;
-  std::vector<Box> boxes_;    // of the arcs' directions
+  std::vector<Box> boxes_;  // of the arcs' directions
+  std::vector<Landmark> landmarks_;
   std::vector<int> waiting_;  // nodes whose slots may be open
 };
 
@@ -182,26 +185,61 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
 }
 
 /// The facet node of a plane, a new one if there is none yet; -1 if its contacts cannot be told.
-int GraphTracer::node_of(const CommonSupport& plane) {
+int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
     const FacetNode& node = graph_.nodes[k];
-    if (glm::distance(node.n, plane.n) > same_plane) continue;
+    if (glm::distance(node.n, n) > same_plane) continue;
     // Facets of nearly equal planes have other contacts.
-    const bool known = std::all_of(plane.jet.begin(), plane.jet.end(), [&](const ContactJet& j) {
+    const bool known = std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
+      const dvec3 x = geometry_.point(c);
       return std::any_of(node.points.begin(), node.points.end(),
-                         [&](const dvec3& p) { return glm::distance(p, j.x) < same_branch; });
+                         [&](const dvec3& p) { return glm::distance(p, x) < same_branch; });
     });
     if (known) return int(k);
   }
-  const std::optional<FacetContacts> f = facet_contacts(geometry_, query_, plane);
-  if (!f) {
-    fail(plane.n, "a plane has contact along a curve");
-    return -1;
-  }
+  std::optional<FacetContacts> f = facet_contacts(geometry_, query_, n, contacts);
+  if (f) return add_node(n, std::move(*f));
+  fail(n, "a plane has contact along a curve");
+  return -1;
+}
+
+int GraphTracer::add_node(const dvec3& n, FacetContacts facet) {
+  const std::size_t count = facet.contacts.size();
   graph_.nodes.push_back(
-      {plane.n, f->contacts, f->points, std::vector<FacetNode::Slot>(f->contacts.size())});
+      {n, std::move(facet.contacts), std::move(facet.points), std::vector<FacetNode::Slot>(count)});
   waiting_.push_back(int(graph_.nodes.size()) - 1);
-  return int(graph_.nodes.size()) - 1;
+  return waiting_.back();
+}
+
+/// Poles that support together with two other contacts or more: facets that Newton's method does
+/// not find.
+void GraphTracer::find_poles() {
+  const Model& model = geometry_.scene().model();
+  for (int i = 0; i < int(model.instances().size()); ++i) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    for (int p = 0; p < int(part.patches().size()); ++p) {
+      for (const Side side : all_sides) {
+        Contact c{i, SourceKind::face, p, 0.5, 0.5};
+        if (!is_pole(geometry_, c, side)) continue;
+        (side == Side::u0 || side == Side::u1 ? c.u : c.v) =
+            side == Side::u1 || side == Side::v1 ? 1 : 0;
+        const dvec3 normal = unit_normal(geometry_, c);
+        const dvec3 x = geometry_.point(c);
+        if (normal == dvec3(0.0)) continue;
+        for (const dvec3& n : {normal, -normal}) {
+          if (query_(n, c).h > glm::dot(x, n) + support_tie) continue;
+          const bool known =
+              std::any_of(landmarks_.begin(), landmarks_.end(),
+                          [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
+          if (known) continue;
+          std::optional<FacetContacts> f = facet_contacts(geometry_, query_, n, {c});
+          if (!f || f->contacts.size() < 3) continue;
+          landmarks_.push_back({n, *f});
+          add_node(n, std::move(*f));
+        }
+      }
+    }
+  }
 }
 
 /// Plugs an arc's end into the node's side from the first to the second contact.
@@ -237,12 +275,7 @@ void reverse(std::vector<ArcPiece>& pieces) {
 }
 
 bool same_elements(const Ruling& a, const Ruling& b) {
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Contact& x = a.contact[i];
-    const Contact& y = b.contact[i];
-    if (x.instance != y.instance || x.kind != y.kind || x.element != y.element) return false;
-  }
-  return true;
+  return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
 }
 
 /// Appends pieces that go on where these end.
@@ -259,7 +292,7 @@ void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
 
 /// Traces the curve through a seed, both ways unless it closes.
 void GraphTracer::trace(const CommonSupport& seed) {
-  TracedArc ahead = trace_arc(system_, query_, seed, progress_);
+  TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
   if (ahead.end == TracedArc::End::lost) {
     fail(seed.n, ahead.reason);
     return;
@@ -280,14 +313,14 @@ void GraphTracer::trace(const CommonSupport& seed) {
     CommonSupport turned = seed;
     std::swap(turned.contact[0], turned.contact[1]);
     std::swap(turned.jet[0], turned.jet[1]);
-    TracedArc behind = trace_arc(system_, query_, turned, progress_);
+    TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
     if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
       fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
                                                       : "a separating curve closes one way only");
       return;
     }
-    const int begin = behind.end == TracedArc::End::plane ? node_of(behind.plane) : -2;
-    const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.plane) : -2;
+    const int begin = behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : -2;
+    const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : -2;
     if (begin == -1 || end == -1) return;
     reverse(behind.pieces);
     arc.pieces = std::move(behind.pieces);
@@ -321,14 +354,14 @@ void GraphTracer::trace_waiting() {
       start.n = own.n;
       start.add(geometry_, own.contacts[i]);
       start.add(geometry_, own.contacts[(i + 1) % count]);
-      TracedArc traced = trace_arc(system_, query_, start, progress_);
+      TracedArc traced = trace_arc(system_, query_, start, landmarks_, progress_);
       if (traced.end == TracedArc::End::lost || traced.end == TracedArc::End::closed) {
         fail(start.n, traced.end == TracedArc::End::lost
                           ? traced.reason
                           : "a separating curve returns into its facet");
         continue;
       }
-      const int end = traced.end == TracedArc::End::plane ? node_of(traced.plane) : -2;
+      const int end = traced.end == TracedArc::End::plane ? node_of(traced.n, traced.contacts) : -2;
       if (end == -1) continue;
       const int index = int(graph_.arcs.size());
       graph_.arcs.emplace_back();
@@ -357,6 +390,8 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
     points.push_back(x);
     sightings.push_back({s.n, c, x});
   }
+  find_poles();
+  trace_waiting();
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
