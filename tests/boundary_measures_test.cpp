@@ -361,6 +361,133 @@ TEST(BoundaryMeasures, TwoSpheres) {
   }
 }
 
+/// Bridged by segments along z that shrink to points at both ends: contacts are mirror images in
+/// the plane z = 0, where the halves of the turned profile meet.
+struct DentedEllipsoid {
+  Stage stage{dented_ellipsoid()};
+
+  /// The z coordinate of the normal of quarter 0's upper patch over the distance 1 - v from the
+  /// plane; at v = 1 its limit.
+  double slope(double u, double v) const {
+    const ContactJet j = stage.geometry.jet(stage.on_patch(0, u, v));
+    if (v < 1) return glm::cross(j.dx[0], j.dx[1]).z / (1 - v);
+    return -(glm::cross(j.dxy, j.dx[1]) + glm::cross(j.dx[0], j.dyy)).z;
+  }
+  static double root(const std::function<double(double)>& f, double a, double b) {
+    EXPECT_LT(f(a) * f(b), 0);
+    for (int k = 0; k < 200 && a < b; ++k) {
+      const double c = 0.5 * a + 0.5 * b;
+      if (c == a || c == b) break;
+      (f(c) * f(a) > 0 ? a : b) = c;
+    }
+    return 0.5 * a + 0.5 * b;
+  }
+
+  /// Quarters 0 and 1 have the patches 0, 1 and 2, 3; the dent is symmetric in x and in z. Rulings
+  /// stand closer towards the ends, and end at (end_u, 1).
+  HullBoundary boundary(int steps) const {
+    const double end_u = root([&](double u) { return slope(u, 1); }, 0, 1);
+    const double middle_v = root([&](double v) { return slope(1, v); }, 0.05, 1);
+    std::vector<dvec2> trace;  // from the end to the middle
+    for (int k = 0; k <= steps; ++k) {
+      const double v = 1 - (1 - middle_v) * std::sin(pi / 2 * k / steps);
+      const double u = k == 0 ? end_u
+                       : k == steps
+                           ? 1
+                           : root([&](double at) { return slope(at, v); }, end_u - 0.02, 1);
+      trace.emplace_back(u, k == steps ? middle_v : v);
+    }
+    const auto ruling = [&](bool second, const dvec2& p) {
+      const double u = second ? 1 - p.x : p.x;
+      const Contact up = stage.on_patch(second ? 2 : 0, u, p.y);
+      const Contact down = stage.on_patch(second ? 3 : 1, u, 1 - p.y);
+      const ContactJet j = stage.geometry.jet(up);
+      dvec3 n = glm::cross(j.dx[0], j.dx[1]);
+      n = {n.x, n.y, 0};
+      if (n.y < 0) n = -n;
+      Ruling r = stage.ruling(n, down, up);
+      if (p.y == 1) r.point[1] = r.point[0];
+      return r;
+    };
+    SeparatingArc arc;
+    arc.pieces.resize(2);
+    for (const dvec2& p : trace) arc.pieces[0].rulings.push_back(ruling(false, p));
+    std::reverse(trace.begin(), trace.end());
+    for (const dvec2& p : trace) arc.pieces[1].rulings.push_back(ruling(true, p));
+    // n goes from +x over +y to -x; up is to its left.
+    HullBoundary result;
+    result.arcs.push_back(arc);
+    HullFace face;
+    face.kind = FaceKind::patch;
+    const auto border = [](Side side, double from, double to) {
+      TrimStretch s;
+      s.side = side;
+      s.from = from;
+      s.to = to;
+      return s;
+    };
+    for (int k = 0; k < 8; ++k) {
+      PatchRegion region{0, k, stage.sign(k, dvec3(0.0)), {whole_patch()}};
+      if (k < 4) {
+        const bool second = k >= 2;
+        const bool lower = k % 2 == 1;
+        TrimStretch along;
+        along.arc = 0;
+        along.piece = second ? 1 : 0;
+        along.contact = lower ? 0 : 1;
+        along.reversed = !lower;
+        const double u = second ? 1 - end_u : end_u;
+        const double v = lower ? 1 - middle_v : middle_v;
+        auto& loop = region.loops[0];
+        if (k == 0) {
+          loop = {border(Side::v0, 0, 1), border(Side::u1, 0, v), along, border(Side::v1, u, 0),
+                  border(Side::u0, 1, 0)};
+        } else if (k == 1) {
+          loop = {border(Side::v0, 0, u), along, border(Side::u1, v, 1), border(Side::v1, 1, 0),
+                  border(Side::u0, 1, 0)};
+        } else if (k == 2) {
+          loop = {border(Side::v0, 0, 1), border(Side::u1, 0, 1), border(Side::v1, 1, u), along,
+                  border(Side::u0, v, 0)};
+        } else {
+          loop = {border(Side::v0, u, 1), border(Side::u1, 0, 1), border(Side::v1, 1, 0),
+                  border(Side::u0, 1, v), along};
+        }
+      }
+      face.regions.push_back(region);
+    }
+    result.faces.push_back(face);
+    HullFace scroll;
+    scroll.kind = FaceKind::scroll;
+    scroll.scroll = {0, 0, 2};
+    result.faces.push_back(scroll);
+    return result;
+  }
+};
+
+TEST(BoundaryMeasures, FreeEnds) {
+  const DentedEllipsoid dented;
+  const BoundaryMeasures fine = dented.stage.measured(dented.boundary(64));
+  EXPECT_NEAR(fine.volume / 20.0487, 1, 2e-4);
+  EXPECT_NEAR(fine.area / 41.6055, 1, 2e-4);
+  for (const int steps : {16, 6, 4}) {
+    const BoundaryMeasures m = dented.stage.measured(dented.boundary(steps));
+    EXPECT_NEAR(m.volume / fine.volume, 1, 1e-10) << steps;
+    EXPECT_NEAR(m.area / fine.area, 1, 1e-10) << steps;
+    EXPECT_NEAR(m.mean_width / fine.mean_width, 1, 1e-10) << steps;
+    EXPECT_LT(m.accuracy, 1e-9) << steps;
+  }
+  SupportQuery query(dented.stage.scene);
+  Contact hint;
+  const auto h = [&](const dvec3& n) {
+    const Support s = query(n, hint);
+    hint = s.contact;
+    return s.h / dented.stage.scene.frame().scale;
+  };
+  const double coarse = mean_width_of(h, 75);
+  const double finer = mean_width_of(h, 150);
+  EXPECT_NEAR(fine.mean_width, finer + (finer - coarse) / 3, 1e-5);
+}
+
 /// A polytope of points: facets by their corners, and a great arc for each pair of facets.
 HullBoundary polytope(const Stage& stage, const std::vector<std::vector<int>>& facets) {
   HullBoundary boundary;

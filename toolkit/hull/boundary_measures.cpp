@@ -117,6 +117,11 @@ struct Moving {
     }
     dn -= glm::dot(dn, at.n) * at.n;
   }
+  void move(const CurveTangent& t, double speed) {
+    dn = speed * t.n;
+    for (std::size_t i = 0; i < 2; ++i) dp[i] = speed * t.parameter[i];
+    complete();
+  }
 };
 
 dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
@@ -127,13 +132,66 @@ double chord_square(const Ruling& from, const Ruling& to) {
          square(to.point[1] - from.point[1]);
 }
 
+/// A free end: its two points are one, though they may come from two elements.
+bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
+
+/// n and the contacts' parameters of a ruling, as functions of one variable.
+using RulingState = std::array<double, 7>;
+
+RulingState state(const dvec3& n, const dvec2& p0, const dvec2& p1) {
+  return {n.x, n.y, n.z, p0.x, p0.y, p1.x, p1.y};
+}
+
+/// Hermite's interpolation in Newton's form.
+class RulingPolynomial {
+ public:
+  void add(double r, const RulingState& value) { append(r, value, nullptr); }
+  void add(double r, const RulingState& value, const RulingState& slope) {
+    append(r, value, nullptr);
+    append(r, value, &slope);
+  }
+
+  RulingState value(double r) const { return evaluate(r)[0]; }
+  RulingState slope(double r) const { return evaluate(r)[1]; }
+
+ private:
+  std::array<RulingState, 2> evaluate(double r) const {
+    RulingState p{}, q{};
+    for (std::size_t k = node_.size(); k-- > 0;) {
+      for (std::size_t c = 0; c < p.size(); ++c) {
+        q[c] = q[c] * (r - node_[k]) + p[c];
+        p[c] = p[c] * (r - node_[k]) + coefficient_[k][c];
+      }
+    }
+    return {p, q};
+  }
+  /// The next divided difference: what is left of the value, or of the slope at the node that was
+  /// added last, over the product of distances to the nodes before.
+  void append(double r, const RulingState& value, const RulingState* slope) {
+    const auto [p, q] = evaluate(r);
+    double product = 1;
+    for (std::size_t k = 0; k + (slope != nullptr ? 1 : 0) < node_.size(); ++k) {
+      product *= r - node_[k];
+    }
+    RulingState next;
+    for (std::size_t c = 0; c < next.size(); ++c) {
+      next[c] = (slope != nullptr ? (*slope)[c] - q[c] : value[c] - p[c]) / product;
+    }
+    node_.push_back(r);
+    coefficient_.push_back(next);
+  }
+
+  std::vector<double> node_;
+  std::vector<RulingState> coefficient_;
+};
+
 /// The rulings between two neighbouring ones.
 class RulingInterval {
  public:
   RulingInterval(const ContactSystem& system, const Ruling& from, const Ruling& to)
       : system_(system), from_(from), to_(to), square_(chord_square(from, to)) {
-    const bool begins = from.point[0] == from.point[1];
-    const bool ends = to.point[0] == to.point[1];
+    const bool begins = merged(from);
+    const bool ends = merged(to);
     if (begins == ends) return;
     free_end_ = begins ? 0 : 1;
     fit_free_end(begins ? from : to, begins ? to : from);
@@ -154,9 +212,7 @@ class RulingInterval {
       const double speed = square_ / share;
       // An arc ten times its chord is none that was traced.
       if (std::abs(speed) < 10 * std::sqrt(square_)) {
-        m.dn = speed * t->n;
-        for (std::size_t i = 0; i < 2; ++i) m.dp[i] = speed * t->parameter[i];
-        m.complete();
+        m.move(*t, speed);
         return m;
       }
     }
@@ -169,91 +225,98 @@ class RulingInterval {
   }
 
  private:
-  /// At a free end the contacts, and n, are smooth functions of their distance (mathematics: near
-  /// an A3 end, m +- rho e; at a B3 end linear). In units r of the last ruling's length, quadratics
-  /// through both rulings with the derivative at the longer one: c0 + (2 D - D') r + (D' - D) r^2,
-  /// D the difference and D' the derivative at r = 1.
+  /// Next to a free end the contacts, and n, are smooth functions of r, their distance in units of
+  /// the last ruling's length (mathematics: near an A3 end, m +- rho e; a B3 end, linear). They are
+  /// interpolated from the end and rulings from r = 1/4 on, with slopes.
+  ///
+  /// Newton's method finds those in between unless it cannot tell them better than a quadratic: at
+  /// a distance rho from the end its system's smallest singular value is about rho^3, so the error
+  /// of its answer about the rounding unit over that; and the quadratic errs by about rho^3.
   void fit_free_end(const Ruling& end, const Ruling& longer) {
-    end_ = end;
-    difference_n_ = longer.n - end.n;
-    rate_n_ = difference_n_;
-    for (std::size_t i = 0; i < 2; ++i) {
-      difference_[i] = parameters(longer.contact[i]) - parameters(end.contact[i]);
-      rate_[i] = difference_[i];
-    }
-    const CommonSupport at(system_.geometry(), longer);
-    const dvec3 d = at.d();
-    length_square_ = glm::dot(d, d);
-    const std::optional<CurveTangent> t = system_.tangent(at, nullptr);
-    if (!t) return;
-    const double growth = glm::dot(d, t->x[0] - t->x[1]) / glm::dot(d, d);
-    const auto bends = [&](std::size_t i) {
-      const dvec2 bend = t->parameter[i] / growth - difference_[i];
-      return !(glm::dot(bend, bend) <= glm::dot(difference_[i], difference_[i]));
+    Moving m;
+    m.at = CommonSupport(system_.geometry(), longer);
+    const double square = glm::dot(m.at.d(), m.at.d());
+    const auto own = [](const Moving& at) {
+      return state(at.at.n, parameters(at.at.contact[0]), parameters(at.at.contact[1]));
     };
-    // Too far from the end, or too close to it for the tangent: straight.
-    if (bends(0) || bends(1)) return;
-    rate_n_ = t->n / growth;
-    for (std::size_t i = 0; i < 2; ++i) rate_[i] = t->parameter[i] / growth;
+    const auto rate = [](const Moving& at) { return state(at.dn, at.dp[0], at.dp[1]); };
+    const RulingState begin = state(end.n, parameters(end.contact[0]), parameters(end.contact[1]));
+    polynomial_.add(0, begin);
+    if (!find_slope(m, 1, square) || bends(end, m)) {
+      // Too far from the end, or too close to it for the tangent: straight.
+      polynomial_.add(1, own(m));
+      return;
+    }
+    polynomial_.add(1, own(m), rate(m));
+    for (const double r : {0.75, 0.5, 0.25}) {
+      const double length = r * std::sqrt(square);
+      if (length * length * length < std::sqrt(rounding_unit)) break;
+      Moving next = moving(end, polynomial_, r, 1);
+      if (!solve_length(next, r, square, end) || !find_slope(next, r, square)) break;
+      polynomial_.add(r, own(next), rate(next));
+    }
   }
 
-  /// Where Newton's method is no better than the quadratics, it is not asked: at a distance rho
-  /// from a free end its system's smallest singular value is about rho^3, and the error of its
-  /// answers the rounding unit over that; the quadratics err by about rho^3.
-  std::optional<Moving> solved_near_free_end(const Moving& start, double r, double sense) const {
-    const double length = std::sqrt(length_square_);
-    if (!(length * length_square_ > std::sqrt(rounding_unit))) return std::nullopt;
-    Moving m;
-    m.at = start.at;
-    // |d| = r |d at the longer one|.
-    const double square = r * r * length_square_;
+  /// Derivatives with respect to r, where |d|^2 = r^2 `square`.
+  bool find_slope(Moving& m, double r, double square) const {
+    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+    if (!t) return false;
+    m.move(*t, r * square / glm::dot(m.at.d(), t->x[0] - t->x[1]));
+    return true;
+  }
+
+  bool bends(const Ruling& end, const Moving& m) const {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec2 straight = parameters(m.at.contact[i]) - parameters(end.contact[i]);
+      const dvec2 bend = m.dp[i] - straight;
+      if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
+    }
+    return false;
+  }
+
+  /// The ruling with |d|^2 = r^2 `square` near m.
+  bool solve_length(Moving& m, double r, double square, const Ruling& end) const {
+    const CommonSupport start = m.at;
     const bool solved = system_.solve(m.at, [&](const CommonSupport& at) {
       LinearEquation e;
-      const dvec3 d = at.d();
-      e.residual = 0.5 * (glm::dot(d, d) / square - 1);
-      e.add_point(at, 0, d / square);
-      e.add_point(at, 1, -d / square);
+      const dvec3 d = at.d() / (r * r * square);
+      e.residual = 0.5 * (glm::dot(at.d(), d) - 1);
+      e.add_point(at, 0, d);
+      e.add_point(at, 1, -d);
       return e;
     });
-    if (!solved) return std::nullopt;
+    if (!solved) return false;
     for (std::size_t i = 0; i < 2; ++i) {
       // Not another solution, like the one with the contacts exchanged.
-      const dvec2 change = parameters(m.at.contact[i]) - parameters(start.at.contact[i]);
-      const dvec2 own = 0.5 * r * difference_[i];
-      if (glm::dot(change, change) > glm::dot(own, own)) return std::nullopt;
+      const dvec2 p = parameters(start.contact[i]);
+      const dvec2 change = parameters(m.at.contact[i]) - p;
+      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
+      if (glm::dot(change, change) > glm::dot(way, way)) return false;
     }
-    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
-    if (!t) return std::nullopt;
-    const dvec3 d = m.at.d();
-    const double speed = sense * r * length_square_ / glm::dot(d, t->x[0] - t->x[1]);
-    m.dn = speed * t->n;
-    for (std::size_t i = 0; i < 2; ++i) m.dp[i] = speed * t->parameter[i];
+    return true;
+  }
+
+  Moving moving(const Ruling& elements, const RulingPolynomial& polynomial, double r,
+                double sense) const {
+    const RulingState value = polynomial.value(r);
+    const RulingState slope = polynomial.slope(r);
+    Ruling ruling = elements;
+    Moving m;
+    const dvec3 n(value[0], value[1], value[2]);
+    ruling.n = glm::normalize(n);
+    m.dn = sense / glm::length(n) * dvec3(slope[0], slope[1], slope[2]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      ruling.contact[i].u = value[3 + 2 * i];
+      ruling.contact[i].v = value[4 + 2 * i];
+      m.dp[i] = sense * dvec2(slope[3 + 2 * i], slope[4 + 2 * i]);
+    }
+    m.at = CommonSupport(system_.geometry(), ruling);
     m.complete();
     return m;
   }
 
   Moving near_free_end(double s) const {
-    const double r = free_end_ == 0 ? s : 1 - s;
-    const double sense = free_end_ == 0 ? 1 : -1;
-    const auto value = [&](const auto& D, const auto& rate) {
-      return r * (2.0 * D - rate) + r * r * (rate - D);
-    };
-    const auto slope = [&](const auto& D, const auto& rate) {
-      return sense * ((2.0 * D - rate) + 2 * r * (rate - D));
-    };
-    Moving m;
-    Ruling ruling = end_;
-    ruling.n = glm::normalize(end_.n + value(difference_n_, rate_n_));
-    m.dn = slope(difference_n_, rate_n_);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const dvec2 p = value(difference_[i], rate_[i]);
-      ruling.contact[i].u += p.x;
-      ruling.contact[i].v += p.y;
-      m.dp[i] = slope(difference_[i], rate_[i]);
-    }
-    m.at = CommonSupport(system_.geometry(), ruling);
-    m.complete();
-    return solved_near_free_end(m, r, sense).value_or(m);
+    return free_end_ == 0 ? moving(from_, polynomial_, s, 1) : moving(to_, polynomial_, 1 - s, -1);
   }
 
   const ContactSystem& system_;
@@ -261,10 +324,7 @@ class RulingInterval {
   const Ruling& to_;
   double square_;
   int free_end_ = -1;
-  Ruling end_;
-  double length_square_ = 0;
-  dvec3 difference_n_ = dvec3(0.0), rate_n_ = dvec3(0.0);
-  std::array<dvec2, 2> difference_{}, rate_{};
+  RulingPolynomial polynomial_;
 };
 
 /// The integrals over a whole boundary, in the scene's frame.
@@ -363,29 +423,29 @@ dvec3 Summation::interior_point() const {
   return count > 0 ? sum / count : sum;
 }
 
-/// A place for inner integrals to begin that makes them vanish along one border or keeps them
-/// short. Any is right: what differs depends on v alone, and its integral around a loop is zero.
+/// A place for inner integrals to begin that keeps them short along traces, or makes them vanish
+/// along a border. Any is right: what differs depends on v alone, and its integral around a loop is
+/// zero.
 double Summation::base(const PatchRegion& region) const {
-  bool left = false, right = false;
+  bool right = false, left = false;
   Interval range{1, 0};
-  const auto include = [&](double u) {
-    range.lower = std::min(range.lower, u);
-    range.upper = std::max(range.upper, u);
-  };
   for (const std::vector<TrimStretch>& loop : region.loops) {
     for (const TrimStretch& stretch : loop) {
       if (stretch.arc < 0) {
         left |= stretch.side == Side::u0;
         right |= stretch.side == Side::u1;
-      } else {
-        const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
-        for (const Ruling& ruling : arc.pieces[std::size_t(stretch.piece)].rulings) {
-          include(ruling.contact[std::size_t(stretch.contact)].u);
-        }
+        continue;
+      }
+      const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
+      for (const Ruling& ruling : arc.pieces[std::size_t(stretch.piece)].rulings) {
+        const double u = ruling.contact[std::size_t(stretch.contact)].u;
+        range.lower = std::min(range.lower, u);
+        range.upper = std::max(range.upper, u);
       }
     }
   }
-  return left ? 0 : right ? 1 : 0.5 * range.lower + 0.5 * range.upper;
+  if (range.lower <= range.upper) return 0.5 * range.lower + 0.5 * range.upper;
+  return right && !left ? 1 : 0;
 }
 
 void Summation::find_uses() {
@@ -423,7 +483,11 @@ void Summation::add_line(const Region& region, double u, double v, double rate, 
   const auto f = [&](double at, double, Sample& sample) {
     add_patch(geometry_.jet(region.contact(at, v)), region, 1, sample);
   };
-  integrate<10>(f, tolerances, region.base, u, line);
+  if (std::abs(u - region.base) < 0.25) {
+    integrate<8>(f, tolerances, region.base, u, line);
+  } else {
+    integrate<16>(f, tolerances, region.base, u, line);
+  }
   for (std::size_t k = 0; k < quantities; ++k) {
     sum[k] += rate * double(line.value[k]);
     sums_.error[k] += std::abs(weight * rate) * line.error[k];
@@ -525,7 +589,7 @@ void Summation::add_border(const Region& region, const TrimStretch& stretch) {
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;
   };
-  integrate<10>(f, tolerances, stretch.from, stretch.to, sums_);
+  integrate<16>(f, tolerances, stretch.from, stretch.to, sums_);
 }
 
 /// A plane polygon, by the tetrahedra over a fan of triangles with the interior point as tip: the

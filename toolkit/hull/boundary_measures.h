@@ -20,9 +20,12 @@ struct BoundaryMeasures : Measures {
 ///
 /// Patches by Green's theorem in their parameters, scrolls along their rulings, facets as polygons;
 /// creases, needed for the mean width, from the normals that bound them: from separating curves
-/// with a contact on an edge or two at vertices, and from patches' borders on edges. Of a boundary
-/// that is complete, errors are about 1e-13 where the rulings are exact to rounding; next to free
-/// ends, contacts between the last two rulings are interpolated.
+/// with a contact on an edge or two at vertices, and from patches' borders on edges.
+///
+/// Of a complete boundary whose rulings are exact to rounding, errors are about 1e-13, however far
+/// apart the rulings are; where a piece ends in a free end, below 1e-10 if the whole piece has but
+/// five rulings, and soon as small with more. Time is 30 to 60 microseconds for each pair of
+/// neighbouring rulings and each side of it on a patch.
 ///
 /// Volume, centroid and inertia of a boundary without volume (a flat hull) are as in Measures.
 BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
