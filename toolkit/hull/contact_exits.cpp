@@ -191,6 +191,10 @@ class Climb {
                       : std::copysign(std::min(stride, std::abs(slope[a]) / size[a]), slope[a]);
       }
     }
+    // On a border that the slope does not lead over.
+    for (int a = 0; a < 2; ++a) {
+      if (step[a] != 0 && room_for(a, step[a]) <= 0) step[a] = 0;
+    }
     if (glm::length(step * size) <= short_step) {
       return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
     }
