@@ -74,7 +74,7 @@ bool GraphTracer::joined(const Sighting& a, const Sighting& b) const {
     const std::optional<Contact> c = climbed(geometry_, from.contact, to.n);
     return c && glm::distance(geometry_.point(*c), to.x) < same_branch;
   };
-  return leads(a, b) || leads(b, a);
+  return leads(a, b) && leads(b, a);
 }
 
 /// The direction on the great arc between the two at which their contacts' branches tie.
