@@ -16,6 +16,8 @@ constexpr double same_branch = 1e-6;
 /// Directions so near to each other are not parted any further.
 constexpr double narrow = 1e-9;
 constexpr int secant_limit = 60;
+/// Values of two contacts that differ by so little are equal.
+constexpr double parting_tie = 1e-15;
 constexpr int depth_limit = 40;
 /// A seed lies on a curve that was traced if the curve passes it within this distance.
 constexpr double same_curve = 1e-6;
@@ -77,51 +79,33 @@ bool GraphTracer::joined(const Sighting& a, const Sighting& b) const {
   return leads(a, b) && leads(b, a);
 }
 
-/// The direction on the great arc between the two at which their contacts' branches tie.
+/// The direction on the great arc between the two at which their contacts' branches tie: Newton's
+/// method on the difference of the two values, the slope of which is the contacts' difference,
+/// within the bracket that their signs make.
 std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sighting& b) const {
-  struct Difference {
-    double value;
-    Contact ca, cb;
-    dvec3 n;
-  };
-  const auto difference = [&](double t) -> std::optional<Difference> {
-    const dvec3 n = glm::normalize((1 - t) * a.n + t * b.n);
-    const std::optional<Contact> ca = climbed(geometry_, a.contact, n);
-    const std::optional<Contact> cb = climbed(geometry_, b.contact, n);
-    if (!ca || !cb) return std::nullopt;
-    return Difference{glm::dot(geometry_.point(*ca) - geometry_.point(*cb), n), *ca, *cb, n};
-  };
-  // Positive at a, negative at b; the Illinois variant of regula falsi.
+  CommonSupport s;
+  s.add(geometry_, a.contact);
+  s.add(geometry_, b.contact);
   double lower = 0;
   double upper = 1;
-  const auto at_lower = difference(0);
-  const auto at_upper = difference(1);
-  if (!at_lower || !at_upper || at_lower->value < 0 || at_upper->value > 0) return std::nullopt;
-  double f_lower = at_lower->value;
-  double f_upper = at_upper->value;
+  double t = 0.5;
   for (int k = 0; k < secant_limit; ++k) {
-    double t = f_lower == f_upper ? 0.5 * (lower + upper)
-                                  : (f_lower * upper - f_upper * lower) / (f_lower - f_upper);
-    if (k > 8) t = 0.5 * (lower + upper);
-    const auto at = difference(t);
-    if (!at) return std::nullopt;
-    if (std::abs(at->value) < 1e-14 || upper - lower < 1e-15) {
-      CommonSupport s;
-      s.n = at->n;
-      s.add(geometry_, at->ca);
-      s.add(geometry_, at->cb);
-      if (glm::length(s.d()) < same_branch) return std::nullopt;
-      return s;
+    const dvec3 mixed = (1 - t) * a.n + t * b.n;
+    s.n = glm::normalize(mixed);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::optional<Contact> c = climbed(geometry_, s.contact[i], s.n);
+      if (!c) return std::nullopt;
+      s.contact[i] = *c;
     }
-    if (at->value > 0) {
-      lower = t;
-      f_lower = at->value;
-      f_upper *= 0.5;
-    } else {
-      upper = t;
-      f_upper = at->value;
-      f_lower *= 0.5;
-    }
+    s.evaluate(geometry_);
+    if (glm::length(s.d()) < same_branch) return std::nullopt;
+    const double value = glm::dot(s.d(), s.n);
+    if (std::abs(value) < parting_tie) return s;
+    (value > 0 ? lower : upper) = t;
+    const double slope = glm::dot(s.d(), b.n - a.n) / glm::length(mixed);
+    const double next = t - value / slope;
+    t = next > lower && next < upper ? next : 0.5 * (lower + upper);
+    if (upper - lower < parting_tie) return std::nullopt;
   }
   return std::nullopt;
 }
