@@ -1,4 +1,4 @@
-// Evaluation, CBVH build, memory and convergence, and support queries, on the teapot; one thread.
+// Evaluation, CBVH and Gauss map build, memory and convergence, and support queries, on the teapot; one thread.
 
 #include <benchmark/benchmark.h>
 
@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
 #include "taut/io/read_model.h"
 
@@ -70,6 +71,21 @@ void build_scene(benchmark::State& state) {
   state.counters["bytes/patch"] = double(bytes) / model.patch_count();
 }
 BENCHMARK(build_scene)->Unit(benchmark::kMillisecond);
+
+/// Argument: the levels.
+void build_gauss_map(benchmark::State& state) {
+  std::size_t bytes = 0;
+  std::size_t nodes = 0;
+  for (auto _ : state) {
+    const GaussMap map(teapot_scene(),
+                       {.levels = int(state.range(0)), .threads = 1, .progress = {}});
+    bytes = map.memory();
+    nodes = map.nodes(0).size();
+  }
+  state.counters["nodes"] = double(nodes);
+  state.counters["bytes/patch"] = double(bytes) / teapot_scene().model().patch_count();
+}
+BENCHMARK(build_gauss_map)->DenseRange(2, 4)->Unit(benchmark::kMillisecond);
 
 /// Argument: the decimal exponent of the Coons tolerance relative to the patch.
 void build_cbvh(benchmark::State& state) {

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "taut/bounds/scene.h"
+
+namespace taut {
+
+/// A closed rectangle of a patch of one instance.
+struct PatchRegion {
+  int instance = -1;
+  int patch = -1;
+  Interval u, v;
+};
+
+/// Proves that a scene does not reach beyond a point, in all directions of a pyramid at once: the
+/// directions inside are combinations of the corners, and a sum of negative terms is negative.
+///
+/// Holds scratch memory, so use one object a thread; the scene must outlive it.
+class ReachTest {
+ public:
+  explicit ReachTest(const Scene& scene);
+  ~ReachTest();
+
+  /// True is certain: (x - p) . n < 0 for every point x of the scene, those of the region apart,
+  /// and for every n of the pyramid. Points and directions in the scene's frame, p within the
+  /// rounding of a Support's point. Cells that would have to be smaller than
+  /// 2^-(finest) of their patch are not tried: then the answer is false.
+  bool surely_below(const dvec3& p, const std::array<dvec3, 4>& corners, const PatchRegion& except,
+                    int finest);
+
+ private:
+  class Search;
+  std::unique_ptr<Search> search_;
+};
+
+}  // namespace taut
