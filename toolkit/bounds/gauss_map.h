@@ -74,7 +74,7 @@ class GaussMap {
     std::vector<GaussNode> nodes;
     int root_count = 0;
     std::vector<bool> developable;
-    std::vector<Entry> entries;       // by cells of the finest level, in their order
+    std::vector<Entry> entries;        // by cells of the finest level, in their order
     std::vector<std::uint32_t> first;  // of each cell's entries, and the end
   };
   static PartMap make_part(const ScenePart& part, const GaussMapOptions& options);

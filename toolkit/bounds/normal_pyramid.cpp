@@ -53,8 +53,8 @@ std::optional<NormalPyramid> normal_pyramid(std::span<const dvec3> vectors, doub
   dvec3 e1 = along - glm::dot(along, a) * a;
   const double spread2 = glm::dot(e1, e1);
   // What is left of a direction nearly along the mean is rounding.
-  e1 = spread2 > coordinate_error * glm::dot(along, along) ? e1 / std::sqrt(spread2)
-                                                           : orthogonal(a);
+  e1 =
+      spread2 > coordinate_error * glm::dot(along, along) ? e1 / std::sqrt(spread2) : orthogonal(a);
   const dvec3 e2 = glm::cross(a, e1);
 
   double x0 = std::numeric_limits<double>::infinity();

@@ -27,8 +27,8 @@ bool is_constant_along(const NormalNet& net, Direction direction) {
   const double rounding = net.rounding_bound;
   for (int i = 0; i <= lines; ++i) {
     const auto at = [&](int k) -> const dvec3& {
-      return net.vectors[std::size_t(along_v ? i * (net.shape.q + 1) + k
-                                             : k * (net.shape.q + 1) + i)];
+      return net
+          .vectors[std::size_t(along_v ? i * (net.shape.q + 1) + k : k * (net.shape.q + 1) + i)];
     };
     int longest = 0;
     for (int k = 1; k <= last; ++k) {

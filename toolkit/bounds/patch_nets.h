@@ -33,10 +33,8 @@ class PatchNets {
   std::vector<dvec4> points(const Interval& u, const Interval& v) const;
   /// The cell's normal vectors, by subdivision of the patch's.
   std::vector<dvec3> normals(const PatchCell& cell) const;
-  void quarter_points(const std::vector<dvec4>& points,
-                      std::array<CellNets, 4>& quarters) const;
-  void quarter_normals(const std::vector<dvec3>& normals,
-                       std::array<CellNets, 4>& quarters) const;
+  void quarter_points(const std::vector<dvec4>& points, std::array<CellNets, 4>& quarters) const;
+  void quarter_normals(const std::vector<dvec3>& normals, std::array<CellNets, 4>& quarters) const;
 
   NormalBounds bounds(const CellNets& cell, int level) const;
   /// Of a control point of a cell, in the scene's units times the weight; up to 40 levels.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 
 #include "taut/bounds/scene.h"
 
@@ -14,8 +15,9 @@ struct PatchRegion {
   Interval u, v;
 };
 
-/// Proves that a scene does not reach beyond a point, in all directions of a pyramid at once: the
-/// directions inside are combinations of the corners, and a sum of negative terms is negative.
+/// Proves that a scene does not reach beyond some points of it, in all directions of a pyramid at
+/// once: directions inside are combinations of the corners, and a sum of negative terms is
+/// negative.
 ///
 /// Holds scratch memory, so use one object a thread; the scene must outlive it.
 class ReachTest {
@@ -23,12 +25,14 @@ class ReachTest {
   explicit ReachTest(const Scene& scene);
   ~ReachTest();
 
-  /// True is certain: (x - p) . n < 0 for every point x of the scene, those of the region apart,
-  /// and for every n of the pyramid. Points and directions in the scene's frame, p within the
-  /// rounding of a Support's point. Cells that would have to be smaller than
-  /// 2^-(finest) of their patch are not tried: then the answer is false.
-  bool surely_below(const dvec3& p, const std::array<dvec3, 4>& corners, const PatchRegion& except,
-                    int finest);
+  /// True is certain: for every point x of the scene, those of the region apart, one of the points
+  /// p has (x - p) . n < 0 for all n of the pyramid. Points and directions in the scene's frame,
+  /// each p within the rounding of a Support's point.
+  ///
+  /// Cells that would have to be smaller than 2^-finest of their patch are not tried: then the
+  /// answer is false. @pre points are not empty
+  bool surely_below(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
+                    const PatchRegion& except, int finest);
 
  private:
   class Search;

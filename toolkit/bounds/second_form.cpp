@@ -10,9 +10,7 @@ namespace {
 /// Products of bounds with three or fewer roundings each may lose this share.
 constexpr double product_error = 4 * rounding_unit;
 
-double largest_square(const Interval& x) {
-  return std::max(x.lower * x.lower, x.upper * x.upper);
-}
+double largest_square(const Interval& x) { return std::max(x.lower * x.lower, x.upper * x.upper); }
 
 double smallest_square(const Interval& x) {
   if (x.lower <= 0 && x.upper >= 0) return 0;
@@ -22,16 +20,15 @@ double smallest_square(const Interval& x) {
 }  // namespace
 
 bool SecondForm::surely_saddle() const {
-  const double product = std::max({uu.lower * vv.lower, uu.lower * vv.upper, uu.upper * vv.lower,
-                                   uu.upper * vv.upper});
+  const double product = std::max(
+      {uu.lower * vv.lower, uu.lower * vv.upper, uu.upper * vv.lower, uu.upper * vv.upper});
   const double mixed = smallest_square(uv);
   return product + product_error * (std::abs(product) + mixed) < mixed;
 }
 
 bool SecondForm::definite() const {
-  const double product =
-      std::min(std::abs(uu.lower), std::abs(uu.upper)) *
-      std::min(std::abs(vv.lower), std::abs(vv.upper));
+  const double product = std::min(std::abs(uu.lower), std::abs(uu.upper)) *
+                         std::min(std::abs(vv.lower), std::abs(vv.upper));
   return largest_square(uv) < product * (1 - product_error);
 }
 

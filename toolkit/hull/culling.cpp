@@ -23,9 +23,14 @@ constexpr int spread_directions = 48;
 /// Patches of a task; each task makes its own queries.
 constexpr std::size_t patches_per_task = 8;
 
-/// By how many of its own sizes a cell is surrounded where the whole patch is too curved: at one
-/// its neighbours are inside, which nothing else can prove to stay below.
-constexpr int surrounding = 1;
+/// By how many of its own sizes a cell is surrounded at most where the whole patch is too curved,
+/// and then half as many, down to one. What is close to the cell must be inside: where the two
+/// principal curvatures differ by a factor of k, a pyramid across them may hold normals that point
+/// k cells away.
+constexpr int widest_surrounding = 8;
+
+/// Distances of the points that stand for a cell, in its sizes.
+constexpr std::array<double, 2> ring_radii = {0.5, 2};
 
 /// Points of a spiral over the sphere, at golden angles.
 std::vector<dvec3> spread_over_sphere(int count) {
@@ -202,12 +207,11 @@ class PatchCulling {
   bool surely_on(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
                  const PatchCell& cell, double sign, const Beacon& beacon) {
     const double size = cell.u().upper - cell.u().lower;
-    const auto grown = [&](const Interval& t) {
-      return Interval{std::max(0.0, t.lower - surrounding * size),
-                      std::min(1.0, t.upper + surrounding * size)};
+    const auto grown = [&](const Interval& t, int cells) {
+      return Interval{std::max(0.0, t.lower - cells * size), std::min(1.0, t.upper + cells * size)};
     };
-    const Interval near_u = grown(cell.u());
-    const Interval near_v = grown(cell.v());
+    const Interval near_u = grown(cell.u(), 1);
+    const Interval near_v = grown(cell.v(), 1);
     // On the hull, the support point of the axis is on the cell or close to it.
     const Contact& c = beacon.contact;
     if (c.instance != instance_ || c.kind != SourceKind::face || c.element != element_.index ||
@@ -222,13 +226,39 @@ class PatchCulling {
           .surely_negative();
     };
     PatchRegion region{instance_, element_.index, {0, 1}, {0, 1}};
-    if (!is_concave(nets_.root().points)) {
-      region.u = near_u;
-      region.v = near_v;
-      if (!is_concave(nets_.points(near_u, near_v))) return false;
+    bool concave = is_concave(nets_.root().points);
+    for (int k = widest_surrounding; !concave && k > 0; k /= 2) {
+      region.u = grown(cell.u(), k);
+      region.v = grown(cell.v(), k);
+      concave = is_concave(nets_.points(region.u, region.v));
+    }
+    if (!concave) {
+      return false;
     }
     for (dvec3& n : corners) n = to_frame(n);
-    return tools_.reach.surely_below(content_.frame_point(c), corners, region, cell.level + 1);
+    return tools_.reach.surely_below(points_around(cell, region), corners, region, cell.level + 1);
+  }
+
+  /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
+  /// compared with; best is one between the cell and what is to be beaten.
+  std::vector<dvec3> points_around(const PatchCell& cell, const PatchRegion& region) const {
+    const double size = cell.u().upper - cell.u().lower;
+    const double u = 0.5 * (cell.u().lower + cell.u().upper);
+    const double v = 0.5 * (cell.v().lower + cell.v().upper);
+    std::vector<dvec3> points;
+    const auto add = [&](double x, double y) {
+      const Contact c{instance_, SourceKind::face, element_.index,
+                      std::clamp(x, region.u.lower, region.u.upper),
+                      std::clamp(y, region.v.lower, region.v.upper)};
+      points.push_back(content_.frame_point(c));
+    };
+    add(u, v);
+    for (const double radius : ring_radii) {
+      for (int k = 0; k < 9; ++k) {
+        if (k != 4) add(u + (k / 3 - 1) * radius * size, v + (k % 3 - 1) * radius * size);
+      }
+    }
+    return points;
   }
 
   const Scene::Content& content_;
@@ -250,8 +280,7 @@ struct Place {
 
 void append(PatchResult&& from, Culling& to) {
   to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
-  to.frame_points.insert(to.frame_points.end(), from.frame_points.begin(),
-                         from.frame_points.end());
+  to.frame_points.insert(to.frame_points.end(), from.frame_points.begin(), from.frame_points.end());
   to.cells.insert(to.cells.end(), from.cells.begin(), from.cells.end());
   for (std::size_t l = 0; l < from.levels.size(); ++l) {
     CullingLevel& sum = to.levels[l];
@@ -310,16 +339,16 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
     for (int root = 0; root < roots; ++root) places.push_back({int(i), root});
   }
   std::vector<PatchResult> results(places.size());
-  parallel_for(places.size(), patches_per_task, options.threads,
-               [&](std::size_t begin, std::size_t end) {
-                 Tools tools(scene);
-                 for (std::size_t k = begin; k < end; ++k) {
-                   options.progress.check();
-                   results[k] = PatchCulling(scene, map, places[k].instance, places[k].root,
-                                             options.levels, tools)
-                                    .result();
-                 }
-               });
+  parallel_for(
+      places.size(), patches_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
+        Tools tools(scene);
+        for (std::size_t k = begin; k < end; ++k) {
+          options.progress.check();
+          results[k] =
+              PatchCulling(scene, map, places[k].instance, places[k].root, options.levels, tools)
+                  .result();
+        }
+      });
   for (PatchResult& patch : results) append(std::move(patch), result);
   add_shares(places.size(), result.levels);
   result.support_queries = long(result.samples.size());

@@ -1,4 +1,5 @@
-// Evaluation, CBVH and Gauss map build, memory and convergence, and support queries, on the teapot; one thread.
+// Evaluation, CBVH and Gauss map build, memory and convergence, and support queries, on the teapot;
+// one thread.
 
 #include <benchmark/benchmark.h>
 
@@ -93,8 +94,8 @@ void cull_cells(benchmark::State& state) {
   const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
   Culling culling;
   for (auto _ : state) {
-    culling = cull(teapot_scene(), map,
-                   {.levels = int(state.range(0)), .threads = 1, .progress = {}});
+    culling =
+        cull(teapot_scene(), map, {.levels = int(state.range(0)), .threads = 1, .progress = {}});
   }
   const CullingLevel& last = culling.levels.back();
   state.counters["visited"] = double(culling.visited());
