@@ -13,8 +13,8 @@ namespace {
 /// some 10 rounding units of one plus the coordinate; the corners add 4.
 constexpr double coordinate_error = 16 * rounding_unit;
 
-/// Sides' normals are cross products of corners of length up to 16 sqrt(2), which lose less than
-/// this, as a share of the corners' lengths and the direction's.
+/// A side's normal is the product of a corner and its difference to the next, which with the
+/// product by a direction lose less than this share of the three lengths.
 constexpr double side_error = 16 * rounding_unit;
 
 /// A vector orthogonal to the unit vector a, of length one.
@@ -32,7 +32,7 @@ bool NormalPyramid::may_contain(const dvec3& n) const {
   const double length = glm::length(n);
   for (std::size_t k = 0; k < 4; ++k) {
     const dvec3& a = corners[k];
-    const dvec3& b = corners[(k + 1) % 4];
+    const dvec3 b = corners[(k + 1) % 4] - a;
     const double error = side_error * glm::length(a) * glm::length(b) * length;
     if (glm::dot(glm::cross(a, b), n) < -error) return false;
   }
@@ -85,7 +85,7 @@ std::optional<NormalPyramid> normal_pyramid(std::span<const dvec3> vectors, doub
   }
   NormalPyramid result;
   const auto at = [&](double x, double y) { return a + x * e1 + y * e2; };
-  result.axis = glm::normalize(at(0.5 * (x0 + x1), 0.5 * (y0 + y1)));
+  result.axis = a;
   result.corners = {at(x0, y0), at(x1, y0), at(x1, y1), at(x0, y1)};
   return result;
 }

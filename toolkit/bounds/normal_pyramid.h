@@ -11,10 +11,10 @@ namespace taut {
 /// A convex cone of directions with four sides, narrower than a half space: bounds the normals of a
 /// piece of surface (Sederberg and Zundel 1996).
 struct NormalPyramid {
-  /// Unit vector inside.
+  /// Unit vector inside: the mean direction of what is bounded.
   dvec3 axis = dvec3(0.0);
-  /// Its edges, counter-clockwise about the axis; none is shorter than 1. They lie in one plane
-  /// a . x = 1 with |a| = 1, so every direction inside is a multiple of a convex combination.
+  /// Its edges, counter-clockwise about the axis, with corner . axis = 1: every direction inside is
+  /// a multiple of a convex combination of them.
   std::array<dvec3, 4> corners = {};
 
   /// False is certain: the direction is not inside. @pre not zero

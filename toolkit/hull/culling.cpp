@@ -85,7 +85,7 @@ class PatchCulling {
     if (map.developable(placed_.part, root)) {
       ++at(0).visited;
       ++at(0).ruled;
-      finish({}, CellState::ruled, {});
+      finish({}, CellState::ruled, {false, false});
       return;
     }
     visit({}, root, nodes_[std::size_t(root)].bounds, nets_.root(), {true, true}, {});
