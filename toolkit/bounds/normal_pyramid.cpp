@@ -10,8 +10,9 @@ namespace taut {
 namespace {
 
 /// Gnomonic coordinates are quotients of two products of three terms with rounded unit vectors,
-/// some 10 rounding units of one plus the coordinate; the corners add 4.
-constexpr double coordinate_error = 16 * rounding_unit;
+/// some 10 rounding units of one plus the coordinate; the corners add 4. Twice that, since the
+/// sides of a wide pyramid are seen at a slant.
+constexpr double coordinate_error = 32 * rounding_unit;
 
 /// A side's normal is the product of a corner and its difference to the next, which with the
 /// product by a direction lose less than this share of the three lengths.
@@ -55,6 +56,7 @@ std::optional<NormalPyramid> normal_pyramid(std::span<const dvec3> vectors, doub
   // What is left of a direction nearly along the mean is rounding.
   e1 =
       spread2 > coordinate_error * glm::dot(along, along) ? e1 / std::sqrt(spread2) : orthogonal(a);
+  e1 = glm::normalize(e1 - glm::dot(e1, a) * a);  // the first time may have cancelled digits
   const dvec3 e2 = glm::cross(a, e1);
 
   double x0 = std::numeric_limits<double>::infinity();
