@@ -241,7 +241,8 @@ TEST(Cull, TellsSamplesOfAllKinds) {
   const Scene scene = make_scene(shape);
   const Culling culling = culled(scene, 2);
   ASSERT_EQ(culling.samples.size(), culling.frame_points.size());
-  EXPECT_EQ(culling.support_queries, long(culling.samples.size()));
+  EXPECT_LE(culling.support_queries, long(culling.samples.size()));
+  EXPECT_GE(culling.support_queries, 24);
   std::map<SourceKind, int> kinds;
   const ReferenceSupport truth(scene.model(), scene.frame().center);
   for (std::size_t k = 0; k < culling.samples.size(); ++k) {

@@ -57,6 +57,7 @@ struct PatchResult {
   std::vector<dvec3> frame_points;
   std::vector<CulledCell> cells;
   std::vector<CullingLevel> levels;
+  long queries = 0;
 };
 
 /// Scratch memory of a task.
@@ -120,16 +121,27 @@ class PatchCulling {
       return;
     }
     if (bounds.pyramid) {
-      if (left.plus) left.plus = !surely_off(*bounds.pyramid, nets.points, cell, 1, beacons[0]);
-      if (left.minus) left.minus = !surely_off(*bounds.pyramid, nets.points, cell, -1, beacons[1]);
-      if (!left.any()) {
-        ++count.off_by_samples;
-        finish(cell, CellState::off, left);
-        return;
+      const NormalPyramid& pyramid = *bounds.pyramid;
+      const bool may_be_on = bounds.definite && left.plus != left.minus && !touches_another(cell);
+      const double sign = left.plus ? 1 : -1;
+      Beacon& beacon = beacons[left.plus ? 0 : 1];
+      // Where the parent's support point is here, the proof needs no query.
+      const bool near = may_be_on && is_near(beacon, cell);
+      bool on = near && surely_on(pyramid, nets.points, cell, sign);
+      if (on) {
+        sample_middle(cell, sign);
+      } else {
+        if (left.plus) left.plus = !surely_off(pyramid, nets.points, cell, 1, beacons[0]);
+        if (left.minus) left.minus = !surely_off(pyramid, nets.points, cell, -1, beacons[1]);
+        if (!left.any()) {
+          ++count.off_by_samples;
+          finish(cell, CellState::off, left);
+          return;
+        }
+        on = may_be_on && !near && is_near(beacon, cell) &&
+             surely_on(pyramid, nets.points, cell, sign);
       }
-      if (bounds.definite && left.plus != left.minus &&
-          surely_on(*bounds.pyramid, nets.points, cell, left.plus ? 1 : -1,
-                    beacons[left.plus ? 0 : 1])) {
+      if (on) {
         ++count.on;
         finish(cell, CellState::on, left);
         return;
@@ -188,6 +200,7 @@ class PatchCulling {
     const dvec3 axis = sign * pyramid.axis;
     const dvec3 n = to_frame(axis);
     const Support s = tools_.query(n, hint(axis, cell, beacon));
+    ++result_.queries;
     result_.samples.push_back({n, s.contact});
     result_.frame_points.push_back(s.point);
     beacon = {s.contact, to_local(s.point), true};
@@ -204,20 +217,54 @@ class PatchCulling {
     return height > glm::dot(beacon.local, axis) ? middle : beacon.contact;
   }
 
-  bool surely_on(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
-                 const PatchCell& cell, double sign, const Beacon& beacon) {
-    const double size = cell.u().upper - cell.u().lower;
-    const auto grown = [&](const Interval& t, int cells) {
-      return Interval{std::max(0.0, t.lower - cells * size), std::min(1.0, t.upper + cells * size)};
-    };
-    const Interval near_u = grown(cell.u(), 1);
-    const Interval near_v = grown(cell.v(), 1);
-    // On the hull, the support point of the axis is on the cell or close to it.
+  /// The interval and some of its lengths on either side, within [0, 1].
+  static Interval grown(const Interval& t, int lengths) {
+    const double length = t.upper - t.lower;
+    return {std::max(0.0, t.lower - lengths * length), std::min(1.0, t.upper + lengths * length)};
+  }
+
+  /// A contact is on the cell or next to it.
+  bool is_near(const Beacon& beacon, const PatchCell& cell) const {
     const Contact& c = beacon.contact;
-    if (c.instance != instance_ || c.kind != SourceKind::face || c.element != element_.index ||
-        c.u < near_u.lower || c.u > near_u.upper || c.v < near_v.lower || c.v > near_v.upper) {
+    if (!beacon.known || c.instance != instance_ || c.kind != SourceKind::face ||
+        c.element != element_.index) {
       return false;
     }
+    const Interval u = grown(cell.u(), 1);
+    const Interval v = grown(cell.v(), 1);
+    return c.u >= u.lower && c.u <= u.upper && c.v >= v.lower && c.v <= v.upper;
+  }
+
+  /// Other patches share a side of the cell, or all of a side is one point: nothing beyond it can
+  /// be proven to stay below.
+  bool touches_another(const PatchCell& cell) const {
+    const std::uint32_t last = (std::uint32_t{1} << cell.level) - 1;
+    const std::array<bool, 4> touches = {cell.i == 0, cell.i == last, cell.j == 0, cell.j == last};
+    for (const Side side : all_sides) {
+      const Border& border = patch().borders[std::size_t(side)];
+      if (touches[std::size_t(side)] &&
+          (border.neighbor >= 0 || border.kind == BorderKind::collapsed)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const Patch& patch() const {
+    return content_.model.parts()[std::size_t(placed_.part)].patches()[std::size_t(element_.index)];
+  }
+
+  /// A cell that is on has its own support points.
+  void sample_middle(const PatchCell& cell, double sign) {
+    const double u = 0.5 * (cell.u().lower + cell.u().upper);
+    const double v = 0.5 * (cell.v().lower + cell.v().upper);
+    const Contact middle{instance_, SourceKind::face, element_.index, u, v};
+    result_.samples.push_back({to_frame(sign * unit_normal(patch().bezier, u, v)), middle});
+    result_.frame_points.push_back(content_.frame_point(middle));
+  }
+
+  bool surely_on(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
+                 const PatchCell& cell, double sign) {
     std::array<dvec3, 4> corners = pyramid.corners;
     for (dvec3& n : corners) n *= sign;
     const auto is_concave = [&](const std::vector<dvec4>& net) {
@@ -232,9 +279,7 @@ class PatchCulling {
       region.v = grown(cell.v(), k);
       concave = is_concave(nets_.points(region.u, region.v));
     }
-    if (!concave) {
-      return false;
-    }
+    if (!concave) return false;
     for (dvec3& n : corners) n = to_frame(n);
     return tools_.reach.surely_below(points_around(cell, region), corners, region, cell.level + 1);
   }
@@ -278,7 +323,8 @@ struct Place {
   int root;
 };
 
-void append(PatchResult&& from, Culling& to) {
+void append(const PatchResult& from, Culling& to) {
+  to.support_queries += from.queries;
   to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
   to.frame_points.insert(to.frame_points.end(), from.frame_points.begin(), from.frame_points.end());
   to.cells.insert(to.cells.end(), from.cells.begin(), from.cells.end());
@@ -328,6 +374,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
     SupportQuery query(scene);
     for (const dvec3& n : spread_over_sphere(spread_directions)) {
       const Support s = query(n);
+      ++result.support_queries;
       result.samples.push_back({n, s.contact});
       result.frame_points.push_back(s.point);
     }
@@ -349,9 +396,8 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
                   .result();
         }
       });
-  for (PatchResult& patch : results) append(std::move(patch), result);
+  for (const PatchResult& patch : results) append(patch, result);
   add_shares(places.size(), result.levels);
-  result.support_queries = long(result.samples.size());
   options.progress.update("cull", 1);
   return result;
 }

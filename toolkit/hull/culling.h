@@ -10,7 +10,7 @@ namespace taut {
 struct CullingOptions {
   /// Finest level of the patches' quadtrees. Levels that the Gauss map does not hold are computed
   /// on the way. 0 .. 20
-  int levels = 4;
+  int levels = 3;
   int threads = 0;
   Progress progress;
 };
@@ -47,7 +47,8 @@ struct CullingLevel {
 
 struct Culling {
   /// Points of the model on its hull, with their directions: those of some uniformly spread
-  /// directions first (curves and points are among them), then those of the cells' axes.
+  /// directions first (curves and points are among them), then those of the cells' axes and the
+  /// middles of cells that are on.
   std::vector<Sample> samples;
   std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
   std::vector<CulledCell> cells;    ///< cover every patch of every instance once
@@ -73,7 +74,7 @@ struct Culling {
 /// of R is above all of the model outside R in these directions. For then at x in X with its normal
 /// n, S . n is concave over R with its only maximum at x, so that x . n >= p . n > y . n for every
 /// y outside R: x alone supports n, and the Gauss map is injective on X. Cells next to a border
-/// between patches are never proven on.
+/// between patches, or to a pole, are never proven on.
 ///
 /// Both are proofs: deviations and rounding included, up to the rounding of the stored model (the
 /// normals at a collapsed side within rounding of it are those of its limit). They speak of
