@@ -223,6 +223,27 @@ TEST(Cull, KeepsTheContactsOfRandomPatches) {
   EXPECT_GE(on, 10);
 }
 
+/// Two humps in one patch: what lies between them is bridged, and neither is alone on the hull.
+TEST(Cull, PatchesCullThemselves) {
+  BezierPatch patch{6, 2, {}};
+  const std::array<double, 7> along_u = {0, 3, -3, -3, -3, 2.5, 0};
+  const std::array<double, 3> along_v = {-1, 1, -1};
+  for (std::size_t i = 0; i < 7; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      patch.points.push_back(
+          homogeneous({double(i) - 3, 2 * (double(j) - 1), along_u[i] + along_v[j]}));
+    }
+  }
+  const Scene scene = make_scene(of_patch(patch));
+  const Culling culling = culled(scene, 5);
+  expect_consistent(scene, culling, "humps");
+  const Verdict truth = check(scene, culling, 5000);
+  expect_true(truth, "humps");
+  EXPECT_GE(truth.inside, 500);
+  EXPECT_GE(truth.area_on, 0.02);
+  EXPECT_GE(culling.removed_share(), 0.5);
+}
+
 TEST(Cull, InstancesCullEachOther) {
   Model model = make_model(ellipsoid(3, 2, 1));
   model.add_instance(0, {skew_rotation(), {5, 1, 0}});

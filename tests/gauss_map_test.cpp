@@ -11,6 +11,7 @@
 #include "taut/bounds/normal_net.h"
 #include "taut/bounds/patch_nets.h"
 #include "taut/bounds/scene_content.h"
+#include "taut/bounds/second_form.h"
 #include "taut/core/error.h"
 
 namespace taut {
@@ -251,6 +252,57 @@ TEST(GaussMap, PyramidsHoldAllNormalsOfRandomPatches) {
   }
   EXPECT_GE(definite, 100);
   EXPECT_GE(with, 20);
+}
+
+/// Second derivatives along the normals of one cell, scaled as the pyramid's corners and by the
+/// weight, must lie between the bounds; `region` is what is bounded, the cell lies in it.
+TEST(SecondForm, BoundsTheSecondDerivatives) {
+  Random random(9);
+  int tested = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double weights = k % 3 == 0 ? 1 : log_uniform(random, 1.01, 10);
+    const BezierPatch patch = random_patch(random, pick(random, 1, 4), pick(random, 1, 4), weights);
+    const double size = log_uniform(random, 1e-3, 0.3);
+    const double u0 = uniform(random, 0, 1 - size);
+    const double v0 = uniform(random, 0, 1 - size);
+    const BezierPatch cell = restricted(patch, {u0, u0 + size}, {v0, v0 + size});
+    const BezierPatch region = k % 2 == 0 ? cell : patch;
+    const NormalNet net = normal_net(cell);
+    const auto pyramid = normal_pyramid(net.vectors, net.rounding_bound);
+    if (!pyramid) continue;
+    const SecondForm form = second_form({patch.degree_u, patch.degree_v}, weights != 1,
+                                        region.points, cell.points, pyramid->corners, 1e-15);
+    ++tested;
+    for (const real s : samples) {
+      for (const real t : samples) {
+        const ReferenceJet touching = reference_jet(cell, s, t);
+        rvec3 n = touching.normal();
+        n /= glm::dot(n, rvec3(pyramid->axis));
+        const auto expect_between = [&](real uu, real uv, real vv) {
+          ASSERT_TRUE(uu >= form.uu.lower && uu <= form.uu.upper) << k;
+          ASSERT_TRUE(uv >= form.uv.lower && uv <= form.uv.upper) << k;
+          ASSERT_TRUE(vv >= form.vv.lower && vv <= form.vv.upper) << k;
+        };
+        // Of w (S - x) . n at another point of the region: x is where the plane touches.
+        for (const real a : samples) {
+          const real b = 1 - a * t;
+          real d[3] = {0, 0, 0};
+          for (int i = 0; i <= region.degree_u; ++i) {
+            for (int j = 0; j <= region.degree_v; ++j) {
+              const rvec4 p(region.at(i, j));
+              const real height = glm::dot(rvec3(p) - p.w * touching.S, n);
+              for (int order = 0; order < 3; ++order) {
+                d[order] += height * bernstein_derivative(region.degree_u, i, 2 - order, a) *
+                            bernstein_derivative(region.degree_v, j, order, b);
+              }
+            }
+          }
+          expect_between(d[0], d[1], d[2]);
+        }
+      }
+    }
+  }
+  EXPECT_GE(tested, 100);
 }
 
 TEST(GaussMap, SeesSaddlesAndDefiniteSurfaces) {
