@@ -7,6 +7,7 @@
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/surface_seeds.h"
 
 namespace taut {
 namespace {
@@ -31,7 +32,7 @@ class GraphTracer {
   GraphTracer(const ContactGeometry& geometry, SupportQuery& query, const Progress& progress)
       : geometry_(geometry), system_(geometry), query_(query), progress_(progress) {}
 
-  SeparatingGraph run(const std::vector<Sample>& samples);
+  SeparatingGraph run(const std::vector<Sample>& samples, const std::vector<CulledCell>& cells);
 
  private:
   /// A direction and its support contact.
@@ -363,7 +364,8 @@ void GraphTracer::trace_waiting() {
   }
 }
 
-SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
+SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
+                                 const std::vector<CulledCell>& cells) {
   std::vector<Sighting> sightings;
   std::vector<dvec3> points;
   Box box;
@@ -376,6 +378,9 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
   }
   find_poles();
   trace_waiting();
+  for (const CommonSupport& seed : surface_seeds(system_, query_, cells)) {
+    if (!is_traced(seed)) trace(seed);
+  }
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
@@ -395,8 +400,9 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
 
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
+                                        const std::vector<CulledCell>& cells,
                                         const Progress& progress) {
-  return GraphTracer(geometry, query, progress).run(samples);
+  return GraphTracer(geometry, query, progress).run(samples, cells);
 }
 
 }  // namespace taut
