@@ -32,7 +32,7 @@ constexpr double margin_slack = 1e-12;
 constexpr double pole_step = 1e-3;
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
 constexpr double border_slack = 1e-9;
-constexpr int step_limit = 20000;
+constexpr int step_limit = 4000;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
@@ -51,7 +51,6 @@ class Trace {
         geometry_(system.geometry()),
         query_(query),
         landmarks_(landmarks),
-        start_(start),
         at_(start) {}
 
   TracedArc run(const Progress& progress);
@@ -85,6 +84,7 @@ class Trace {
   bool leave_pole();
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
+  TracedArc closed();
   bool merge();
   bool settle();
   void begin_piece();
@@ -99,7 +99,10 @@ class Trace {
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   std::span<const Landmark> landmarks_;
-  CommonSupport start_;
+  /// The first ruling inside a piece, at which the curve closes if it does.
+  std::optional<CommonSupport> home_;
+  std::size_t home_piece_ = 0;
+  std::size_t home_ruling_ = 0;
   CommonSupport at_;
   CurveTangent tangent_;
   std::array<std::vector<ContactExit>, 2> exits_;
@@ -334,13 +337,27 @@ bool Trace::arrives(const Landmark& landmark, double length) {
 }
 
 bool Trace::is_closing(const CommonSupport& next, double length) const {
-  const double ahead = length_to(start_);
+  if (!home_ || !same_element(home_->contact[0], at_.contact[0]) ||
+      !same_element(home_->contact[1], at_.contact[1])) {
+    return false;
+  }
+  const double ahead = length_to(*home_);
   if (ahead <= margin_slack || ahead > length_to(next) + margin_slack) return false;
-  if (distance_to(start_) > 1.5 * length) return false;
+  if (distance_to(*home_) > 1.5 * length) return false;
   const std::optional<CommonSupport> there = stepped(ahead);
-  return there && glm::distance(there->n, start_.n) < same_contact &&
-         glm::distance(there->jet[0].x, start_.jet[0].x) < same_contact &&
-         glm::distance(there->jet[1].x, start_.jet[1].x) < same_contact;
+  return there && glm::distance(there->n, home_->n) < same_contact &&
+         glm::distance(there->jet[0].x, home_->jet[0].x) < same_contact &&
+         glm::distance(there->jet[1].x, home_->jet[1].x) < same_contact;
+}
+
+/// Ends the arc at home, and drops what led there from the start.
+TracedArc Trace::closed() {
+  push(*home_);
+  auto& first = arc_.pieces[home_piece_].rulings;
+  first.erase(first.begin(), first.begin() + std::ptrdiff_t(home_ruling_));
+  arc_.pieces.erase(arc_.pieces.begin(), arc_.pieces.begin() + std::ptrdiff_t(home_piece_));
+  arc_.end = TracedArc::End::closed;
+  return std::move(arc_);
 }
 
 /// Ends the arc where the contacts merge, if they do: their parameters and n, as functions of the
@@ -517,24 +534,17 @@ TracedArc Trace::run(const Progress& progress) {
       arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
       return std::move(arc_);
     }
-    if (closing) {
-      push(start_);
-      Ruling& end = arc_.pieces.back().rulings.back();
-      const Ruling& own = next->ruling();
-      for (std::size_t i = 0; i < 2; ++i) {
-        const Contact& c = own.contact[i];
-        if (end.contact[i].kind != c.kind || end.contact[i].element != c.element) {
-          return lost("a closed separating curve begins on a border");
-        }
-      }
-      arc_.end = TracedArc::End::closed;
-      return std::move(arc_);
-    }
+    if (closing) return closed();
     const double moved = length_to(*next);
     idle = moved > margin_slack ? 0 : idle + 1;
     if (idle > idle_limit) return lost("a separating curve stays on a border");
     at_ = *next;
     if (moved > margin_slack) push(at_);
+    if (!home_ && !event && moved > margin_slack) {
+      home_ = at_;
+      home_piece_ = arc_.pieces.size() - 1;
+      home_ruling_ = arc_.pieces.back().rulings.size() - 1;
+    }
     if (event) {
       const auto i = std::size_t(event->contact);
       const std::optional<Contact> over = beyond(geometry_, at_.contact[i], event->exit);

@@ -22,7 +22,7 @@ struct TracedArc {
   enum class End {
     plane,   ///< other contacts support too: see `n` and `contacts`
     merged,  ///< the two contacts merge in a free end
-    closed,  ///< back where it began
+    closed,  ///< the curve closes; the pieces are one way round
     lost,    ///< see `reason`
   };
   std::vector<ArcPiece> pieces;

@@ -16,6 +16,10 @@ namespace {
 constexpr double same_branch = 1e-6;
 /// Directions so near to each other are not parted any further.
 constexpr double narrow = 1e-9;
+/// Share of its motion by which a contact may miss the first order of it.
+constexpr double first_order = 0.3;
+/// Spots that are left unresolved before the search is given up.
+constexpr std::size_t failure_limit = 64;
 constexpr int secant_limit = 60;
 /// Values of two contacts that differ by so little are equal.
 constexpr double parting_tie = 1e-15;
@@ -43,13 +47,16 @@ class GraphTracer {
   };
   Sighting seen(const dvec3& n, const Contact& hint);
   void part(const Sighting& a, const Sighting& b, int depth);
+  bool is_near(const Sighting& from, const Sighting& to) const;
   bool joined(const Sighting& a, const Sighting& b) const;
   std::optional<CommonSupport> parting(const Sighting& a, const Sighting& b) const;
   bool is_traced(const CommonSupport& seed) const;
   void trace(const CommonSupport& seed);
   void trace_waiting();
-  void add(TracedArc&& traced, int begin_node, int begin_slot);
-  void connect(int arc, int end, int node, const dvec3& first, const dvec3& second);
+  static constexpr int free_end = -1;
+  static constexpr int no_node = -2;
+  int store(SeparatingArc arc);
+  void connect(int arc, int end, int node);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int add_node(const dvec3& n, FacetContacts facet);
   void find_poles();
@@ -70,10 +77,31 @@ GraphTracer::Sighting GraphTracer::seen(const dvec3& n, const Contact& hint) {
   return {n, geometry_.canonical(s.contact), s.point};
 }
 
+/// Whether the contact's motion, to first order, is that to the other in the same patch: then they
+/// are joined without a climb.
+bool GraphTracer::is_near(const Sighting& from, const Sighting& to) const {
+  if (from.contact.kind != SourceKind::face || !same_element(from.contact, to.contact)) {
+    return false;
+  }
+  const ContactJet j = geometry_.jet(from.contact);
+  const dvec3 dn = to.n - from.n;
+  const double uu = glm::dot(j.dxx, from.n);
+  const double uv = glm::dot(j.dxy, from.n);
+  const double vv = glm::dot(j.dyy, from.n);
+  const double det = uu * vv - uv * uv;
+  if (!(det > 0) || !(uu < 0)) return false;
+  const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
+  const dvec2 rate = dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
+  const dvec2 moved(to.contact.u - from.contact.u, to.contact.v - from.contact.v);
+  const auto length = [&](const dvec2& p) { return glm::length(p.x * j.dx[0] + p.y * j.dx[1]); };
+  return length(rate - moved) < first_order * length(moved);
+}
+
 /// Whether a climb leads from the one contact to the other.
 bool GraphTracer::joined(const Sighting& a, const Sighting& b) const {
   if (glm::distance(a.x, b.x) < same_branch) return true;
   const auto leads = [&](const Sighting& from, const Sighting& to) {
+    if (is_near(from, to)) return true;
     const std::optional<Contact> c = climbed(geometry_, from.contact, to.n);
     return c && glm::distance(geometry_.point(*c), to.x) < same_branch;
   };
@@ -106,7 +134,10 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
     const double slope = glm::dot(s.d(), b.n - a.n) / glm::length(mixed);
     const double next = t - value / slope;
     t = next > lower && next < upper ? next : 0.5 * (lower + upper);
-    if (upper - lower < parting_tie) return std::nullopt;
+    if (upper - lower < parting_tie) {
+      if (std::abs(value) < support_tie) return s;
+      return std::nullopt;
+    }
   }
   return std::nullopt;
 }
@@ -115,7 +146,16 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
 void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   if (joined(a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
-    fail(a.n, "two contacts that are not joined are not parted either");
+    // Two samples on the curve itself.
+    CommonSupport tie;
+    tie.n = a.n;
+    tie.add(geometry_, a.contact);
+    tie.add(geometry_, b.contact);
+    if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < support_tie) {
+      if (!is_traced(tie)) trace(tie);
+    } else {
+      fail(a.n, "two contacts that are not joined are not parted either");
+    }
     return;
   }
   const std::optional<CommonSupport> seed = parting(a, b);
@@ -169,7 +209,8 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
   return false;
 }
 
-/// The facet node of a plane, a new one if there is none yet; -1 if its contacts cannot be told.
+/// The facet node of a plane, a new one if there is none yet; no_node if its contacts cannot be
+/// told.
 int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
     const FacetNode& node = graph_.nodes[k];
@@ -185,7 +226,7 @@ int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, n, contacts);
   if (f) return add_node(n, std::move(*f));
   fail(n, "a plane has contact along a curve");
-  return -1;
+  return no_node;
 }
 
 int GraphTracer::add_node(const dvec3& n, FacetContacts facet) {
@@ -227,9 +268,15 @@ void GraphTracer::find_poles() {
   }
 }
 
-/// Plugs an arc's end into the node's side from the first to the second contact.
-void GraphTracer::connect(int arc, int end, int node, const dvec3& first, const dvec3& second) {
+/// Plugs an arc's end into the side of the node that it crosses.
+void GraphTracer::connect(int arc, int end, int node) {
+  if (node == free_end) return;
   FacetNode& own = graph_.nodes[std::size_t(node)];
+  const SeparatingArc& traced = graph_.arcs[std::size_t(arc)];
+  const Ruling& r =
+      end == 0 ? traced.pieces.front().rulings.front() : traced.pieces.back().rulings.back();
+  const dvec3& first = r.point[end == 0 ? 0 : 1];
+  const dvec3& second = r.point[end == 0 ? 1 : 0];
   const std::size_t count = own.points.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (glm::distance(own.points[i], first) > same_branch ||
@@ -283,47 +330,50 @@ void GraphTracer::trace(const CommonSupport& seed) {
     return;
   }
   SeparatingArc arc;
-  const int index = int(graph_.arcs.size());
   if (ahead.end == TracedArc::End::closed) {
     arc.closed = true;
     arc.pieces = std::move(ahead.pieces);
-    // It began in the middle of a piece.
+    // It begins in the middle of a piece.
     if (arc.pieces.size() > 1 &&
         same_elements(arc.pieces.back().rulings.back(), arc.pieces.front().rulings.front())) {
       std::vector<ArcPiece> first(1, std::move(arc.pieces.front()));
       arc.pieces.erase(arc.pieces.begin());
       append(arc.pieces, std::move(first));
     }
-  } else {
-    CommonSupport turned = seed;
-    std::swap(turned.contact[0], turned.contact[1]);
-    std::swap(turned.jet[0], turned.jet[1]);
-    TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
-    if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
-      fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
-                                                      : "a separating curve closes one way only");
-      return;
-    }
-    const int begin = behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : -2;
-    const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : -2;
-    if (begin == -1 || end == -1) return;
-    reverse(behind.pieces);
-    arc.pieces = std::move(behind.pieces);
-    append(arc.pieces, std::move(ahead.pieces));
-    graph_.arcs.push_back(std::move(arc));
-    const SeparatingArc& own = graph_.arcs.back();
-    const Ruling first = own.pieces.front().rulings.front();
-    const Ruling last = own.pieces.back().rulings.back();
-    if (begin >= 0) connect(index, 0, begin, first.point[0], first.point[1]);
-    if (end >= 0) connect(index, 1, end, last.point[1], last.point[0]);
+    store(std::move(arc));
+    return;
   }
-  if (arc.closed) graph_.arcs.push_back(std::move(arc));
+  CommonSupport turned = seed;
+  std::swap(turned.contact[0], turned.contact[1]);
+  std::swap(turned.jet[0], turned.jet[1]);
+  TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
+  if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
+    fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
+                                                    : "a separating curve closes one way only");
+    return;
+  }
+  const int begin =
+      behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : free_end;
+  const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : free_end;
+  if (begin == no_node || end == no_node) return;
+  reverse(behind.pieces);
+  arc.pieces = std::move(behind.pieces);
+  append(arc.pieces, std::move(ahead.pieces));
+  const int index = store(std::move(arc));
+  connect(index, 0, begin);
+  connect(index, 1, end);
+  trace_waiting();
+}
+
+/// Adds an arc; its number.
+int GraphTracer::store(SeparatingArc arc) {
   Box box;
-  for (const ArcPiece& piece : graph_.arcs.back().pieces) {
+  for (const ArcPiece& piece : arc.pieces) {
     for (const Ruling& r : piece.rulings) box.include(r.n);
   }
   boxes_.push_back(box);
-  trace_waiting();
+  graph_.arcs.push_back(std::move(arc));
+  return int(graph_.arcs.size()) - 1;
 }
 
 /// Traces the arcs that leave facets across sides where none was met yet.
@@ -346,20 +396,14 @@ void GraphTracer::trace_waiting() {
                           : "a separating curve returns into its facet");
         continue;
       }
-      const int end = traced.end == TracedArc::End::plane ? node_of(traced.n, traced.contacts) : -2;
-      if (end == -1) continue;
-      const int index = int(graph_.arcs.size());
-      graph_.arcs.emplace_back();
-      graph_.arcs.back().pieces = std::move(traced.pieces);
-      const Ruling last = graph_.arcs.back().pieces.back().rulings.back();
-      graph_.nodes[std::size_t(node)].slots[i] = {index, 0};
-      graph_.arcs.back().facet[0] = node;
-      if (end >= 0) connect(index, 1, end, last.point[1], last.point[0]);
-      Box box;
-      for (const ArcPiece& piece : graph_.arcs.back().pieces) {
-        for (const Ruling& r : piece.rulings) box.include(r.n);
-      }
-      boxes_.push_back(box);
+      const int end =
+          traced.end == TracedArc::End::plane ? node_of(traced.n, traced.contacts) : free_end;
+      if (end == no_node) continue;
+      SeparatingArc arc;
+      arc.pieces = std::move(traced.pieces);
+      const int index = store(std::move(arc));
+      connect(index, 0, node);
+      connect(index, 1, end);
     }
   }
 }
@@ -379,12 +423,13 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   find_poles();
   trace_waiting();
   for (const CommonSupport& seed : surface_seeds(system_, query_, cells)) {
+    if (graph_.unresolved.size() >= failure_limit) break;
     if (!is_traced(seed)) trace(seed);
   }
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
-    if (!f.alive) continue;
+    if (!f.alive || graph_.unresolved.size() >= failure_limit) continue;
     progress_.check();
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = f.vertex[k];
