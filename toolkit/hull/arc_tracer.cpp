@@ -23,9 +23,6 @@ constexpr double growth = 1.6;
 constexpr double plane_slack = 1e-6;
 /// How far the corrector may move the prediction, as a share of the step.
 constexpr double correction_limit = 0.15;
-/// Contacts so near to each other that keep approaching merge. The system's smallest singular value
-/// falls with the third power of their distance; here rounding moves them by about 1e-8 yet.
-constexpr double merge_distance = 4e-3;
 /// Margins below this are crossed.
 constexpr double margin_slack = 1e-12;
 /// Turn of n by the first step away from a pole.
@@ -360,35 +357,29 @@ TracedArc Trace::closed() {
   return std::move(arc_);
 }
 
-/// Ends the arc where the contacts merge, if they do: their parameters and n, as functions of the
-/// distance rho between them, are smooth there, n and the middle in its square.
+/// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
+/// parameters are smooth there; n and, where both are in one element, the parameters' mean are
+/// smooth functions of its square.
 bool Trace::merge() {
-  const std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
-  const Ruling& last = rulings.back();
-  const auto length = [](const Ruling& r) { return glm::distance(r.point[0], r.point[1]); };
-  const double rho = length(last);
-  const auto before = std::find_if(rulings.rbegin(), rulings.rend(),
-                                   [&](const Ruling& r) { return length(r) > 1.5 * rho; });
-  if (before == rulings.rend()) return false;
-  const double other = length(*before);
-  const double linear = rho / (other - rho);
-  const double squared = rho * rho / (other * other - rho * rho);
+  const Ruling last = at_.ruling();
+  const double rho = glm::distance(last.point[0], last.point[1]);
+  const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / rho;
+  // f(0) = f - rho f' for a function of rho, f - rho f' / 2 for one of its square.
+  const double linear = rho / rate;
+  const double squared = 0.5 * rho / rate;
   Ruling end = last;
-  end.n = last.n + squared * (last.n - before->n);
+  end.n = last.n - squared * tangent_.n;
   const bool one_element = same_element(last.contact[0], last.contact[1]);
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = end.contact[i];
-    const auto extrapolated = [&](double Contact::*t) {
-      const auto middle = [&](const Ruling& r) {
-        return 0.5 * (r.contact[0].*t + r.contact[1].*t);
-      };
-      const double value =
-          one_element ? middle(last) + squared * (middle(last) - middle(*before))
-                      : last.contact[i].*t + linear * (last.contact[i].*t - before->contact[i].*t);
-      return std::clamp(value, 0.0, 1.0);
-    };
-    c.u = extrapolated(&Contact::u);
-    c.v = extrapolated(&Contact::v);
+    dvec2 at = dvec2(c.u, c.v) - linear * tangent_.parameter[i];
+    if (one_element) {
+      at = 0.5 * (dvec2(last.contact[0].u, last.contact[0].v) +
+                  dvec2(last.contact[1].u, last.contact[1].v)) -
+           0.5 * squared * (tangent_.parameter[0] + tangent_.parameter[1]);
+    }
+    c.u = std::clamp(at.x, 0.0, 1.0);
+    c.v = std::clamp(at.y, 0.0, 1.0);
   }
   move_together(geometry_, end.contact[0], end.contact[1]);
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),

@@ -26,6 +26,8 @@ constexpr double parting_tie = 1e-15;
 constexpr int depth_limit = 40;
 /// A seed lies on a curve that was traced if the curve passes it within this distance.
 constexpr double same_curve = 1e-6;
+/// Chords count as this much longer at both ends, as a share, because the curve turns between them.
+constexpr double overlap = 0.2;
 /// Normals of facets are the same below this difference.
 constexpr double same_plane = 1e-7;
 /// Directions of consecutive rulings are no farther apart.
@@ -56,6 +58,8 @@ class GraphTracer {
   static constexpr int free_end = -1;
   static constexpr int no_node = -2;
   int store(SeparatingArc arc);
+  int side_of(int node, const dvec3& first, const dvec3& second) const;
+  bool is_taken(int node, const std::vector<ArcPiece>& pieces) const;
   void connect(int arc, int end, int node);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int add_node(const dvec3& n, FacetContacts facet);
@@ -193,7 +197,7 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
           const dvec3 e0 = x0 - from.point[0];
           const dvec3 e1 = x1 - from.point[1];
           const double s = (glm::dot(en, dn) + glm::dot(e0, d0) + glm::dot(e1, d1)) / square;
-          if (s < -1e-6 || s > 1 + 1e-6) continue;
+          if (s < -overlap || s > 1 + overlap) continue;
           const double off = glm::dot(en, en) + glm::dot(e0, e0) + glm::dot(e1, e1);
           if (off - s * s * square > 0.25 * square + same_curve * same_curve) continue;
           const Ruling there = ruling_between(system_, from, to, s);
@@ -268,30 +272,41 @@ void GraphTracer::find_poles() {
   }
 }
 
+/// The side of a facet from its contact at the one point to that at the other; -1 if there is none.
+int GraphTracer::side_of(int node, const dvec3& first, const dvec3& second) const {
+  const std::vector<dvec3>& points = graph_.nodes[std::size_t(node)].points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (glm::distance(points[i], first) < same_branch &&
+        glm::distance(points[(i + 1) % points.size()], second) < same_branch) {
+      return int(i);
+    }
+  }
+  return -1;
+}
+
+/// Whether an arc is there already across the side of the node at which these pieces arrive.
+bool GraphTracer::is_taken(int node, const std::vector<ArcPiece>& pieces) const {
+  if (node == free_end) return false;
+  const Ruling& last = pieces.back().rulings.back();
+  const int side = side_of(node, last.point[1], last.point[0]);
+  return side >= 0 && graph_.nodes[std::size_t(node)].slots[std::size_t(side)].arc >= 0;
+}
+
 /// Plugs an arc's end into the side of the node that it crosses.
 void GraphTracer::connect(int arc, int end, int node) {
   if (node == free_end) return;
   FacetNode& own = graph_.nodes[std::size_t(node)];
-  const SeparatingArc& traced = graph_.arcs[std::size_t(arc)];
-  const Ruling& r =
-      end == 0 ? traced.pieces.front().rulings.front() : traced.pieces.back().rulings.back();
-  const dvec3& first = r.point[end == 0 ? 0 : 1];
-  const dvec3& second = r.point[end == 0 ? 1 : 0];
-  const std::size_t count = own.points.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (glm::distance(own.points[i], first) > same_branch ||
-        glm::distance(own.points[(i + 1) % count], second) > same_branch) {
-      continue;
-    }
-    if (own.slots[i].arc >= 0) {
-      fail(own.n, "two separating curves leave a facet across one side");
-      return;
-    }
-    own.slots[i] = {arc, end};
+  const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(arc)].pieces;
+  const Ruling& r = end == 0 ? pieces.front().rulings.front() : pieces.back().rulings.back();
+  const int side = side_of(node, r.point[end == 0 ? 0 : 1], r.point[end == 0 ? 1 : 0]);
+  if (side < 0) {
+    fail(own.n, "a separating curve meets a facet in none of its sides");
+  } else if (own.slots[std::size_t(side)].arc >= 0) {
+    fail(own.n, "two separating curves leave a facet across one side");
+  } else {
+    own.slots[std::size_t(side)] = {arc, end};
     graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
-    return;
   }
-  fail(own.n, "a separating curve meets a facet in none of its sides");
 }
 
 /// Reverses the direction, and with it the order of contacts.
@@ -356,6 +371,8 @@ void GraphTracer::trace(const CommonSupport& seed) {
       behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : free_end;
   const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : free_end;
   if (begin == no_node || end == no_node) return;
+  // A facet has one curve across each side: this one is there already.
+  if (is_taken(begin, behind.pieces) || is_taken(end, ahead.pieces)) return;
   reverse(behind.pieces);
   arc.pieces = std::move(behind.pieces);
   append(arc.pieces, std::move(ahead.pieces));

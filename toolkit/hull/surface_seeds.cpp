@@ -3,6 +3,7 @@
 #include <map>
 #include <tuple>
 
+#include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 
@@ -104,7 +105,7 @@ void SeedFinder::cross(const Sheet& s, const dvec2& a, const dvec2& b) {
     seed.n = beyond.n;
     seed.add(geometry_, contact(s, off));
     seed.add(geometry_, beyond.contact);
-    if (glm::length(seed.d()) < same_contact) return;  // about a free end
+    if (glm::length(seed.d()) < merge_distance) return;  // about a free end
     const bool solved = system_.solve(seed, [&](const CommonSupport& now) {
       LinearEquation e;
       e.residual = (fixed == 0 ? now.contact[0].u : now.contact[0].v) - on[fixed];
@@ -119,7 +120,7 @@ void SeedFinder::cross(const Sheet& s, const dvec2& a, const dvec2& b) {
     if (!c || glm::distance(geometry_.point(*c), seed.jet[1].x) > same_contact) continue;
     seed.contact[1] = *c;
     seed.evaluate(geometry_);
-    if (glm::length(seed.d()) < same_contact ||
+    if (glm::length(seed.d()) < merge_distance ||
         query_(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + support_tie) {
       continue;
     }
