@@ -212,6 +212,10 @@ bool Trace::pass_pole(int contact, Side side, double length) {
   const std::optional<Contact> c = climbed(geometry_, at_.contact[other], pole.n);
   if (!c || !same_element(*c, at_.contact[other])) return false;
   pole.contact[other] = *c;
+  // At another pole its parameter along the side is as it was, not where the climb came from.
+  if (const std::optional<Side> at = pole_side(geometry_, *c)) {
+    pole.contact[other] = at_pole(at_.contact[other], *at);
+  }
   pole.evaluate(geometry_);
   const double ahead = length_to(pole);
   if (std::abs(glm::dot(pole.d(), pole.n)) > support_tie || ahead < 0 || ahead > 2 * length ||
