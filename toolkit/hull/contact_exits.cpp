@@ -397,6 +397,8 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
 }
 
 std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {
+  c.u = std::clamp(c.u, 0.0, 1.0);
+  c.v = std::clamp(c.v, 0.0, 1.0);
   return Climb(geometry, geometry.canonical(c), n).run();
 }
 

@@ -106,20 +106,29 @@ void SeedFinder::cross(const Sheet& s, const dvec2& a, const dvec2& b) {
     seed.add(geometry_, contact(s, off));
     seed.add(geometry_, beyond.contact);
     if (glm::length(seed.d()) < merge_distance) return;  // about a free end
-    const bool solved = system_.solve(seed, [&](const CommonSupport& now) {
-      LinearEquation e;
-      e.residual = (fixed == 0 ? now.contact[0].u : now.contact[0].v) - on[fixed];
-      e.parameter[0][fixed] = 1;
-      return e;
-    });
-    if (!solved) continue;
+    const auto solved = [&] {
+      return system_.solve(seed, [&](const CommonSupport& now) {
+        LinearEquation e;
+        e.residual = (fixed == 0 ? now.contact[0].u : now.contact[0].v) - on[fixed];
+        e.parameter[0][fixed] = 1;
+        return e;
+      });
+    };
+    if (!solved()) continue;
+    // The other contact may have moved into a neighbouring element.
+    const std::optional<Contact> other = climbed(geometry_, seed.contact[1], seed.n);
+    if (!other) continue;
+    if (!same_element(*other, seed.contact[1]) || other->u != seed.contact[1].u ||
+        other->v != seed.contact[1].v) {
+      seed.contact[1] = *other;
+      seed.evaluate(geometry_);
+      if (!solved()) continue;
+    }
     const double along = fixed == 0 ? seed.contact[0].v : seed.contact[0].u;
     const auto [low, high] = std::minmax(a[1 - fixed], b[1 - fixed]);
     if (along < low || along > high) continue;
-    const std::optional<Contact> c = climbed(geometry_, seed.contact[1], seed.n);
-    if (!c || glm::distance(geometry_.point(*c), seed.jet[1].x) > same_contact) continue;
-    seed.contact[1] = *c;
-    seed.evaluate(geometry_);
+    const Contact& found = seed.contact[1];
+    if (found.u < 0 || found.u > 1 || found.v < 0 || found.v > 1) continue;
     if (glm::length(seed.d()) < merge_distance ||
         query_(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + support_tie) {
       continue;
