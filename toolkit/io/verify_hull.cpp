@@ -1,0 +1,417 @@
+#include "taut/io/verify_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <random>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/parallel.h"
+#include "taut/core/tolerances.h"
+#include "taut/surface/bezier.h"
+
+namespace taut {
+namespace {
+
+using DirectedCurve = HullDocument::DirectedCurve;
+
+/// Ends of curves closer than this fraction of the diagonal are one: curves meet in the same points
+/// but for the rounding of two computations, and that of their coordinates.
+constexpr double same_point = 1e-9;
+
+/// How far, as a share of a Bezier patch's parameters, a contact may lie beside the polygon of a
+/// region's outline: outlines are smooth between points whose normals differ by up to 0.1.
+constexpr double outline_slack = 0.02;
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+
+/// The ends of all curves, numbered by place.
+class CurveEnds {
+ public:
+  CurveEnds(const HullDocument& hull, double tolerance);
+  /// The vertex in which the curve begins (0) or ends (1).
+  int vertex(int curve, int end) const { return vertex_[2 * to_size(curve) + to_size(end)]; }
+  /// Begin and end are one vertex, and that is all there is of it.
+  bool is_point(int curve) const { return point_[to_size(curve)]; }
+
+ private:
+  std::vector<int> vertex_;
+  std::vector<bool> point_;
+};
+
+CurveEnds::CurveEnds(const HullDocument& hull, double tolerance) {
+  std::vector<dvec3> ends;
+  for (const HullDocument::Curve& curve : hull.curves) {
+    ends.push_back(curve.points.front());
+    ends.push_back(curve.points.back());
+    point_.push_back(std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec3& p) {
+      return glm::distance(p, curve.points.front()) <= tolerance;
+    }));
+  }
+  // Sweeps along x; each end takes the number of the first one that it is close to.
+  std::vector<std::size_t> order(ends.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return ends[a].x != ends[b].x ? ends[a].x < ends[b].x : a < b;
+  });
+  vertex_.assign(ends.size(), -1);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t a = order[i];
+    if (vertex_[a] < 0) vertex_[a] = int(a);
+    for (std::size_t k = i + 1; k < order.size(); ++k) {
+      const std::size_t b = order[k];
+      if (ends[b].x - ends[a].x > tolerance) break;
+      if (vertex_[b] < 0 && glm::distance(ends[a], ends[b]) <= tolerance) vertex_[b] = vertex_[a];
+    }
+  }
+}
+
+/// A point of a source and its derivatives over a whole Bezier patch or curve.
+struct SourceJet {
+  dvec3 x = dvec3(0.0);
+  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
+};
+
+/// Checks one document.
+class HullVerifier {
+ public:
+  HullVerifier(const HullDocument& hull, const Scene& scene, const VerifyOptions& options);
+  HullVerification run();
+
+ private:
+  void check_structure();
+  bool closes(int face, const CurveEnds& ends) const;
+  bool names_its_curves(int face, const CurveEnds& ends) const;
+  int euler(const CurveEnds& ends) const;
+  int characteristic(const HullDocument::Face& face) const;
+
+  std::optional<SourceJet> jet(const HullDocument::Contact& c) const;
+  void check_contact(const HullDocument::Contact& c, const dvec3& n);
+  void check_geometry();
+  void check_support();
+  void check_cover();
+  bool covers(const SourceContact& c) const;
+
+  double relative(double length) const {
+    return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
+  }
+  /// A length that is no number is as bad as can be.
+  static void raise(double& worst, double value) {
+    worst = std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(worst, value);
+  }
+
+  const HullDocument& hull_;
+  const Scene& scene_;
+  const VerifyOptions& options_;
+  double diagonal_;
+  /// As homogeneous control nets.
+  std::vector<std::vector<BezierPatch>> nets_;
+  std::vector<std::vector<DirectedCurve>> curves_of_;  ///< per face, with it to the left
+  std::map<int, int> place_of_source_;
+  HullVerification result_;
+};
+
+HullVerifier::HullVerifier(const HullDocument& hull, const Scene& scene,
+                           const VerifyOptions& options)
+    : hull_(hull),
+      scene_(scene),
+      options_(options),
+      diagonal_(scene.diagonal()),
+      curves_of_(hull.faces.size()) {
+  for (std::size_t i = 0; i < hull.sources.size(); ++i) {
+    place_of_source_[hull.sources[i].id] = int(i);
+    std::vector<BezierPatch>& nets = nets_.emplace_back();
+    for (const HullDocument::Patch& patch : hull.sources[i].patches) {
+      BezierPatch& net = nets.emplace_back();
+      net.degree_u = patch.rows - 1;
+      net.degree_v = patch.columns - 1;
+      for (const dvec4& p : patch.points) net.points.push_back(homogeneous(dvec3(p), p.w));
+    }
+  }
+  for (std::size_t i = 0; i < hull.curves.size(); ++i) {
+    const auto [left, right] = hull.curves[i].faces;
+    if (left >= 0) curves_of_[to_size(left)].emplace_back(int(i), 1);
+    if (right >= 0) curves_of_[to_size(right)].emplace_back(int(i), -1);
+  }
+}
+
+HullVerification HullVerifier::run() {
+  if (hull_.dimension >= 2) {
+    check_structure();
+  } else {
+    result_.complete = result_.closed = true;
+    result_.euler = 2;
+  }
+  check_geometry();
+  options_.progress.update("verify", 0.1);
+  check_support();
+  options_.progress.update("verify", 0.8);
+  if (hull_.dimension == 3) check_cover();
+  return result_;
+}
+
+void HullVerifier::check_structure() {
+  const Box box = scene_.box();
+  const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double rounding = coordinate_rounding * (reach.x + reach.y + reach.z);
+  const CurveEnds ends(hull_, same_point * diagonal_ + rounding);
+  result_.complete = !hull_.faces.empty();
+  for (const HullDocument::Curve& curve : hull_.curves) {
+    if (curve.faces[0] < 0 || curve.faces[1] < 0) result_.complete = false;
+  }
+  result_.closed = true;
+  for (int f = 0; f < int(hull_.faces.size()); ++f) {
+    if (!closes(f, ends) || !names_its_curves(f, ends)) result_.closed = false;
+  }
+  result_.euler = euler(ends);
+}
+
+/// As many of a face's curves begin in a vertex as end there.
+bool HullVerifier::closes(int face, const CurveEnds& ends) const {
+  std::map<int, int> balance;
+  for (const auto& [curve, sense] : curves_of_[to_size(face)]) {
+    balance[ends.vertex(curve, 0)] += sense;
+    balance[ends.vertex(curve, 1)] -= sense;
+  }
+  return std::all_of(balance.begin(), balance.end(), [](const auto& b) { return b.second == 0; });
+}
+
+/// The curves that a face names as its outlines or sides are those that have it as a face.
+bool HullVerifier::names_its_curves(int f, const CurveEnds& ends) const {
+  const HullDocument::Face& face = hull_.faces[to_size(f)];
+  std::vector<DirectedCurve> having = curves_of_[to_size(f)];
+  if (face.kind == FaceKind::scroll) {
+    // Its sides, each of which has it, and perhaps rulings at its ends.
+    std::vector<int> sides = face.curves[0];
+    sides.insert(sides.end(), face.curves[1].begin(), face.curves[1].end());
+    const auto is_side = [&](int c) {
+      return std::find(sides.begin(), sides.end(), c) != sides.end();
+    };
+    const auto has = [&](int c) {
+      return std::any_of(having.begin(), having.end(), [&](const auto& d) { return d.first == c; });
+    };
+    return std::all_of(sides.begin(), sides.end(), has) &&
+           std::all_of(having.begin(), having.end(), [&](const DirectedCurve& d) {
+             return is_side(d.first) ||
+                    hull_.curves[to_size(d.first)].kind == HullCurveKind::ruling;
+           });
+  }
+  std::vector<DirectedCurve> named;
+  const auto runs_on = [&](const std::vector<DirectedCurve>& outline) {
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const DirectedCurve& now = outline[k];
+      const DirectedCurve& next = outline[(k + 1) % outline.size()];
+      if (ends.vertex(now.first, now.second > 0 ? 1 : 0) !=
+          ends.vertex(next.first, next.second > 0 ? 0 : 1)) {
+        return false;
+      }
+    }
+    named.insert(named.end(), outline.begin(), outline.end());
+    return true;
+  };
+  for (const HullDocument::Loop& loop : face.loops) {
+    if (!runs_on(loop.curves)) return false;
+  }
+  if (!runs_on(face.outline)) return false;
+  std::sort(having.begin(), having.end());
+  std::sort(named.begin(), named.end());
+  return having == named;
+}
+
+int HullVerifier::euler(const CurveEnds& ends) const {
+  std::map<int, int> uses;  // of vertices, by curves that have two of them
+  for (int c = 0; c < int(hull_.curves.size()); ++c) {
+    if (ends.is_point(c) || ends.vertex(c, 0) == ends.vertex(c, 1)) continue;
+    for (const int end : {0, 1}) ++uses[ends.vertex(c, end)];
+  }
+  int edges = 0;
+  for (int c = 0; c < int(hull_.curves.size()); ++c) {
+    if (ends.is_point(c)) continue;
+    const bool closed = ends.vertex(c, 0) == ends.vertex(c, 1);
+    if (!closed || uses.contains(ends.vertex(c, 0))) ++edges;
+  }
+  int faces = 0;
+  for (const HullDocument::Face& face : hull_.faces) faces += characteristic(face);
+  return int(uses.size()) - edges + faces;
+}
+
+/// Of a face of genus 0, from the number of its outlines.
+int HullVerifier::characteristic(const HullDocument::Face& face) const {
+  if (face.kind == FaceKind::patch) return 2 - int(face.loops.size());
+  if (face.kind == FaceKind::facet || face.rulings.size() < 2) return 1;
+  // A closed scroll is a ring, or a disc about the vertex that it has on one side.
+  const HullDocument::Ruling& first = face.rulings.front();
+  const HullDocument::Ruling& last = face.rulings.back();
+  const bool ring = glm::distance(first.n, last.n) <= same_point &&
+                    relative(glm::distance(first.a.p, last.a.p)) <= same_point &&
+                    relative(glm::distance(first.b.p, last.b.p)) <= same_point;
+  if (!ring) return 1;
+  return 2 - (face.curves[0].empty() ? 0 : 1) - (face.curves[1].empty() ? 0 : 1);
+}
+
+/// None where no patch of the source has the contact's parameters.
+std::optional<SourceJet> HullVerifier::jet(const HullDocument::Contact& c) const {
+  const HullDocument::Source& source = hull_.sources[to_size(c.source)];
+  for (std::size_t i = 0; i < source.patches.size(); ++i) {
+    const HullDocument::Patch& patch = source.patches[i];
+    std::array<double, 2> t = {0, 0};
+    bool inside = true;
+    for (std::size_t k = 0; k < patch.domain.size(); ++k) {
+      const Interval& interval = patch.domain[k];
+      t[k] = (c.uv[k] - interval.lower) / (interval.upper - interval.lower);
+      if (c.uv[k] == interval.upper) t[k] = 1;
+      inside = inside && 0 <= t[k] && t[k] <= 1;
+    }
+    if (!inside) continue;
+    const BezierPatch& net = nets_[to_size(c.source)][i];
+    if (source.kind == SourceKind::vertex) return SourceJet{dvec3(patch.points[0]), {}};
+    if (source.kind == SourceKind::edge) {
+      const CurveJet j = taut::jet(BezierCurve{net.points}, t[0]);
+      return SourceJet{j.c, {j.ct, dvec3(0.0)}};
+    }
+    const PatchJet1 j = jet1(net, t[0], t[1]);
+    return SourceJet{j.S, {j.Su, j.Sv}};
+  }
+  return {};
+}
+
+void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n) {
+  const std::optional<SourceJet> at = jet(c);
+  if (!at) {
+    raise(result_.off_source, std::numeric_limits<double>::infinity());
+    return;
+  }
+  raise(result_.off_source, relative(glm::distance(at->x, c.p)));
+  for (const dvec3& d : at->dx) raise(result_.tangency, relative(glm::dot(d, n)));
+}
+
+void HullVerifier::check_geometry() {
+  for (const HullDocument::Face& face : hull_.faces) {
+    for (const HullDocument::Ruling& r : face.rulings) {
+      check_contact(r.a, r.n);
+      check_contact(r.b, r.n);
+      raise(result_.flatness, relative(glm::dot(r.a.p - r.b.p, r.n)));
+    }
+    if (face.kind != FaceKind::facet) continue;
+    for (const HullDocument::Contact& c : face.contacts) {
+      check_contact(c, face.normal);
+      raise(result_.flatness, relative(glm::dot(c.p, face.normal) - face.offset));
+    }
+    for (const dvec3& p : face.boundary) {
+      raise(result_.flatness, relative(glm::dot(p, face.normal) - face.offset));
+    }
+  }
+}
+
+void HullVerifier::check_support() {
+  struct Claim {
+    dvec3 n;
+    double h;  ///< about the scene's centre, in model units
+  };
+  std::vector<Claim> claims;
+  const SceneFrame& frame = scene_.frame();
+  for (const HullDocument::Face& face : hull_.faces) {
+    for (const HullDocument::Ruling& r : face.rulings) {
+      const dvec3 n = unit(r.n);
+      raise(result_.tangency, std::abs(glm::length(r.n) - 1));
+      for (const dvec3& p : {r.a.p, r.b.p}) claims.push_back({n, glm::dot(p - frame.center, n)});
+    }
+    if (face.kind != FaceKind::facet) continue;
+    raise(result_.tangency, std::abs(glm::length(face.normal) - 1));
+    claims.push_back({unit(face.normal), face.offset - glm::dot(face.normal, frame.center)});
+  }
+  std::vector<double> gap(claims.size());
+  constexpr std::size_t grain = 64;
+  parallel_for(claims.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
+    options_.progress.check();
+    SupportQuery query(scene_);
+    Contact near;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (claims[i].n == dvec3(0.0)) {
+        gap[i] = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      const Support s = query(claims[i].n, near);
+      near = s.contact;
+      gap[i] = frame.length_to_model(s.h) - claims[i].h;
+    }
+  });
+  for (const double g : gap) {
+    raise(result_.model_outside, g > 0 ? relative(g) : std::isnan(g) ? g : 0);
+    raise(result_.hull_outside, g < 0 ? relative(g) : 0);
+  }
+  result_.directions += int(claims.size());
+}
+
+/// Whether the point lies in the polygon, by the parity of crossings, or within the slack of it.
+bool near_polygon(const std::vector<std::vector<dvec2>>& loops, const dvec2& p,
+                  const dvec2& slack) {
+  bool inside = false;
+  for (const std::vector<dvec2>& loop : loops) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const dvec2 a = loop[k];
+      const dvec2 b = loop[(k + 1) % loop.size()];
+      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) {
+        inside = !inside;
+      }
+      const dvec2 side = (b - a) / slack;
+      const dvec2 from = (p - a) / slack;
+      const double length = glm::dot(side, side);
+      const double s = length > 0 ? std::clamp(glm::dot(from, side) / length, 0.0, 1.0) : 0;
+      if (glm::length(from - s * side) <= 1) return true;
+    }
+  }
+  return inside;
+}
+
+bool HullVerifier::covers(const SourceContact& c) const {
+  const auto place = place_of_source_.find(c.source);
+  if (place == place_of_source_.end()) return false;
+  if (c.kind != SourceKind::face) return true;
+  const HullDocument::Source& source = hull_.sources[to_size(place->second)];
+  for (const HullDocument::Face& face : hull_.faces) {
+    if (face.kind != FaceKind::patch || face.source != place->second) continue;
+    for (const HullDocument::Region& region : face.regions) {
+      const std::vector<Interval>& domain = source.patches[to_size(region.patch)].domain;
+      const dvec2 slack(outline_slack * (domain[0].upper - domain[0].lower),
+                        outline_slack * (domain[1].upper - domain[1].lower));
+      if (near_polygon(region.loops, {c.u, c.v}, slack)) return true;
+    }
+  }
+  return false;
+}
+
+void HullVerifier::check_cover() {
+  std::mt19937_64 random(options_.seed);
+  std::normal_distribution<double> gaussian;
+  std::vector<dvec3> directions;
+  for (int k = 0; k < options_.random_directions; ++k) {
+    const double x = gaussian(random);
+    const double y = gaussian(random);
+    const dvec3 n = unit({x, y, gaussian(random)});
+    if (n != dvec3(0.0)) directions.push_back(n);
+  }
+  std::vector<char> missed(directions.size(), 0);
+  constexpr std::size_t grain = 64;
+  parallel_for(directions.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
+    options_.progress.check();
+    SupportQuery query(scene_);
+    for (std::size_t i = begin; i < end; ++i) {
+      missed[i] = covers(scene_.source(query(directions[i]).contact)) ? 0 : 1;
+    }
+  });
+  result_.uncovered = int(std::count(missed.begin(), missed.end(), 1));
+  result_.directions += int(directions.size());
+}
+
+}  // namespace
+
+HullVerification verify(const HullDocument& hull, const Scene& scene,
+                        const VerifyOptions& options) {
+  return HullVerifier(hull, scene, options).run();
+}
+
+}  // namespace taut
