@@ -370,6 +370,31 @@ TEST_F(Cli, ExactHullsAsDocumentsAndProjects) {
   EXPECT_TRUE(fs::exists(path("t-model.ply")));
 }
 
+TEST_F(Cli, VerifyReadsExactHulls) {
+  const std::string points = plant("p.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
+  ASSERT_EQ(run("hull " + points + " -o h.hull.json -o h.hull.cbor -q").exit_code, 0);
+  const Result good = run("verify h.hull.json " + points + " --relative 1e-14");
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_EQ(good.out.find(" no"), std::string::npos) << good.out;
+  EXPECT_EQ(run("verify - " + points + " --format hull.cbor <h.hull.cbor").exit_code, 0);
+  const Json report = Json::parse(run("verify --json h.hull.cbor " + points).out);
+  for (const char* key : {"is_hull", "complete", "closed", "topological_sphere", "covered"}) {
+    EXPECT_EQ(report[key], true) << key;
+  }
+  EXPECT_EQ(report["euler"], 2);
+  EXPECT_LE(report["model_outside"], 1e-15);
+
+  Json hull = Json::parse(content(path("h.hull.json")));
+  hull["curves"][2]["faces"][0] = -1;
+  plant("open.hull.json", hull.dump());
+  const Result open = run("verify open.hull.json " + points);
+  EXPECT_EQ(open.exit_code, 1);
+  EXPECT_NE(open.err.find("faces are missing, not closed"), std::string::npos) << open.err;
+  EXPECT_EQ(run("verify h.hull.json " + plant("q.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 2\n")).exit_code,
+            1);
+  expect_failure("verify " + plant("bad.hull.json", "{}") + " " + points, 3, "bad.hull.json: ");
+}
+
 TEST_F(Cli, InfoConvertsToModelDocuments) {
   EXPECT_EQ(run("info " + teapot_ + " -o a.taut.json").exit_code, 0);
   EXPECT_EQ(run("info a.taut.json " + teapot_ + " -o both.taut.cbor").exit_code, 0);

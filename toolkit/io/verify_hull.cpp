@@ -93,7 +93,8 @@ class HullVerifier {
   void check_geometry();
   void check_support();
   void check_cover();
-  bool covers(const SourceContact& c) const;
+  bool covers(const Contact& contact) const;
+  bool covers(int source, const dvec2& uv) const;
 
   double relative(double length) const {
     return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
@@ -367,10 +368,21 @@ bool near_polygon(const std::vector<std::vector<dvec2>>& loops, const dvec2& p,
   return inside;
 }
 
-bool HullVerifier::covers(const SourceContact& c) const {
-  const auto place = place_of_source_.find(c.source);
+/// On an edge or vertex that the document names, or on a patch, be it at its border.
+bool HullVerifier::covers(const Contact& contact) const {
+  const SourceContact c = scene_.source(contact);
+  if (c.kind != SourceKind::face && place_of_source_.contains(c.source)) return true;
+  if (contact.kind != SourceKind::face) return false;
+  const Model& model = scene_.model();
+  const Part& part = model.parts()[to_size(model.instances()[to_size(contact.instance)].part)];
+  const Patch& patch = part.patches()[to_size(contact.element)];
+  return covers(model.source_id({SourceKind::face, contact.instance, patch.face}),
+                {patch.u.at(contact.u), patch.v.at(contact.v)});
+}
+
+bool HullVerifier::covers(int id, const dvec2& uv) const {
+  const auto place = place_of_source_.find(id);
   if (place == place_of_source_.end()) return false;
-  if (c.kind != SourceKind::face) return true;
   const HullDocument::Source& source = hull_.sources[to_size(place->second)];
   for (const HullDocument::Face& face : hull_.faces) {
     if (face.kind != FaceKind::patch || face.source != place->second) continue;
@@ -378,7 +390,7 @@ bool HullVerifier::covers(const SourceContact& c) const {
       const std::vector<Interval>& domain = source.patches[to_size(region.patch)].domain;
       const dvec2 slack(outline_slack * (domain[0].upper - domain[0].lower),
                         outline_slack * (domain[1].upper - domain[1].lower));
-      if (near_polygon(region.loops, {c.u, c.v}, slack)) return true;
+      if (near_polygon(region.loops, uv, slack)) return true;
     }
   }
   return false;
@@ -400,7 +412,7 @@ void HullVerifier::check_cover() {
     options_.progress.check();
     SupportQuery query(scene_);
     for (std::size_t i = begin; i < end; ++i) {
-      missed[i] = covers(scene_.source(query(directions[i]).contact)) ? 0 : 1;
+      missed[i] = covers(query(directions[i]).contact) ? 0 : 1;
     }
   });
   result_.uncovered = int(std::count(missed.begin(), missed.end(), 1));
