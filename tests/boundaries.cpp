@@ -1,5 +1,6 @@
 #include "boundaries.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -152,6 +153,65 @@ KnownBoundary two_spheres_boundary(const dmat3& rotation, const dvec3& shift) {
   scroll.kind = FaceKind::scroll;
   scroll.scroll = {0, 0, 4};
   scroll.scroll_curves = {std::vector<int>{0}, std::vector<int>{1}};
+  return known;
+}
+
+KnownBoundary cylinder_boundary() {
+  KnownBoundary known{make_scene(cylinder(1, 2)), {}};
+  const ContactGeometry geometry(known.scene);
+  const Part& part = known.scene.model().parts()[0];
+  HullBoundary& boundary = known.boundary;
+  boundary.faces.resize(3);
+  boundary.curves.resize(3);
+  // The pieces by their quarter and height, which run all the same way.
+  std::array<std::array<int, 4>, 2> pieces{};
+  for (int k = 0; k < int(part.pieces().size()); ++k) {
+    const dvec3 middle = point(part.pieces()[std::size_t(k)].bezier, 0.5);
+    const int quarter = middle.y > 0 ? (middle.x > 0 ? 0 : 1) : (middle.x < 0 ? 2 : 3);
+    pieces[middle.z > 1 ? 1 : 0][std::size_t(quarter)] = k;
+  }
+  SeparatingArc& arc = boundary.arcs.emplace_back();
+  arc.closed = true;
+  for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+    ArcPiece& piece = arc.pieces.emplace_back();
+    for (int step = 0; step <= steps; ++step) {
+      Ruling& ruling = piece.rulings.emplace_back();
+      for (std::size_t k = 0; k < 2; ++k) {
+        ruling.contact[k] = {0, SourceKind::edge, pieces[k][quarter], double(step) / steps, 0};
+        ruling.point[k] = geometry.point(ruling.contact[k]);
+      }
+      const dvec3 x = known.scene.frame().to_model(ruling.point[0]);
+      ruling.n = unit({x.x, x.y, 0});
+      if (step == 0 && quarter > 0) ruling.n = arc.pieces[quarter - 1].rulings.back().n;
+      const std::array<std::size_t, 2> curves = {quarter < 2 ? 0U : 1U, 2U};
+      for (std::size_t k = 0; k < 2; ++k) {
+        std::vector<dvec3>& points = boundary.curves[curves[k]].points;
+        if (step > 0 || points.empty()) points.push_back(ruling.point[k]);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    boundary.curves[k].kind = HullCurveKind::edge;
+    boundary.curves[k].faces = k < 2 ? std::array<int, 2>{2, 0} : std::array<int, 2>{1, 2};
+    boundary.curves[k].source = known.scene.source(arc.pieces[0].rulings[5].contact[k / 2]).source;
+  }
+  boundary.curves[2].closed = true;
+  for (std::size_t k = 0; k < 2; ++k) {
+    HullFace& facet = boundary.faces[k];
+    facet.n = dvec3(0, 0, k == 0 ? -1 : 1);
+    for (const std::size_t quarter : {0, 1, 2}) {
+      facet.contacts.push_back({0, SourceKind::edge, pieces[k][quarter], 0.5, 0});
+      facet.points.push_back(geometry.point(facet.contacts.back()));
+    }
+    facet.offset = glm::dot(facet.n, facet.points[0]);
+  }
+  std::reverse(boundary.faces[0].contacts.begin(), boundary.faces[0].contacts.end());
+  std::reverse(boundary.faces[0].points.begin(), boundary.faces[0].points.end());
+  HullFace& scroll = boundary.faces[2];
+  scroll.kind = FaceKind::scroll;
+  scroll.source = 0;
+  scroll.scroll = {0, 0, 4};
+  scroll.scroll_curves = {std::vector<int>{0, 1}, std::vector<int>{2}};
   return known;
 }
 

@@ -19,4 +19,9 @@ KnownBoundary tetrahedron_boundary(const taut::dvec3& shift = taut::dvec3(0.0));
 KnownBoundary two_spheres_boundary(const taut::dmat3& rotation = taut::dmat3(1.0),
                                    const taut::dvec3& shift = taut::dvec3(0.0));
 
+/// The lateral surface of a cylinder of radius 1 and height 2: 2 facets, 1 closed scroll on the
+/// surface, with contacts on its borders; the lower circle is two curves, the upper one a single
+/// closed one.
+KnownBoundary cylinder_boundary();
+
 }  // namespace taut_test

@@ -150,6 +150,39 @@ TEST(HullDocument, TwoSpheres) {
   expect_round_trip(hull);
 }
 
+TEST(HullDocument, Cylinder) {
+  const HullDocument hull = document(cylinder_boundary());
+  ASSERT_EQ(hull.sources.size(), 3U);
+  EXPECT_EQ(hull.sources[0].kind, SourceKind::face);
+  for (const std::size_t k : {1, 2}) {
+    EXPECT_EQ(hull.sources[k].kind, SourceKind::edge);
+    ASSERT_EQ(hull.sources[k].patches.size(), 4U);
+    EXPECT_EQ(hull.sources[k].patches[0].rows, 1);
+    EXPECT_EQ(hull.sources[k].patches[0].columns, 3);
+  }
+  EXPECT_EQ(hull.faces[2].source, 0);
+  EXPECT_EQ(hull.faces[2].curves[0], (std::vector<int>{0, 1}));
+  for (const HullDocument::Ruling& r : hull.faces[2].rulings) {
+    EXPECT_LE(error_of(hull, r.a), 1e-15);
+    EXPECT_LE(error_of(hull, r.b), 1e-15);
+    EXPECT_LE(glm::distance(r.b.p - r.a.p, dvec3(0, 0, 2)), 1e-15);
+  }
+  using Curves = std::vector<HullDocument::DirectedCurve>;
+  EXPECT_EQ(hull.faces[0].outline, (Curves{{0, -1}, {1, -1}}));
+  EXPECT_EQ(hull.faces[1].outline, (Curves{{2, 1}}));
+  for (const std::size_t k : {0, 1}) {
+    const HullDocument::Face& facet = hull.faces[k];
+    EXPECT_EQ(facet.offset, k == 0 ? 0 : 2);
+    ASSERT_EQ(facet.boundary.size(), 64U);
+    dvec3 area(0.0);
+    for (std::size_t i = 0; i < 64; ++i) {
+      area += 0.5 * glm::cross(facet.boundary[i], facet.boundary[(i + 1) % 64]);
+    }
+    EXPECT_NEAR(glm::dot(area, facet.normal), 3.14, 0.01);
+  }
+  expect_round_trip(hull);
+}
+
 TEST(HullDocument, PlacedInstancesFarFromTheOrigin) {
   const dvec3 shift(100, -200, 50);
   const KnownBoundary known = two_spheres_boundary(skew_rotation(), shift);

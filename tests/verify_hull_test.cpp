@@ -38,6 +38,11 @@ TEST(VerifyHull, ExactBoundariesPass) {
   }
 }
 
+TEST(VerifyHull, FacetsWithinCirclesPass) {
+  const HullVerification found = verified(cylinder_boundary());
+  EXPECT_TRUE(found.is_hull(exact)) << found.euler << " " << found.uncovered;
+}
+
 TEST(VerifyHull, PolyhedralHullsPass) {
   const std::vector<std::vector<dvec3>> sets = {
       {{1, 2, 3}},
