@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <random>
 
 #include "taut/bounds/support_query.h"
@@ -75,6 +74,12 @@ struct SourceJet {
   std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
 };
 
+/// A region with a box of the parameters that count as its own.
+struct RegionBox {
+  const HullDocument::Region* region = nullptr;
+  dvec2 slack, lower, upper;
+};
+
 /// Checks one document.
 class HullVerifier {
  public:
@@ -88,11 +93,12 @@ class HullVerifier {
   int euler(const CurveEnds& ends) const;
   int characteristic(const HullDocument::Face& face) const;
 
-  std::optional<SourceJet> jet(const HullDocument::Contact& c) const;
+  std::vector<SourceJet> jets(const HullDocument::Contact& c) const;
   void check_contact(const HullDocument::Contact& c, const dvec3& n);
   void check_geometry();
   void check_support();
   void check_cover();
+  void list_regions();
   bool covers(const Contact& contact) const;
   bool covers(int source, const dvec2& uv) const;
 
@@ -112,6 +118,7 @@ class HullVerifier {
   std::vector<std::vector<BezierPatch>> nets_;
   std::vector<std::vector<DirectedCurve>> curves_of_;  ///< per face, with it to the left
   std::map<int, int> place_of_source_;
+  std::vector<std::vector<RegionBox>> regions_of_;  ///< per source
   HullVerification result_;
 };
 
@@ -253,9 +260,10 @@ int HullVerifier::characteristic(const HullDocument::Face& face) const {
   return 2 - (face.curves[0].empty() ? 0 : 1) - (face.curves[1].empty() ? 0 : 1);
 }
 
-/// None where no patch of the source has the contact's parameters.
-std::optional<SourceJet> HullVerifier::jet(const HullDocument::Contact& c) const {
+/// By each of the source's patches that has the contact's parameters: several where they meet.
+std::vector<SourceJet> HullVerifier::jets(const HullDocument::Contact& c) const {
   const HullDocument::Source& source = hull_.sources[to_size(c.source)];
+  std::vector<SourceJet> found;
   for (std::size_t i = 0; i < source.patches.size(); ++i) {
     const HullDocument::Patch& patch = source.patches[i];
     std::array<double, 2> t = {0, 0};
@@ -268,25 +276,34 @@ std::optional<SourceJet> HullVerifier::jet(const HullDocument::Contact& c) const
     }
     if (!inside) continue;
     const BezierPatch& net = nets_[to_size(c.source)][i];
-    if (source.kind == SourceKind::vertex) return SourceJet{dvec3(patch.points[0]), {}};
-    if (source.kind == SourceKind::edge) {
+    if (source.kind == SourceKind::vertex) {
+      found.push_back({dvec3(patch.points[0]), {}});
+    } else if (source.kind == SourceKind::edge) {
       const CurveJet j = taut::jet(BezierCurve{net.points}, t[0]);
-      return SourceJet{j.c, {j.ct, dvec3(0.0)}};
+      found.push_back({j.c, {j.ct, dvec3(0.0)}});
+    } else {
+      const PatchJet1 j = jet1(net, t[0], t[1]);
+      found.push_back({j.S, {j.Su, j.Sv}});
     }
-    const PatchJet1 j = jet1(net, t[0], t[1]);
-    return SourceJet{j.S, {j.Su, j.Sv}};
   }
-  return {};
+  return found;
 }
 
+/// The contact is on one of its patches, and tangent there.
 void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n) {
-  const std::optional<SourceJet> at = jet(c);
-  if (!at) {
-    raise(result_.off_source, std::numeric_limits<double>::infinity());
-    return;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double off = infinity;
+  double slope = 0;
+  for (const SourceJet& jet : jets(c)) {
+    const double off_here = relative(glm::distance(jet.x, c.p));
+    double slope_here = 0;
+    for (const dvec3& d : jet.dx) raise(slope_here, relative(glm::dot(d, n)));
+    if (!(off_here + slope_here < off + slope)) continue;
+    off = off_here;
+    slope = slope_here;
   }
-  raise(result_.off_source, relative(glm::distance(at->x, c.p)));
-  for (const dvec3& d : at->dx) raise(result_.tangency, relative(glm::dot(d, n)));
+  raise(result_.off_source, off);
+  raise(result_.tangency, slope);
 }
 
 void HullVerifier::check_geometry() {
@@ -383,20 +400,38 @@ bool HullVerifier::covers(const Contact& contact) const {
 bool HullVerifier::covers(int id, const dvec2& uv) const {
   const auto place = place_of_source_.find(id);
   if (place == place_of_source_.end()) return false;
-  const HullDocument::Source& source = hull_.sources[to_size(place->second)];
+  const std::vector<RegionBox>& regions = regions_of_[to_size(place->second)];
+  return std::any_of(regions.begin(), regions.end(), [&](const RegionBox& box) {
+    return glm::all(glm::lessThanEqual(box.lower, uv)) &&
+           glm::all(glm::lessThanEqual(uv, box.upper)) &&
+           near_polygon(box.region->loops, uv, box.slack);
+  });
+}
+
+void HullVerifier::list_regions() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  regions_of_.resize(hull_.sources.size());
   for (const HullDocument::Face& face : hull_.faces) {
-    if (face.kind != FaceKind::patch || face.source != place->second) continue;
     for (const HullDocument::Region& region : face.regions) {
-      const std::vector<Interval>& domain = source.patches[to_size(region.patch)].domain;
-      const dvec2 slack(outline_slack * (domain[0].upper - domain[0].lower),
-                        outline_slack * (domain[1].upper - domain[1].lower));
-      if (near_polygon(region.loops, uv, slack)) return true;
+      const std::vector<Interval>& domain =
+          hull_.sources[to_size(face.source)].patches[to_size(region.patch)].domain;
+      RegionBox box{&region,
+                    outline_slack *
+                        dvec2(domain[0].upper - domain[0].lower, domain[1].upper - domain[1].lower),
+                    dvec2(infinity), dvec2(-infinity)};
+      for (const std::vector<dvec2>& loop : region.loops) {
+        for (const dvec2& p : loop) {
+          box.lower = glm::min(box.lower, p - box.slack);
+          box.upper = glm::max(box.upper, p + box.slack);
+        }
+      }
+      regions_of_[to_size(face.source)].push_back(box);
     }
   }
-  return false;
 }
 
 void HullVerifier::check_cover() {
+  list_regions();
   std::mt19937_64 random(options_.seed);
   std::normal_distribution<double> gaussian;
   std::vector<dvec3> directions;

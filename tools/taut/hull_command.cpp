@@ -270,6 +270,10 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   if (report.hull.counts && report.hull.counts->unresolved > 0) {
     console.warn("unresolved", counted(report.hull.counts->unresolved, "spot", "spots") +
                                    " of the exact hull could not be resolved; its mesh is whole");
+    for (const Unresolved& spot : outcome.hull->boundary->unresolved) {
+      console.note("unresolved at the normal " + number(spot.n.x) + " " + number(spot.n.y) + " " +
+                   number(spot.n.z) + ": " + spot.reason);
+    }
   }
   bring_up_to_date(report, outcome, console);
   const Stopwatch writing;

@@ -36,6 +36,7 @@ struct Check {
   bool passed;
   const char* measure_key = nullptr;
   double measure = 0;
+  bool counted = false;  ///< the measure is a number of things
 };
 
 std::vector<Check> checks(const Verification& found, double relative, double diagonal) {
@@ -68,9 +69,9 @@ std::vector<Check> checks(const HullVerification& found, double relative) {
       {"complete", "complete", "faces are missing", found.complete},
       {"closed", "closed", "not closed", found.closed},
       {"topological_sphere", "one closed surface", "not one surface without holes",
-       found.topological_sphere(), "euler", double(found.euler)},
+       found.topological_sphere(), "euler", double(found.euler), true},
       {"covered", "patches are all there", "patches are missing", found.uncovered == 0, "uncovered",
-       double(found.uncovered)},
+       double(found.uncovered), true},
       {"on_sources", "contacts on their sources", "contacts are off their sources",
        within(found.off_source), "off_source", found.off_source},
       {"tangent", "contacts are tangent", "contacts are not tangent", within(found.tangency),
@@ -120,7 +121,8 @@ Json json_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
   json["relative"] = arguments.relative();
   for (const Check& check : checks) {
     json[check.key] = check.passed;
-    if (check.measure_key != nullptr) json[check.measure_key] = check.measure;
+    if (check.measure_key == nullptr) continue;
+    json[check.measure_key] = check.counted ? Json(long(check.measure)) : Json(check.measure);
   }
   json["directions"] = directions;
   return json;
