@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "taut/hull/contact_geometry.h"
+#include "taut/io/hull_sources.h"
 
 namespace taut {
 namespace {
@@ -34,77 +34,6 @@ SourceContact place_of(const Model& model, const Contact& c) {
   }
   const Patch& patch = part.patches()[to_size(c.element)];
   return made(patch.face, patch.u.at(c.u), patch.v.at(c.v));
-}
-
-/// The sources that a document names, by their ids in the model.
-class SourceList {
- public:
-  SourceList(const Model& model, const std::vector<std::string>& files)
-      : model_(model), files_(files) {}
-
-  void add(int id) {
-    if (id >= 0) ids_.insert(id);
-  }
-  void finish() { order_.assign(ids_.begin(), ids_.end()); }
-  /// Its place; -1 of none.
-  int place(int id) const {
-    if (id < 0) return -1;
-    return int(std::lower_bound(order_.begin(), order_.end(), id) - order_.begin());
-  }
-  std::vector<HullDocument::Source> make() const {
-    std::vector<HullDocument::Source> sources;
-    for (const int id : order_) sources.push_back(source(id));
-    return sources;
-  }
-
- private:
-  HullDocument::Source source(int id) const;
-
-  const Model& model_;
-  const std::vector<std::string>& files_;
-  std::set<int> ids_;
-  std::vector<int> order_;
-};
-
-HullDocument::Source SourceList::source(int id) const {
-  const Source own = model_.source(id);
-  const Instance& instance = model_.instances()[to_size(own.instance)];
-  const Part& part = model_.parts()[to_size(instance.part)];
-  HullDocument::Source result;
-  result.id = id;
-  result.kind = own.kind;
-  if (to_size(instance.part) < files_.size()) result.file = files_[to_size(instance.part)];
-  const auto placed = [&](const std::vector<dvec4>& points) {
-    std::vector<dvec4> all;
-    for (const dvec4& p : points) {
-      const dvec3 x = euclidean(p);
-      all.emplace_back(instance.pose.at_rest() ? x : instance.pose(x), p.w);
-    }
-    return all;
-  };
-  if (own.kind == SourceKind::vertex) {
-    result.patches.push_back(
-        {{}, 1, 1, placed({homogeneous(part.vertices()[to_size(own.index)])})});
-  } else if (own.kind == SourceKind::edge) {
-    const Edge& edge = part.edges()[to_size(own.index)];
-    result.name = edge.name;
-    for (int k = 0; k < edge.piece_count; ++k) {
-      const EdgePiece& piece = part.pieces()[to_size(edge.first_piece + k)];
-      result.patches.push_back(
-          {{piece.t}, 1, int(piece.bezier.points.size()), placed(piece.bezier.points)});
-    }
-  } else if (to_size(own.index) < part.faces().size()) {
-    const Face& face = part.faces()[to_size(own.index)];
-    result.name = face.name;
-    for (int k = 0; k < face.patch_count; ++k) {
-      const Patch& patch = part.patches()[to_size(face.first_patch + k)];
-      result.patches.push_back({{patch.u, patch.v},
-                                patch.bezier.degree_u + 1,
-                                patch.bezier.degree_v + 1,
-                                placed(patch.bezier.points)});
-    }
-  }
-  return result;
 }
 
 /// A stretch of a patch's outline, in the direction in which the hull's outlines run: with the
@@ -158,7 +87,7 @@ class DocumentMaker {
   const Scene& scene_;
   const HullBoundary& boundary_;
   ContactGeometry geometry_;
-  SourceList sources_;
+  HullSources sources_;
   std::vector<std::vector<DirectedCurve>> curves_of_;  ///< per face, with it to the left
 };
 
@@ -402,7 +331,7 @@ HullDocument hull_document(const Scene& scene, const HullBoundary& boundary,
 
 HullDocument hull_document(const Model& model, const HullMesh& mesh,
                            const std::vector<std::string>& files) {
-  SourceList sources(model, files);
+  HullSources sources(model, files);
   for (const auto v : mesh.vertices()) sources.add(mesh.data(v).source);
   for (const auto f : mesh.faces()) sources.add(mesh.data(f).source);
   sources.finish();
