@@ -88,7 +88,7 @@ TEST_F(Cli, HelpBeginsWithExamples) {
     }
     EXPECT_EQ(run(command + " --version").out, run("--version").out);
   }
-  EXPECT_NE(run("hull --help").out.find("sampled (default)"), std::string::npos);
+  EXPECT_NE(run("hull --help").out.find("precise (default)"), std::string::npos);
 }
 
 TEST_F(Cli, HullWritesAllOutputsAndReport) {
@@ -118,12 +118,13 @@ TEST_F(Cli, HullReportHasTheNamesOfTheContract) {
         "/method",         "/dimension",           "/hull/gap_bound",  "/mesh/vertices",
         "/mesh/edges",     "/mesh/faces",          "/mesh/volume",     "/mesh/area",
         "/mesh/tolerance", "/mesh/distance_bound", "/queries/support", "/queries/newton_iterations",
-        "/seconds/read",   "/seconds/build",       "/seconds/sample",  "/seconds/mesh",
-        "/seconds/write",  "/seconds/total",       "/peak_bytes",      "/warnings"}) {
+        "/seconds/read",   "/seconds/build",       "/seconds/sample",  "/seconds/cull",
+        "/seconds/trace",  "/seconds/stitch",      "/seconds/mesh",    "/seconds/write",
+        "/seconds/total",  "/peak_bytes",          "/warnings"}) {
     EXPECT_TRUE(report.contains(Json::json_pointer(key))) << key;
   }
   EXPECT_EQ(report["input"]["patches"], 32);
-  EXPECT_EQ(report["method"], "sampled");
+  EXPECT_EQ(report["method"], "precise");
   EXPECT_EQ(report["dimension"], 3);
   EXPECT_EQ(report["mesh"]["tolerance"], 0.01);
   EXPECT_GT(report["mesh"]["distance_bound"], 0);
@@ -169,7 +170,10 @@ TEST_F(Cli, WrongUsageIsRefusedBeforeAnyWork) {
   expect_failure(hull + "-o a.ply --tolerance -1", 2, "--tolerance");
   expect_failure(hull + "-o a.ply --tolerance nan", 2, "--tolerance");
   expect_failure(hull + "-o a.ply --tolerance inf", 2, "--tolerance");
-  expect_failure(hull + "-o a.ply --method precise", 2, "not available yet");
+  expect_failure(hull + "-o a.ply -o a.hull.json --method sampled", 2, "a.hull.json: ");
+  expect_failure(hull + "-o - --format hull.cbor --method sampled", 2, "holds the exact hull");
+  expect_failure(hull + "-o a.mlp -o a-hull.ply", 2, "a-hull.ply: is named twice");
+  expect_failure(hull + "-o - --format mlp", 2, "several files");
   expect_failure(hull + "-o a.ply --method envelope", 2, "not available yet");
   expect_failure(hull + "-o a.ply --method guess", 2, "--method");
   expect_failure(hull + "-o a.ply --threads -1", 2, "--threads");
@@ -332,6 +336,63 @@ TEST_F(Cli, VerifyFindsDamage) {
   EXPECT_EQ(json["convex"], true);
   EXPECT_EQ(json["contains_model"], false);
   EXPECT_GT(json["model_outside"], 0.1);
+}
+
+TEST_F(Cli, ExactHullsAsDocumentsAndProjects) {
+  const std::string cube = plant("cube.off", R"(OFF 8 1 0
+0 0 0  2 0 0  2 2 0  0 2 0  0 0 2  2 0 2  2 2 2  0 2 2
+4 0 3 2 1
+)");
+  const Result result =
+      run("hull " + cube + " -o c.hull.json -o c.hull.cbor -o c.mlp --report r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("solid: 0 patches, 0 scrolls, 6 facets, 12 curves\n"),
+            std::string::npos)
+      << result.out;
+  EXPECT_EQ(file_count(), 8U);
+  const Json report = Json::parse(content(path("r.json")));
+  EXPECT_EQ(report["hull"]["facets"], 6);
+  EXPECT_EQ(report["hull"]["unresolved"], 0);
+  EXPECT_EQ(report["hull"]["volume"], 8);
+  const Json hull = Json::parse(content(path("c.hull.json")));
+  EXPECT_EQ(hull["format"], "taut-hull");
+  EXPECT_EQ(hull["faces"].size(), 6U);
+  EXPECT_EQ(hull["curves"].size(), 12U);
+  EXPECT_EQ(hull["sources"][0]["file"], "cube.off");
+  EXPECT_EQ(hull["report"]["method"], "precise");
+  EXPECT_EQ(hull["report"]["hull"], report["hull"]);
+  EXPECT_EQ(Json::from_cbor(content(path("c.hull.cbor")))["faces"], hull["faces"]);
+  EXPECT_EQ(Json::parse(run("hull " + cube + " -o - --format hull.json").out)["faces"],
+            hull["faces"]);
+  EXPECT_EQ(run("verify c-hull.ply " + cube).exit_code, 0);
+  EXPECT_EQ(run("info c.mlp").exit_code, 0);
+  EXPECT_EQ(run("hull " + teapot_ + " -o t.mlp --relative 1e-2 -q").exit_code, 0);
+  EXPECT_TRUE(fs::exists(path("t-model.ply")));
+}
+
+TEST_F(Cli, VerifyReadsExactHulls) {
+  const std::string points = plant("p.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
+  ASSERT_EQ(run("hull " + points + " -o h.hull.json -o h.hull.cbor -q").exit_code, 0);
+  const Result good = run("verify h.hull.json " + points + " --relative 1e-14");
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_EQ(good.out.find(" no"), std::string::npos) << good.out;
+  EXPECT_EQ(run("verify - " + points + " --format hull.cbor <h.hull.cbor").exit_code, 0);
+  const Json report = Json::parse(run("verify --json h.hull.cbor " + points).out);
+  for (const char* key : {"is_hull", "complete", "closed", "topological_sphere", "covered"}) {
+    EXPECT_EQ(report[key], true) << key;
+  }
+  EXPECT_EQ(report["euler"], 2);
+  EXPECT_LE(report["model_outside"], 1e-15);
+
+  Json hull = Json::parse(content(path("h.hull.json")));
+  hull["curves"][2]["faces"][0] = -1;
+  plant("open.hull.json", hull.dump());
+  const Result open = run("verify open.hull.json " + points);
+  EXPECT_EQ(open.exit_code, 1);
+  EXPECT_NE(open.err.find("faces are missing, not closed"), std::string::npos) << open.err;
+  EXPECT_EQ(run("verify h.hull.json " + plant("q.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 2\n")).exit_code,
+            1);
+  expect_failure("verify " + plant("bad.hull.json", "{}") + " " + points, 3, "bad.hull.json: ");
 }
 
 TEST_F(Cli, InfoConvertsToModelDocuments) {

@@ -70,7 +70,7 @@ TEST_P(CorpusOf, IsReadOrRefusedAsItShould) {
 }
 
 std::string reader_name(const testing::TestParamInfo<Reader>& info) {
-  static const std::vector<std::string> kinds = {"_as_model", "_as_mesh", ""};
+  static const std::vector<std::string> kinds = {"_as_model", "_as_mesh", "", ""};
   return case_name(info.param.corpus() + kinds[static_cast<std::size_t>(info.param.kind)]);
 }
 
@@ -87,13 +87,17 @@ TEST(Corpus, HoldsEveryFormat) {
 
 class CommandOverCorpusOf : public testing::TestWithParam<std::string> {
  protected:
+  /// The exact hulls that are no malformed files are that of the corpus' tetrahedron.
+  bool is_hull() const { return GetParam().starts_with("hull."); }
   Result run(const fs::path& file) const {
     const fs::path errors =
         fs::path(testing::TempDir()) / ("taut_corpus_" + case_name(GetParam()) + ".stderr");
     const std::string saddle = TAUT_FUZZ_CORPUS "/bpt/saddle.bpt";
-    const std::string before =
-        GetParam() == "directions" ? "support '" + saddle + "' --directions " : "info ";
-    const std::string line = "'" TAUT_EXECUTABLE "' " + before + "'" + file.string() + "'";
+    const std::string before = GetParam() == "directions" ? "support '" + saddle + "' --directions "
+                               : is_hull()                ? "verify "
+                                                          : "info ";
+    const std::string after = is_hull() ? " '" TAUT_FUZZ_CORPUS "/off/tetrahedron.off'" : "";
+    const std::string line = "'" TAUT_EXECUTABLE "' " + before + "'" + file.string() + "'" + after;
     return run_line(line, errors);
   }
 };
@@ -129,8 +133,9 @@ std::string folder_name(const testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, CommandOverCorpusOf,
-                         testing::Values("bpt", "directions", "mlp", "obj", "off", "ply", "stl",
-                                         "taut.cbor", "taut.json", "xyz"),
+                         testing::Values("bpt", "directions", "hull.cbor", "hull.json", "mlp",
+                                         "obj", "off", "ply", "stl", "taut.cbor", "taut.json",
+                                         "xyz"),
                          folder_name);
 
 }  // namespace

@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "boundaries.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measures.h"
 #include "taut/io/read_mesh.h"
 #include "taut/io/read_model.h"
 #include "taut/io/write_mesh.h"
+#include "taut/io/write_project.h"
 #include "temporary_folder.h"
 
 namespace {
@@ -111,6 +113,28 @@ HullMesh hull_of(const std::vector<dvec3>& points) {
   part.add_points(points);
   model.add_instance(model.add_part(std::move(part), smooth_join_angle), {});
   return convex_hull(model).mesh;
+}
+
+TEST_F(MeshLab, OpensProjects) {
+  const taut_test::KnownBoundary known = taut_test::two_spheres_boundary();
+  const Hull hull = sampled_hull(known.scene);
+  write_project(path("p.mlp"), hull.mesh, hull_curves(known.scene.frame(), known.boundary),
+                known.scene.model());
+  // Each layer alone, and the project that names them: the server then writes the first one.
+  const std::string curves = measured("p-curves.ply");
+  EXPECT_EQ(number_after(curves, "\nV:"), 2 * 65) << curves;
+  EXPECT_EQ(number_after(curves, "F:"), 0) << curves;
+  EXPECT_EQ(number_after(curves, "Unreferenced Vertices"), 0) << "edges refer to them\n" << curves;
+  const std::string model = measured("p-model.ply");
+  EXPECT_EQ(number_after(model, "\nV:"), 16 * 121) << model;
+  EXPECT_EQ(number_after(model, "F:"), 16 * 190) << model;
+  const std::string project =
+      output_of("cd '" + folder_.string() +
+                "' && xvfb-run -a meshlabserver -p p.mlp -s measure.mlx -w back.mlp 2>&1");
+  const std::string back = taut_test::content(path("back.mlp"));
+  for (const char* layer : {"p-hull", "p-curves", "p-model"}) {
+    EXPECT_NE(back.find(layer), std::string::npos) << project << "\n" << back;
+  }
 }
 
 TEST_F(MeshLab, OpensStl) {

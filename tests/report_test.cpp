@@ -21,7 +21,14 @@ taut::Report sample() {
   report.input.diagonal = 0.1;
   report.input.box.include(taut::dvec3(-1, 0, 1.0 / 3));
   report.input.box.include(taut::dvec3(1, 2, 3));
-  report.method = "sampled";
+  report.method = "precise";
+  report.hull.counts = {10, 11, 12, 13, 1};
+  taut::Measures& measures = report.hull.measures.emplace();
+  measures.volume = 0.3;
+  measures.area = 1.0 / 7;
+  measures.centroid = taut::dvec3(1, 2, 0.7);
+  measures.inertia = taut::dmat3(1, 2, 3, 2, 4, 5, 3, 5, 0.6);
+  report.hull.mean_width = 0.9;
   report.hull.gap_bound = 1e-7;
   report.mesh.vertices = 5'000'000'000;
   report.mesh.edges = 9;
@@ -31,8 +38,9 @@ taut::Report sample() {
   report.mesh.tolerance = 5e-324;
   report.mesh.distance_bound = 1.7976931348623157e308;
   report.mesh.files = {{"a.ply", 0}, {"b.stl", 0.1}};
+  report.culling = {1000, 10};
   report.queries = {7, 8};
-  report.seconds = {1, 2, 3, 4, 5, 15.5};
+  report.seconds = {1, 2, 3, 4, 5, 6, 7, 8, 36.5};
   report.peak_bytes = 1L << 40;
   report.warnings = {{"open-border", "an \"open\" border"}};
   return report;
@@ -48,16 +56,20 @@ using Keys = std::vector<std::string>;
 
 TEST(Report, KeysOfTheContractInOrder) {
   const Json json = Json::parse(to_json(sample()));
-  EXPECT_EQ(keys(json), (Keys{"taut", "input", "method", "dimension", "hull", "mesh", "queries",
-                              "seconds", "peak_bytes", "warnings"}));
+  EXPECT_EQ(keys(json), (Keys{"taut", "input", "method", "dimension", "hull", "mesh", "culling",
+                              "queries", "seconds", "peak_bytes", "warnings"}));
   EXPECT_EQ(keys(json["input"]),
             (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
-  EXPECT_EQ(keys(json["hull"]), (Keys{"gap_bound"}));
+  EXPECT_EQ(keys(json["hull"]),
+            (Keys{"patches", "scrolls", "facets", "curves", "unresolved", "volume", "area",
+                  "centroid", "inertia", "mean_width", "gap_bound"}));
   EXPECT_EQ(keys(json["mesh"]), (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance",
                                       "distance_bound", "files"}));
   for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
+  EXPECT_EQ(keys(json["culling"]), (Keys{"leaves", "kept"}));
   EXPECT_EQ(keys(json["queries"]), (Keys{"support", "newton_iterations"}));
-  EXPECT_EQ(keys(json["seconds"]), (Keys{"read", "build", "sample", "mesh", "write", "total"}));
+  EXPECT_EQ(keys(json["seconds"]),
+            (Keys{"read", "build", "sample", "cull", "trace", "stitch", "mesh", "write", "total"}));
 }
 
 TEST(Report, ValuesRoundTrip) {
@@ -72,8 +84,18 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["input"]["box"].size(), 2U);
   EXPECT_EQ(json["input"]["box"][0][2].get<double>(), 1.0 / 3);
   EXPECT_EQ(json["input"]["box"][1], Json({1.0, 2.0, 3.0}));
-  EXPECT_EQ(json["method"], "sampled");
+  EXPECT_EQ(json["method"], "precise");
   EXPECT_EQ(json["dimension"], 3);
+  EXPECT_EQ(json["hull"]["patches"], 10);
+  EXPECT_EQ(json["hull"]["scrolls"], 11);
+  EXPECT_EQ(json["hull"]["facets"], 12);
+  EXPECT_EQ(json["hull"]["curves"], 13);
+  EXPECT_EQ(json["hull"]["unresolved"], 1);
+  EXPECT_EQ(json["hull"]["volume"].get<double>(), 0.3);
+  EXPECT_EQ(json["hull"]["area"].get<double>(), 1.0 / 7);
+  EXPECT_EQ(json["hull"]["centroid"], Json({1.0, 2.0, 0.7}));
+  EXPECT_EQ(json["hull"]["inertia"], Json({{1.0, 2.0, 3.0}, {2.0, 4.0, 5.0}, {3.0, 5.0, 0.6}}));
+  EXPECT_EQ(json["hull"]["mean_width"].get<double>(), 0.9);
   EXPECT_EQ(json["hull"]["gap_bound"].get<double>(), 1e-7);
   EXPECT_EQ(json["mesh"]["vertices"], 5'000'000'000);
   EXPECT_EQ(json["mesh"]["edges"], 9);
@@ -87,13 +109,17 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["mesh"]["files"][0]["rounding"].get<double>(), 0);
   EXPECT_EQ(json["mesh"]["files"][1]["file"], "b.stl");
   EXPECT_EQ(json["mesh"]["files"][1]["rounding"].get<double>(), 0.1);
+  EXPECT_EQ(json["culling"], Json({{"leaves", 1000}, {"kept", 10}}));
   EXPECT_EQ(json["queries"], Json({{"support", 7}, {"newton_iterations", 8}}));
   EXPECT_EQ(json["seconds"]["read"], 1.0);
   EXPECT_EQ(json["seconds"]["build"], 2.0);
   EXPECT_EQ(json["seconds"]["sample"], 3.0);
-  EXPECT_EQ(json["seconds"]["mesh"], 4.0);
-  EXPECT_EQ(json["seconds"]["write"], 5.0);
-  EXPECT_EQ(json["seconds"]["total"], 15.5);
+  EXPECT_EQ(json["seconds"]["cull"], 4.0);
+  EXPECT_EQ(json["seconds"]["trace"], 5.0);
+  EXPECT_EQ(json["seconds"]["stitch"], 6.0);
+  EXPECT_EQ(json["seconds"]["mesh"], 7.0);
+  EXPECT_EQ(json["seconds"]["write"], 8.0);
+  EXPECT_EQ(json["seconds"]["total"], 36.5);
   EXPECT_EQ(json["peak_bytes"], 1L << 40);
   ASSERT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["warnings"][0]["code"], "open-border");
@@ -105,6 +131,7 @@ TEST(Report, WhatIsNotKnownIsAbsent) {
   EXPECT_TRUE(json["hull"].is_object());
   EXPECT_TRUE(json["hull"].empty());
   EXPECT_FALSE(json["input"].contains("box"));
+  EXPECT_FALSE(json.contains("culling"));
   EXPECT_TRUE(json["input"]["files"].is_array());
   EXPECT_TRUE(json["warnings"].is_array());
   EXPECT_TRUE(json["warnings"].empty());

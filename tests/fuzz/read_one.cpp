@@ -9,9 +9,11 @@
 #include <stop_token>
 
 #include "taut/hull/convex_hull.h"
+#include "taut/io/hull_document.h"
 #include "taut/io/model_document.h"
 #include "taut/io/read_mesh.h"
 #include "taut/io/read_model.h"
+#include "taut/io/verify_hull.h"
 #include "tools/taut/directions.h"
 
 namespace taut_test {
@@ -21,6 +23,9 @@ using namespace taut;
 
 /// Models beyond are not taken further than their reader.
 constexpr std::size_t most_points = 2000;
+
+/// Exact hulls of longer documents are not verified.
+constexpr std::size_t longest_document = 200'000;
 
 /// Hulls that take longer are stopped; there are many to try.
 constexpr std::chrono::milliseconds longest_hull(300);
@@ -158,6 +163,32 @@ void check_mesh(const PolygonMesh& mesh) {
   }
 }
 
+void check_exact_hull(const HullDocument& hull) {
+  const std::string text = to_document(hull, DocumentEncoding::json);
+  for (const DocumentEncoding encoding : {DocumentEncoding::json, DocumentEncoding::cbor}) {
+    try {
+      const HullDocument back = read_hull(to_document(hull, encoding), "document", encoding);
+      require(to_document(back, DocumentEncoding::json) == text,
+              "the document of the document is another");
+    } catch (const Error& error) {
+      throw Finding(std::string("the hull's document is refused: ") + error.what());
+    }
+  }
+  if (text.size() > longest_document) return;
+  static const Scene scene = [] {
+    Model model;
+    read_model("0 0 0\n1 0 0\n0 1 0\n0 0 1\n", "points", ".xyz", model);
+    return Scene(std::move(model));
+  }();
+  VerifyOptions options;
+  options.random_directions = 10;
+  options.threads = 1;
+  const HullVerification found = verify(hull, scene, options);
+  require(found.tangency >= 0 && found.flatness >= 0 && found.off_source >= 0 &&
+              found.model_outside >= 0 && found.hull_outside >= 0,
+          "a measure of the verification is no number");
+}
+
 /// A file in memory.
 class MemoryFile {
  public:
@@ -186,6 +217,10 @@ void read_and_check(const Reader& reader, std::string_view data, const std::stri
       require(std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z) && d != dvec3(0.0),
               "a direction is not valid");
     }
+  } else if (reader.kind == Reader::Kind::hull) {
+    check_exact_hull(read_hull(
+        data, name, reader.format == ".hull.json" ? DocumentEncoding::json : DocumentEncoding::cbor,
+        listener.progress()));
   } else if (reader.kind == Reader::Kind::mesh) {
     check_mesh(read_mesh(data, name, reader.format));
   } else {
@@ -212,7 +247,8 @@ const std::vector<Reader>& readers() {
                                           {model, ".taut.cbor"}, {model, ".taut.json"},
                                           {model, ".xyz"},       {mesh, ".obj"},
                                           {mesh, ".off"},        {mesh, ".ply"},
-                                          {mesh, ".stl"},        {directions, "directions"}};
+                                          {mesh, ".stl"},        {directions, "directions"},
+                                          {hull, ".hull.cbor"},  {hull, ".hull.json"}};
   return all;
 }
 

@@ -7,10 +7,10 @@
 
 namespace taut_test {
 
-/// A reader and what it takes: the formats of models and meshes by their extensions (".obj"), or
-/// the directions of `taut support`, whose format is "directions".
+/// A reader and what it takes: the formats of models, meshes and exact hulls by their extensions
+/// (".obj"), or the directions of `taut support`, whose format is "directions".
 struct Reader {
-  enum class Kind { model, mesh, directions };
+  enum class Kind { model, mesh, directions, hull };
   Kind kind = Kind::model;
   std::string format;
 
@@ -36,7 +36,8 @@ struct Outcome {
 
 /// Gives one input to a reader and checks that it is refused by an error that a person can read,
 /// in one line that begins with the name, or that the result holds together: a small model
-/// survives its document in both encodings, and its hull is closed and finite.
+/// survives its document in both encodings, and its hull is closed and finite; an exact hull
+/// survives both encodings and can be verified.
 ///
 /// `name` is what the input is called; the layers of a project are sought beside it. (What
 /// directions are read from has a name of its own.)

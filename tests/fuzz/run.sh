@@ -24,7 +24,7 @@ found=()
 for target in "${targets[@]}"; do
   case $target in
     directions) seeds=directions ;;
-    taut_*) seeds=${target%_*} seeds=${seeds/_/.} ;;
+    taut_* | hull_*) seeds=${target%_*} seeds=${seeds/_/.} ;;
     *) seeds=${target%_*} ;;
   esac
   corpus=build/fuzz/corpus/$target

@@ -1,8 +1,10 @@
 #include "taut/io/document_encoder.h"
 
 #include <bit>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <variant>
 
 #include "taut/io/text_scanner.h"
 
@@ -36,6 +38,14 @@ class JsonEncoder final : public DocumentEncoder {
   void number(double value) override {
     separate();
     out_ += shortest(value + 0.0);
+  }
+  void boolean(bool value) override {
+    separate();
+    out_ += value ? "true" : "false";
+  }
+  void null() override {
+    separate();
+    out_ += "null";
   }
   void text(const std::string& text) override {
     separate();
@@ -92,6 +102,8 @@ class CborEncoder final : public DocumentEncoder {
       big_endian(std::bit_cast<std::uint64_t>(x), 8);
     }
   }
+  void boolean(bool value) override { byte(value ? 0xf5 : 0xf4); }
+  void null() override { byte(0xf6); }
   void text(const std::string& text) override {
     raw_text(Json::parse(quoted(text)).get_ref<const std::string&>());
   }
@@ -118,6 +130,31 @@ class CborEncoder final : public DocumentEncoder {
 };
 
 }  // namespace
+
+void write_value(DocumentEncoder& out, const DocumentValue& value) {
+  if (const auto* array = std::get_if<DocumentValue::Array>(&value.value)) {
+    out.begin_array(array->size());
+    for (const DocumentValue& element : *array) write_value(out, element);
+    out.end_array();
+  } else if (const auto* object = std::get_if<DocumentValue::Object>(&value.value)) {
+    out.begin_object();
+    for (const DocumentMember& member : *object) {
+      out.key(member.key);
+      write_value(out, member.value);
+    }
+    out.end_object();
+  } else if (const auto* string = std::get_if<std::string>(&value.value)) {
+    out.text(*string);
+  } else if (const auto* flag = std::get_if<bool>(&value.value)) {
+    out.boolean(*flag);
+  } else if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
+    out.integer(*integer);
+  } else if (const auto* real = std::get_if<double>(&value.value); real && std::isfinite(*real)) {
+    out.number(*real);
+  } else {
+    out.null();
+  }
+}
 
 std::unique_ptr<DocumentEncoder> make_encoder(DocumentEncoding encoding) {
   if (encoding == DocumentEncoding::json) return std::make_unique<JsonEncoder>();

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "taut/io/document_tree.h"
 #include "taut/io/model_document.h"
 
 namespace taut {
@@ -24,6 +25,8 @@ class DocumentEncoder {
   virtual void integer(std::int64_t value) = 0;
   /// The number to the last bit, zero without its sign. @pre finite
   virtual void number(double value) = 0;
+  virtual void boolean(bool value) = 0;
+  virtual void null() = 0;
   /// Bytes that are no UTF-8 are replaced.
   virtual void text(const std::string& text) = 0;
   /// What comes next may begin a line.
@@ -31,6 +34,9 @@ class DocumentEncoder {
   /// All that was written.
   virtual std::string take() = 0;
 };
+
+/// Writes a whole value; numbers that are not finite as null. @pre keys are plain ASCII
+void write_value(DocumentEncoder& out, const DocumentValue& value);
 
 std::unique_ptr<DocumentEncoder> make_encoder(DocumentEncoding encoding);
 

@@ -67,6 +67,9 @@ class DocumentNode {
   /// Three numbers.
   dvec3 vector() const;
 
+  const DocumentValue& value() const { return value_; }
+  bool is_null() const { return std::holds_alternative<std::monostate>(value_.value); }
+  bool is_array() const { return std::holds_alternative<DocumentValue::Array>(value_.value); }
   const DocumentNotes& notes() const { return notes_; }
   /// "FILE: parts[0].surfaces[3]"
   std::string place() const;

@@ -13,13 +13,16 @@ struct Format {
   bool reads_model = false;
   bool reads_mesh = false;
   bool writes_mesh = false;
+  /// Hulls with what else is known of them: the exact faces, or layers of several files.
+  bool reads_hull = false;
+  bool writes_hull = false;
 };
 
 /// All formats of this library, sorted by extension.
 const std::vector<Format>& formats();
 
 /// The path's extension in lower case: ".ply"; empty if it has none. Taut's own documents have two
-/// words in theirs: ".taut.json", ".taut.cbor", ".hull.json".
+/// words in theirs: ".taut.json", ".taut.cbor", ".hull.json", ".hull.cbor".
 std::string extension(const std::filesystem::path& path);
 
 }  // namespace taut

@@ -19,6 +19,21 @@ Json to_json(const Report::Input& input) {
 
 Json to_json(const Report::ExactHull& hull) {
   Json json = Json::object();
+  if (hull.counts) {
+    json["patches"] = hull.counts->patches;
+    json["scrolls"] = hull.counts->scrolls;
+    json["facets"] = hull.counts->facets;
+    json["curves"] = hull.counts->curves;
+    json["unresolved"] = hull.counts->unresolved;
+  }
+  if (hull.measures) {
+    const dmat3& inertia = hull.measures->inertia;  // symmetric: columns are rows
+    json["volume"] = hull.measures->volume;
+    json["area"] = hull.measures->area;
+    json["centroid"] = to_json(hull.measures->centroid);
+    json["inertia"] = {to_json(inertia[0]), to_json(inertia[1]), to_json(inertia[2])};
+  }
+  if (hull.mean_width) json["mean_width"] = *hull.mean_width;
   if (hull.gap_bound) json["gap_bound"] = *hull.gap_bound;
   return json;
 }
@@ -42,6 +57,7 @@ Json to_json(const Report::Queries& queries) {
 
 Json to_json(const Report::Seconds& seconds) {
   return {{"read", seconds.read}, {"build", seconds.build}, {"sample", seconds.sample},
+          {"cull", seconds.cull}, {"trace", seconds.trace}, {"stitch", seconds.stitch},
           {"mesh", seconds.mesh}, {"write", seconds.write}, {"total", seconds.total}};
 }
 
@@ -54,16 +70,16 @@ Json to_json(const std::vector<Warning>& warnings) {
 }  // namespace
 
 std::string to_json(const Report& report) {
-  const Json json = {{"taut", TAUT_VERSION},
-                     {"input", to_json(report.input)},
-                     {"method", report.method},
-                     {"dimension", report.dimension},
-                     {"hull", to_json(report.hull)},
-                     {"mesh", to_json(report.mesh)},
-                     {"queries", to_json(report.queries)},
-                     {"seconds", to_json(report.seconds)},
-                     {"peak_bytes", report.peak_bytes},
-                     {"warnings", to_json(report.warnings)}};
+  Json json = {{"taut", TAUT_VERSION},         {"input", to_json(report.input)},
+               {"method", report.method},      {"dimension", report.dimension},
+               {"hull", to_json(report.hull)}, {"mesh", to_json(report.mesh)}};
+  if (report.culling) {
+    json["culling"] = {{"leaves", report.culling->leaves}, {"kept", report.culling->kept}};
+  }
+  json["queries"] = to_json(report.queries);
+  json["seconds"] = to_json(report.seconds);
+  json["peak_bytes"] = report.peak_bytes;
+  json["warnings"] = to_json(report.warnings);
   // File names are any bytes; what is no UTF-8 in them must not lose the report.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

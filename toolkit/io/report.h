@@ -26,6 +26,12 @@ struct Report {
   int dimension = 3;
   /// The true hull, as far as the method knows it: `sampled` bounds the gap only.
   struct ExactHull {
+    struct Counts {
+      int patches = 0, scrolls = 0, facets = 0, curves = 0, unresolved = 0;
+    };
+    std::optional<Counts> counts;
+    std::optional<Measures> measures;
+    std::optional<double> mean_width;
     std::optional<double> gap_bound;
   } hull;
   struct Mesh {
@@ -40,11 +46,18 @@ struct Report {
     };
     std::vector<File> files;
   } mesh;
+  /// Leaves of the hierarchies at the finest level, and how many of them could not be culled; none
+  /// where the method does not cull.
+  struct Culling {
+    long leaves = 0, kept = 0;
+  };
+  std::optional<Culling> culling;
   struct Queries {
     long support = 0, newton_iterations = 0;
   } queries;
   struct Seconds {
-    double read = 0, build = 0, sample = 0, mesh = 0, write = 0, total = 0;
+    double read = 0, build = 0, sample = 0, cull = 0, trace = 0, stitch = 0, mesh = 0;
+    double write = 0, total = 0;
   } seconds;
   long peak_bytes = 0;
   std::vector<Warning> warnings;

@@ -13,8 +13,11 @@
 #include "standard_input.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measures.h"
+#include "taut/io/formats.h"
+#include "taut/io/hull_document.h"
 #include "taut/io/report.h"
 #include "taut/io/write_mesh.h"
+#include "taut/io/write_project.h"
 #include "text.h"
 
 namespace taut::tool {
@@ -26,17 +29,30 @@ struct HullArguments {
   InputArguments inputs;
   std::vector<std::string> outputs;
   std::string report;
-  std::string method = "sampled";
+  std::string method = "precise";
   std::optional<double> relative;
   std::optional<double> tolerance;
   int max_vertices = HullOptions().max_vertices;
 };
 
+std::string format_of(const std::string& output, const HullArguments& arguments) {
+  return output == "-" ? arguments.inputs.extension() : extension(output);
+}
+
+bool is_document(const std::string& format) {
+  return format == ".hull.json" || format == ".hull.cbor";
+}
+
 /// What can be told from the command line alone.
 void check(const HullArguments& arguments, bool json) {
-  if (arguments.method != "sampled") {
-    throw UsageError("--method " + arguments.method +
-                     " is not available yet: give --method sampled");
+  if (arguments.method == "envelope") {
+    throw UsageError("--method envelope is not available yet: give --method precise or sampled");
+  }
+  for (const std::string& file : arguments.outputs) {
+    const std::string format = format_of(file, arguments);
+    if (arguments.method == "precise" || !is_document(format)) continue;
+    throw UsageError(file + ": a " + format + " holds the exact hull, which --method " +
+                     arguments.method + " does not find: give --method precise");
   }
   if (arguments.outputs.empty() && arguments.report.empty() && !json) {
     throw UsageError("nothing to write: give -o FILE, --report FILE or --json");
@@ -68,14 +84,35 @@ struct Outcome {
   std::optional<HullNotConverged> failure;
 };
 
-Outcome compute(Input& input, const HullOptions& options) {
+Hull precise_hull(const Scene& scene, const HullOptions& options) {
+  return sampled_hull(scene, options);
+}
+
+Outcome compute(Input& input, const std::string& method, const HullOptions& options) {
   try {
     Hull hull = input.model().polyhedral() ? polyhedral_hull(input.model(), options)
+                : method == "precise"      ? precise_hull(input.scene(), options)
                                            : sampled_hull(input.scene(), options);
     return {std::make_shared<const Hull>(std::move(hull)), {}};
   } catch (const HullNotConverged& failure) {
     return {failure.best, failure};
   }
+}
+
+/// What is known of the exact hull: its faces and its measures.
+Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method) {
+  Report::ExactHull exact;
+  exact.gap_bound = hull.distance_bound;
+  if (hull.boundary) {
+    const HullBoundary& boundary = *hull.boundary;
+    exact.counts = {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
+                    boundary.count(FaceKind::facet), int(boundary.curves.size()),
+                    int(boundary.unresolved.size())};
+  } else if (input.model().polyhedral() && method == "precise") {
+    exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
+    exact.measures = measure(polygons(hull.mesh));
+  }
+  return exact;
 }
 
 Report make_report(Input& input, const Hull& hull, const HullArguments& arguments,
@@ -84,18 +121,23 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   report.input = input.summary();
   report.method = arguments.method;
   report.dimension = hull.dimension();
-  report.hull.gap_bound = hull.distance_bound;
+  report.hull = exact_hull(input, hull, arguments.method);
   report.mesh.vertices = long(hull.mesh.n_vertices());
   report.mesh.edges = long(hull.mesh.n_edges());
   report.mesh.faces = long(hull.mesh.n_faces());
   report.mesh.measures = measure(polygons(hull.mesh));
   report.mesh.tolerance = tolerance;
   report.mesh.distance_bound = hull.distance_bound;
-  report.queries = {hull.statistics.support_queries, hull.statistics.newton_iterations};
+  const HullStatistics& statistics = hull.statistics;
+  if (statistics.cells > 0) report.culling = {statistics.cells, statistics.cells_kept};
+  report.queries = {statistics.support_queries, statistics.newton_iterations};
   report.seconds.read = input.seconds_read();
   report.seconds.build = input.seconds_build();
-  report.seconds.sample = hull.statistics.seconds_sample;
-  report.seconds.mesh = hull.statistics.seconds_mesh;
+  report.seconds.sample = statistics.seconds_sample;
+  report.seconds.cull = statistics.seconds_cull;
+  report.seconds.trace = statistics.seconds_trace;
+  report.seconds.stitch = statistics.seconds_stitch;
+  report.seconds.mesh = statistics.seconds_mesh;
   return report;
 }
 
@@ -112,20 +154,35 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
   text += line("", counted(input.faces, "face", "faces") + ", " +
                        counted(input.patches, "patch", "patches") + ", diagonal " +
                        number(input.diagonal));
-  text += line("hull", kinds[std::size_t(report.dimension)]);
+  std::string hull = kinds[std::size_t(report.dimension)];
+  if (const auto& counts = report.hull.counts) {
+    hull += ": " + counted(counts->patches, "patch", "patches") + ", " +
+            counted(counts->scrolls, "scroll", "scrolls") + ", " +
+            counted(counts->facets, "facet", "facets") + ", " +
+            counted(counts->curves, "curve", "curves");
+    if (counts->unresolved > 0) hull += ", " + number(long(counts->unresolved)) + " unresolved";
+  }
+  text += line("hull", hull);
   text += line("mesh", counted(report.mesh.faces, "face", "faces") + ", " +
                            counted(report.mesh.vertices, "vertex", "vertices") + " (" +
                            report.method + ")");
-  text += line("volume", number(report.mesh.measures.volume, 10));
-  text += line("area", number(report.mesh.measures.area, 10));
+  const auto measured = [&](double Measures::*value) {
+    const std::string of_mesh = number(report.mesh.measures.*value, 10);
+    if (!report.hull.measures || report.mesh.distance_bound == 0) return of_mesh;
+    return number((*report.hull.measures).*value, 10) + ", the mesh's " + of_mesh;
+  };
+  text += line("volume", measured(&Measures::volume));
+  text += line("area", measured(&Measures::area));
   text += line("distance", report.mesh.distance_bound == 0
                                ? std::string("none: the mesh is the hull")
                                : "at most " + number(report.mesh.distance_bound, 3) +
                                      " from the true hull, " + number(relative, 3) +
                                      " of the diagonal");
   text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
-                              number(s.build, 2) + ", sample " + number(s.sample, 2) + ", mesh " +
-                              number(s.mesh, 2) + ", write " + number(s.write, 2));
+                              number(s.build, 2) + ", sample " + number(s.sample, 2) + ", cull " +
+                              number(s.cull, 2) + ", trace " + number(s.trace, 2) + ", stitch " +
+                              number(s.stitch, 2) + ", mesh " + number(s.mesh, 2) + ", write " +
+                              number(s.write, 2));
   for (const Report::Mesh::File& file : report.mesh.files) {
     if (file.rounding == 0) continue;
     text += line("rounding", "to float moved vertices of " + file.file + " by at most " +
@@ -135,26 +192,68 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
   return text;
 }
 
-/// Writes the meshes, tells the report how they were rounded, and warns where that is more than the
-/// tolerance.
-void write_outputs(const HullArguments& arguments, const Hull& hull, Report& report,
+/// The exact hull, with the report as far as it goes.
+HullDocument document_of(Input& input, const Hull& hull, const Report& report,
+                         const std::string& file) {
+  if (!hull.boundary && !input.model().polyhedral()) {
+    throw IoError(file + ": the exact hull of this model is not known; .ply holds its mesh");
+  }
+  HullDocument document = hull.boundary
+                              ? hull_document(input.scene(), *hull.boundary, input.part_files())
+                              : hull_document(input.model(), hull.mesh, input.part_files());
+  document.report = taut::to_json(report);
+  return document;
+}
+
+/// Writes one output; "-" is standard output.
+WrittenMesh write_output(const std::string& file, const std::string& format, Input& input,
+                         const Hull& hull, const Report& report, Console& console) {
+  if (is_document(format)) {
+    const HullDocument document = document_of(input, hull, report, file);
+    if (file != "-") {
+      write_hull(file, document);
+    } else {
+      console.print(to_document(
+          document, format == ".hull.json" ? DocumentEncoding::json : DocumentEncoding::cbor));
+    }
+    return {};
+  }
+  if (format == ".mlp") {
+    write_project(
+        file, hull.mesh,
+        hull.boundary ? hull_curves(input.scene().frame(), *hull.boundary) : hull_curves(hull.mesh),
+        input.model());
+    return {};
+  }
+  if (file != "-") return write_mesh(file, hull.mesh);
+  std::string data;
+  const WrittenMesh written = write_mesh(data, standard_output, format, hull.mesh);
+  console.print(data);
+  return written;
+}
+
+/// Writes all outputs, tells the report how they were rounded, and warns where that is more than
+/// the tolerance.
+void write_outputs(const HullArguments& arguments, Input& input, const Hull& hull, Report& report,
                    Console& console) {
   for (const std::string& file : arguments.outputs) {
     console.progress().check();
-    WrittenMesh written;
-    if (file == "-") {
-      std::string data;
-      written = write_mesh(data, standard_output, arguments.inputs.extension(), hull.mesh);
-      console.print(data);
-    } else {
-      written = write_mesh(file, hull.mesh);
-    }
+    const WrittenMesh written =
+        write_output(file, format_of(file, arguments), input, hull, report, console);
     report.mesh.files.push_back({file, written.rounding});
     if (written.rounding <= report.mesh.tolerance) continue;
     console.warn("rounded-to-float", file + ": its floats move vertices by up to " +
                                          number(written.rounding, 3) +
                                          ", more than the tolerance; .ply holds doubles");
   }
+}
+
+/// The times and warnings until now.
+void bring_up_to_date(Report& report, const Outcome& outcome, const Console& console) {
+  report.seconds.total = console.seconds();
+  report.peak_bytes = peak_bytes();
+  report.warnings = console.warnings();
+  if (outcome.failure) report.warnings.push_back({"not-converged", outcome.failure->what()});
 }
 
 ExitCode run(const HullArguments& arguments, Console& console) {
@@ -165,17 +264,23 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
-  const Outcome outcome = compute(input, options);
+  const Outcome outcome = compute(input, arguments.method, options);
 
   Report report = make_report(input, *outcome.hull, arguments, options.tolerance);
+  if (report.hull.counts && report.hull.counts->unresolved > 0) {
+    console.warn("unresolved", counted(report.hull.counts->unresolved, "spot", "spots") +
+                                   " of the exact hull could not be resolved; its mesh is whole");
+    for (const Unresolved& spot : outcome.hull->boundary->unresolved) {
+      console.note("unresolved at the normal " + number(spot.n.x) + " " + number(spot.n.y) + " " +
+                   number(spot.n.z) + ": " + spot.reason);
+    }
+  }
+  bring_up_to_date(report, outcome, console);
   const Stopwatch writing;
-  write_outputs(arguments, *outcome.hull, report, console);
+  write_outputs(arguments, input, *outcome.hull, report, console);
   options.progress.check();
   report.seconds.write = writing.seconds();
-  report.seconds.total = console.seconds();
-  report.peak_bytes = peak_bytes();
-  report.warnings = console.warnings();
-  if (outcome.failure) report.warnings.push_back({"not-converged", outcome.failure->what()});
+  bring_up_to_date(report, outcome, console);
 
   const std::string json = taut::to_json(report);
   std::vector<std::string> written = arguments.outputs;
@@ -203,20 +308,25 @@ Command add_hull(CLI::App& parent) {
       parent, "hull", "Convex hull of all inputs together",
       "Examples:\n"
       "  taut hull teapot.bpt -o hull.ply\n"
-      "  taut hull teapot.bpt -o hull.ply -o hull.stl --relative 1e-5 --report hull.json\n"
+      "  taut hull teapot.bpt -o hull.ply -o hull.stl --relative 1e-5 --report report.json\n"
+      "  taut hull teapot.bpt -o teapot.hull.json     the exact hull: patches, scrolls, facets\n"
       "  taut hull a.bpt b.obj --tolerance 0.01 --json\n"
       "  taut hull scan.xyz -o hull.ply              points and triangles: the exact hull");
   const auto arguments = std::make_shared<HullArguments>();
   CLI::App& app = *command.app;
   add_inputs(app, arguments->inputs);
-  app.add_option(
-         "-o,--output", arguments->outputs,
-         "Mesh to write: .ply .obj .off .stl; may be repeated; - is standard\noutput, see --format")
+  app.add_option("-o,--output", arguments->outputs,
+                 "What to write: a mesh (.ply .obj .off .stl), the exact hull\n(.hull.json "
+                 ".hull.cbor), or a "
+                 "MeshLab project with its layers\nbeside it (.mlp); may be repeated; - is "
+                 "standard output, "
+                 "see\n--format")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  app.add_option("--method", arguments->method,
-                 "sampled (default): a mesh through points of the model;\nprecise and "
-                 "envelope are not available yet")
+  app.add_option(
+         "--method", arguments->method,
+         "precise (default): the exact hull, and a mesh of it; sampled: a\nmesh through points of "
+         "the model; envelope is not available yet")
       ->check(CLI::IsMember({"sampled", "precise", "envelope"}).description(""))
       ->type_name("METHOD");
   CLI::Option* relative =

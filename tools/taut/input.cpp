@@ -50,6 +50,7 @@ Input::Input(const InputArguments& arguments, Console& console)
     } else {
       read_model(file, model_, options);
     }
+    part_files_.resize(model_.parts().size(), file == "-" ? std::string(standard_input) : file);
     if (model_.empty()) throw InvalidInput(file + ": holds no geometry");
   }
   seconds_read_ = watch.seconds();

@@ -39,12 +39,16 @@ class Input {
   /// The diagonal of that box.
   double diagonal();
 
+  /// The file that each of the model's parts was read from.
+  const std::vector<std::string>& part_files() const { return part_files_; }
+
   double seconds_read() const { return seconds_read_; }
   double seconds_build() const { return seconds_build_; }
 
  private:
   Console& console_;
   std::vector<std::string> files_;
+  std::vector<std::string> part_files_;
   Model model_;
   std::optional<Scene> scene_;
   double seconds_read_ = 0;

@@ -11,6 +11,7 @@
 
 #include "exit_code.h"
 #include "taut/io/formats.h"
+#include "taut/io/write_project.h"
 #include "text.h"
 
 namespace taut::tool {
@@ -27,13 +28,16 @@ void check_extension(const std::string& file, const std::string& stdout_format) 
   const std::string wanted = file == "-" ? stdout_format : extension(file);
   std::vector<std::string> known;
   for (const Format& format : formats()) {
-    if (!format.writes_mesh) continue;
+    if (!format.writes_mesh && !format.writes_hull) continue;
+    if (format.extension == wanted && file == "-" && wanted == ".mlp") {
+      throw UsageError("a project is several files, which standard output cannot hold");
+    }
     if (format.extension == wanted) return;
     known.push_back(format.extension);
   }
   throw UsageError(file + ": " +
                    (wanted.empty() ? "no extension names the format"
-                                   : "no mesh format has the extension " + wanted) +
+                                   : "no format of hulls has the extension " + wanted) +
                    "; known are " + joined(known, " "));
 }
 
@@ -77,11 +81,18 @@ void write_whole(std::FILE* file, const std::string& path, std::string_view text
 
 }  // namespace
 
-void check_outputs(const std::vector<std::string>& meshes, const std::string& stdout_format,
+void check_outputs(const std::vector<std::string>& hulls, const std::string& stdout_format,
                    const std::string& report, const std::vector<std::string>& inputs) {
-  for (const std::string& file : meshes) check_extension(file, stdout_format);
-  std::vector<std::string> outputs = meshes;
-  std::erase(outputs, "-");
+  for (const std::string& file : hulls) check_extension(file, stdout_format);
+  std::vector<std::string> outputs;
+  for (const std::string& file : hulls) {
+    if (file == "-") continue;
+    if (extension(file) == ".mlp") {
+      for (const fs::path& layer : project_files(file)) outputs.push_back(layer.string());
+    } else {
+      outputs.push_back(file);
+    }
+  }
   if (!report.empty() && report != "-") outputs.push_back(report);
   for (const std::string& file : outputs) check_place(file);
   for (std::size_t i = 0; i < outputs.size(); ++i) {

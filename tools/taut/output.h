@@ -6,11 +6,12 @@
 
 namespace taut::tool {
 
-/// Checks before any work is done that the meshes and, if not empty, the report can be written.
-/// "-" is standard output, where a mesh takes the format of this extension.
-/// @throws UsageError if no format writes a mesh with such an extension, or a file is named twice
+/// Checks before any work is done that the hulls (meshes, documents, projects with their layers)
+/// and, if not empty, the report can be written. "-" is standard output, where a hull takes the
+/// format of this extension.
+/// @throws UsageError if no format writes a hull with such an extension, or a file is named twice
 /// or is also an input; IoError if the folder is not there or a place cannot be written
-void check_outputs(const std::vector<std::string>& meshes, const std::string& stdout_format,
+void check_outputs(const std::vector<std::string>& hulls, const std::string& stdout_format,
                    const std::string& report, const std::vector<std::string>& inputs);
 
 /// Writes a text file under a temporary name and renames it, so that it appears whole or not at

@@ -16,7 +16,9 @@ ExitCode run(Console& console) {
                       {"description", format.description},
                       {"reads_model", format.reads_model},
                       {"reads_mesh", format.reads_mesh},
-                      {"writes_mesh", format.writes_mesh}});
+                      {"writes_mesh", format.writes_mesh},
+                      {"reads_hull", format.reads_hull},
+                      {"writes_hull", format.writes_hull}});
     }
     console.print(
         text(Json{{"taut", TAUT_VERSION}, {"formats", list}, {"plugins", Json::array()}}));
@@ -28,6 +30,8 @@ ExitCode run(Console& console) {
     if (format.reads_model) uses.emplace_back("reads models");
     if (format.reads_mesh) uses.emplace_back("reads meshes");
     if (format.writes_mesh) uses.emplace_back("writes meshes");
+    if (format.reads_hull) uses.emplace_back("reads hulls");
+    if (format.writes_hull) uses.emplace_back("writes hulls");
     table += padded(format.extension, 12) + padded(joined(uses), 44) + format.description + "\n";
   }
   console.print(table + "no plugins\n");

@@ -9,7 +9,10 @@
 #include "input.h"
 #include "standard_input.h"
 #include "taut/hull/verify.h"
+#include "taut/io/formats.h"
+#include "taut/io/hull_document.h"
 #include "taut/io/read_mesh.h"
+#include "taut/io/verify_hull.h"
 #include "text.h"
 
 namespace taut::tool {
@@ -33,6 +36,7 @@ struct Check {
   bool passed;
   const char* measure_key = nullptr;
   double measure = 0;
+  bool counted = false;  ///< the measure is a number of things
 };
 
 std::vector<Check> checks(const Verification& found, double relative, double diagonal) {
@@ -58,26 +62,58 @@ std::vector<Check> checks(const Verification& found, double relative, double dia
   };
 }
 
+/// Of an exact hull.
+std::vector<Check> checks(const HullVerification& found, double relative) {
+  const auto within = [&](double measure) { return measure <= relative; };
+  return {
+      {"complete", "complete", "faces are missing", found.complete},
+      {"closed", "closed", "not closed", found.closed},
+      {"topological_sphere", "one closed surface", "not one surface without holes",
+       found.topological_sphere(), "euler", double(found.euler), true},
+      {"covered", "patches are all there", "patches are missing", found.uncovered == 0, "uncovered",
+       double(found.uncovered), true},
+      {"on_sources", "contacts on their sources", "contacts are off their sources",
+       within(found.off_source), "off_source", found.off_source},
+      {"tangent", "contacts are tangent", "contacts are not tangent", within(found.tangency),
+       "tangency", found.tangency},
+      {"flat", "rulings and facets are flat", "rulings or facets are not flat",
+       within(found.flatness), "flatness", found.flatness},
+      {"contains_model", "contains the model", "the model reaches outside",
+       within(found.model_outside), "model_outside", found.model_outside},
+      {"inside_hull", "inside the model's hull", "it reaches outside the model's hull",
+       within(found.hull_outside), "hull_outside", found.hull_outside},
+  };
+}
+
+/// What stands before the number that a check measured.
+std::string measure_name(const Check& check) {
+  const std::string key = check.measure_key;
+  if (key == "largest_violation") return "largest violation ";
+  if (key == "euler") return "V - E + F = ";
+  if (key == "uncovered") return "directions missed: ";
+  return key == "model_outside" || key == "mesh_outside" || key == "hull_outside" ? "outside by "
+                                                                                  : "off by ";
+}
+
 std::string text_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
-                    const Verification& found, bool is_hull) {
+                    int directions, bool is_hull) {
   std::string text;
   for (const Check& check : checks) {
-    text += padded(check.name, 26) + padded(check.passed ? "yes" : "no", 5);
+    text += padded(check.name, 28) + padded(check.passed ? "yes" : "no", 5);
     if (check.measure_key != nullptr) {
-      text += check.key == std::string("convex") ? "largest violation " : "outside by ";
-      text += number(check.measure, 3);
+      text += measure_name(check) + number(check.measure, 3);
     }
     text.erase(text.find_last_not_of(' ') + 1);
     text += "\n";
   }
   text += "(lengths are fractions of the diagonal, measured in " +
-          counted(found.directions, "direction", "directions") + ")\n";
-  text += padded("hull within " + number(arguments.relative(), 3), 26) + (is_hull ? "yes" : "no");
+          counted(directions, "direction", "directions") + ")\n";
+  text += padded("hull within " + number(arguments.relative(), 3), 28) + (is_hull ? "yes" : "no");
   return text + "\n";
 }
 
-Json json_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
-             const Verification& found, bool is_hull) {
+Json json_of(const std::vector<Check>& checks, const VerifyArguments& arguments, int directions,
+             bool is_hull) {
   Json json;
   json["taut"] = TAUT_VERSION;
   json["hull"] = arguments.hull;
@@ -85,9 +121,10 @@ Json json_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
   json["relative"] = arguments.relative();
   for (const Check& check : checks) {
     json[check.key] = check.passed;
-    if (check.measure_key != nullptr) json[check.measure_key] = check.measure;
+    if (check.measure_key == nullptr) continue;
+    json[check.measure_key] = check.counted ? Json(long(check.measure)) : Json(check.measure);
   }
-  json["directions"] = found.directions;
+  json["directions"] = directions;
   return json;
 }
 
@@ -99,32 +136,62 @@ std::string faults_of(const std::vector<Check>& checks) {
   return joined(faults);
 }
 
-PolygonMesh read_hull(const VerifyArguments& arguments, Console& console) {
-  if (arguments.hull != "-") return read_mesh(arguments.hull);
+/// The hull to check, of a mesh or exact.
+struct HullFile {
+  std::optional<HullDocument> exact;
+  PolygonMesh mesh;
+};
+
+HullFile read_hull_file(const VerifyArguments& arguments, Console& console) {
+  const bool given = arguments.hull == "-";
+  const std::string format = given ? arguments.inputs.extension() : extension(arguments.hull);
+  const bool json = format == ".hull.json";
+  const bool exact = json || format == ".hull.cbor";
+  if (!given && exact) return {read_hull(arguments.hull, console.progress()), {}};
+  if (!given) return {{}, read_mesh(arguments.hull)};
   const std::vector<std::string>& files = arguments.inputs.files;
   if (std::find(files.begin(), files.end(), "-") != files.end()) {
     throw UsageError("standard input cannot be both the hull and the model");
   }
-  const std::string format = arguments.inputs.extension();
   if (format.empty()) throw UsageError("standard input needs --format, such as --format ply");
-  return read_mesh(read_standard_input(console.progress().stop), standard_input, format);
+  const std::string data = read_standard_input(console.progress().stop);
+  if (!exact) return {{}, read_mesh(data, standard_input, format)};
+  return {
+      taut::read_hull(data, standard_input, json ? DocumentEncoding::json : DocumentEncoding::cbor,
+                      console.progress()),
+      {}};
+}
+
+/// What verify() says of either.
+struct Verdict {
+  std::vector<Check> checks;
+  int directions = 0;
+  bool is_hull = false;
+};
+
+Verdict check(const HullFile& hull, Input& input, double relative, const VerifyOptions& options) {
+  if (hull.exact) {
+    const HullVerification found = verify(*hull.exact, input.scene(), options);
+    return {checks(found, relative), found.directions, found.is_hull(relative)};
+  }
+  const double diagonal = input.scene().diagonal();
+  const Verification found = verify(hull.mesh, input.scene(), options);
+  return {checks(found, relative, diagonal), found.directions, found.is_hull(relative * diagonal)};
 }
 
 ExitCode run(const VerifyArguments& arguments, Console& console) {
-  const PolygonMesh mesh = read_hull(arguments, console);
+  const HullFile hull = read_hull_file(arguments, console);
   Input input(arguments.inputs, console);
-  const double diagonal = input.scene().diagonal();
+  input.scene();
   const Stopwatch watch;
   VerifyOptions options;
   options.threads = console.options().threads;
   options.progress = console.progress();
-  const Verification found = verify(mesh, input.scene(), options);
+  const auto [results, directions, is_hull] = check(hull, input, arguments.relative(), options);
   const double seconds = watch.seconds();
 
-  const bool is_hull = found.is_hull(arguments.relative() * diagonal);
-  const std::vector<Check> results = checks(found, arguments.relative(), diagonal);
   if (console.options().json) {
-    Json json = json_of(results, arguments, found, is_hull);
+    Json json = json_of(results, arguments, directions, is_hull);
     json["input"] = to_json(input.summary());
     json["seconds"] = {{"read", input.seconds_read()},
                        {"build", input.seconds_build()},
@@ -134,7 +201,7 @@ ExitCode run(const VerifyArguments& arguments, Console& console) {
     json["warnings"] = to_json(console.warnings());
     console.print(text(json));
   } else if (!console.options().quiet) {
-    console.print(text_of(results, arguments, found, is_hull));
+    console.print(text_of(results, arguments, directions, is_hull));
   }
   if (is_hull) return ExitCode::done;
   throw CheckFailed(arguments.hull + ": is no convex hull of the model within " +
@@ -149,10 +216,13 @@ Command add_verify(CLI::App& parent) {
       "Exits with 0 if HULL is the model's convex hull within the tolerance, else 1.\n\n"
       "Examples:\n"
       "  taut verify hull.ply teapot.bpt\n"
-      "  taut verify hull.stl teapot.bpt --relative 1e-3");
+      "  taut verify hull.stl teapot.bpt --relative 1e-3\n"
+      "  taut verify teapot.hull.json teapot.bpt --relative 1e-9   an exact hull");
   const auto arguments = std::make_shared<VerifyArguments>();
   command.app
-      ->add_option("HULL", arguments->hull, "Mesh file to check; - is standard input, see --format")
+      ->add_option(
+          "HULL", arguments->hull,
+          "Mesh or exact hull (.hull.json .hull.cbor) to check; - is standard\ninput, see --format")
       ->required()
       ->option_text("FILE");
   add_inputs(*command.app, arguments->inputs);

@@ -1,0 +1,118 @@
+#include "taut/io/verify_hull.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "boundaries.h"
+#include "models.h"
+#include "taut/hull/convex_hull.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+constexpr double exact = 3e-14;
+
+VerifyOptions quick() {
+  VerifyOptions options;
+  options.random_directions = 2000;
+  return options;
+}
+
+HullVerification verified(const KnownBoundary& known) {
+  return verify(hull_document(known.scene, known.boundary), known.scene, quick());
+}
+
+TEST(VerifyHull, ExactBoundariesPass) {
+  for (const dvec3& shift : {dvec3(0.0), dvec3(3, -2, 1)}) {
+    const HullVerification facets = verified(tetrahedron_boundary(shift));
+    EXPECT_TRUE(facets.is_hull(exact)) << facets.euler << " " << facets.flatness;
+    EXPECT_EQ(facets.directions, 4 + 2000);
+    const HullVerification spheres = verified(two_spheres_boundary(skew_rotation(), shift));
+    EXPECT_TRUE(spheres.is_hull(exact));
+    EXPECT_EQ(spheres.euler, 2);
+    EXPECT_EQ(spheres.uncovered, 0);
+    EXPECT_GT(spheres.tangency + spheres.off_source, 0) << "something was measured";
+  }
+}
+
+TEST(VerifyHull, FacetsWithinCirclesPass) {
+  const HullVerification found = verified(cylinder_boundary());
+  EXPECT_TRUE(found.is_hull(exact)) << found.euler << " " << found.uncovered;
+}
+
+TEST(VerifyHull, PolyhedralHullsPass) {
+  const std::vector<std::vector<dvec3>> sets = {
+      {{1, 2, 3}},
+      {{0, 0, 0}, {1, 2, 2}},
+      {{0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}},
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0.2, 0.2, 0.2}},
+  };
+  for (const std::vector<dvec3>& points : sets) {
+    const Scene scene = make_scene({{}, {}, points});
+    const HullDocument hull = hull_document(scene.model(), convex_hull(scene.model()).mesh);
+    EXPECT_TRUE(verify(hull, scene, quick()).is_hull(1e-15)) << points.size();
+  }
+}
+
+/// Damages the document of the two spheres.
+template <class Damage>
+HullVerification damaged(const Damage& damage) {
+  static const KnownBoundary known = two_spheres_boundary();
+  HullDocument hull = hull_document(known.scene, known.boundary);
+  damage(hull);
+  const HullVerification found = verify(hull, known.scene, quick());
+  EXPECT_FALSE(found.is_hull(1e-6));
+  return found;
+}
+
+TEST(VerifyHull, EveryDamageIsFound) {
+  EXPECT_FALSE(damaged([](HullDocument& hull) { hull.curves[0].faces[0] = -1; }).complete);
+  EXPECT_FALSE(damaged([](HullDocument& hull) { hull.faces[0].loops.clear(); }).closed);
+  EXPECT_FALSE(
+      damaged([](HullDocument& hull) { hull.faces[2].curves[0] = {}; }).topological_sphere());
+  EXPECT_FALSE(damaged([](HullDocument& hull) { hull.faces[2].curves[0] = {1}; }).closed);
+  EXPECT_FALSE(damaged([](HullDocument& hull) { hull.curves[0].points.pop_back(); }).closed);
+  EXPECT_FALSE(damaged([](HullDocument& hull) {
+                 std::swap(hull.curves[0].faces[0], hull.curves[0].faces[1]);
+               }).closed);
+  EXPECT_NEAR(damaged([](HullDocument& hull) {
+                hull.faces[2].rulings[20].b.p.z += 1e-3 * hull.diagonal;
+              }).off_source,
+              1e-3, 1e-9);
+  EXPECT_GT(damaged([](HullDocument& hull) { hull.faces[2].rulings[20].a.uv[1] += 1e-3; }).tangency,
+            1e-5);
+  EXPECT_EQ(
+      damaged([](HullDocument& hull) { hull.faces[2].rulings[20].a.uv[1] = -0.5; }).off_source,
+      std::numeric_limits<double>::infinity());
+  EXPECT_GT(damaged([](HullDocument& hull) {
+              for (HullDocument::Ruling& r : hull.faces[2].rulings) r.n = -r.n;
+            }).model_outside,
+            0.1);
+  EXPECT_GT(damaged([](HullDocument& hull) {
+              for (HullDocument::Ruling& r : hull.faces[2].rulings) r.b.p += 1e-3 * r.n;
+            }).hull_outside,
+            1e-5);
+  EXPECT_GT(damaged([](HullDocument& hull) { hull.faces[1].regions.pop_back(); }).uncovered, 50);
+  EXPECT_GT(damaged([](HullDocument& hull) {
+              for (HullDocument::Region& region : hull.faces[0].regions) {
+                for (dvec2& p : region.loops[0]) p.y = 1 + 0.8 * (p.y - 1);
+              }
+            }).uncovered,
+            20);
+}
+
+TEST(VerifyHull, OfAnotherModelFails) {
+  const KnownBoundary known = two_spheres_boundary();
+  const HullDocument hull = hull_document(known.scene, known.boundary);
+  const HullVerification larger = verify(hull, make_scene(two_spheres(1.01, 0.5, 3)), quick());
+  EXPECT_GT(larger.model_outside, 1e-3);
+  EXPECT_FALSE(larger.is_hull(1e-4));
+  EXPECT_GT(verify(hull, make_scene(two_spheres(0.99, 0.49, 3)), quick()).hull_outside, 1e-3);
+  EXPECT_FALSE(verify(hull, make_scene(torus(2, 0.5)), quick()).is_hull(0.1));
+}
+
+}  // namespace
+}  // namespace taut

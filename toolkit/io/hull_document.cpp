@@ -1,0 +1,377 @@
+#include "taut/io/hull_document.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "taut/hull/contact_geometry.h"
+#include "taut/io/hull_sources.h"
+
+namespace taut {
+namespace {
+
+using DirectedCurve = HullDocument::DirectedCurve;
+
+/// Segments of a stretch of a patch's border.
+constexpr int border_segments = 8;
+
+/// Curves meet in the same points but for rounding; what is farther apart, in the scene's frame, is
+/// no outline.
+constexpr double outline_gap = 1e-6;
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+
+/// A contact in the terms of the element that it is expressed in, on its border or not: a point of
+/// an edge as its neighbouring faces have it may be another one by join_distance.
+SourceContact place_of(const Model& model, const Contact& c) {
+  const Part& part = model.parts()[to_size(model.instances()[to_size(c.instance)].part)];
+  const auto made = [&](int index, double u, double v) {
+    return SourceContact{model.source_id({c.kind, c.instance, index}), c.kind, u, v};
+  };
+  if (c.kind == SourceKind::vertex) return made(c.element, 0, 0);
+  if (c.kind == SourceKind::edge) {
+    const EdgePiece& piece = part.pieces()[to_size(c.element)];
+    return made(piece.edge, piece.t.at(c.u), 0);
+  }
+  const Patch& patch = part.patches()[to_size(c.element)];
+  return made(patch.face, patch.u.at(c.u), patch.v.at(c.v));
+}
+
+/// A stretch of a patch's outline, in the direction in which the hull's outlines run: with the
+/// patch to the left seen from outside.
+struct Stretch {
+  int curve = -1;
+  std::vector<dvec2> uv;
+  dvec3 begin = dvec3(0.0), end = dvec3(0.0);
+  bool used = false;
+};
+
+/// Makes the document of a boundary.
+class DocumentMaker {
+ public:
+  DocumentMaker(const Scene& scene, const HullBoundary& boundary,
+                const std::vector<std::string>& files)
+      : scene_(scene),
+        boundary_(boundary),
+        geometry_(scene),
+        sources_(scene.model(), files),
+        curves_of_(boundary.faces.size()) {}
+
+  HullDocument make();
+
+ private:
+  template <class Visit>
+  void for_each_piece(const ArcRange& range, Visit visit) const;
+  void collect_sources();
+  HullDocument::Contact contact(const Contact& c, const dvec3& point) const;
+  dvec2 uv(const Contact& c) const;
+  /// The contacts along a stretch of a region's outline, as it is directed there.
+  std::vector<Contact> contacts(const PatchRegion& region, const TrimStretch& stretch) const;
+
+  HullDocument::Face make_face(int index) const;
+  void make_patch(const HullFace& face, HullDocument::Face& result) const;
+  std::vector<dvec2> outline(const std::vector<DirectedCurve>& curves,
+                             std::vector<Stretch>& stretches) const;
+  void make_scroll(const HullFace& face, HullDocument::Face& result) const;
+  void make_facet(int index, HullDocument::Face& result) const;
+  std::vector<DirectedCurve> facet_outline(int index) const;
+  dvec3 end_of(const DirectedCurve& c, bool last) const {
+    const std::vector<dvec3>& points = boundary_.curves[to_size(c.first)].points;
+    return (c.second > 0) == last ? points.back() : points.front();
+  }
+  std::vector<dvec3> to_model(const std::vector<dvec3>& points) const {
+    std::vector<dvec3> result;
+    for (const dvec3& p : points) result.push_back(scene_.frame().to_model(p));
+    return result;
+  }
+
+  const Scene& scene_;
+  const HullBoundary& boundary_;
+  ContactGeometry geometry_;
+  HullSources sources_;
+  std::vector<std::vector<DirectedCurve>> curves_of_;  ///< per face, with it to the left
+};
+
+HullDocument DocumentMaker::make() {
+  for (std::size_t i = 0; i < boundary_.curves.size(); ++i) {
+    const auto [left, right] = boundary_.curves[i].faces;
+    if (left == right) continue;
+    if (left >= 0) curves_of_[to_size(left)].emplace_back(int(i), 1);
+    if (right >= 0) curves_of_[to_size(right)].emplace_back(int(i), -1);
+  }
+  collect_sources();
+  HullDocument document;
+  document.diagonal = scene_.diagonal();
+  document.dimension = 3;
+  document.sources = sources_.make();
+  for (std::size_t i = 0; i < boundary_.faces.size(); ++i) {
+    document.faces.push_back(make_face(int(i)));
+  }
+  for (const HullCurve& curve : boundary_.curves) {
+    document.curves.push_back(
+        {curve.kind, curve.faces, sources_.place(curve.source), to_model(curve.points)});
+  }
+  return document;
+}
+
+template <class Visit>
+void DocumentMaker::for_each_piece(const ArcRange& range, Visit visit) const {
+  if (range.arc < 0) return;
+  const std::vector<ArcPiece>& pieces = boundary_.arcs[to_size(range.arc)].pieces;
+  for (int k = 0; k < range.count; ++k) {
+    visit(pieces[(to_size(range.first) + to_size(k)) % pieces.size()]);
+  }
+}
+
+void DocumentMaker::collect_sources() {
+  const auto add = [&](const Contact& c) { sources_.add(place_of(scene_.model(), c).source); };
+  for (const HullFace& face : boundary_.faces) {
+    sources_.add(face.source);
+    for (const Contact& c : face.contacts) add(c);
+    if (face.kind != FaceKind::scroll) continue;
+    for_each_piece(face.scroll, [&](const ArcPiece& piece) {
+      for (const Ruling& r : piece.rulings) {
+        for (const Contact& c : r.contact) add(c);
+      }
+    });
+  }
+  for (const HullCurve& curve : boundary_.curves) sources_.add(curve.source);
+  sources_.finish();
+}
+
+HullDocument::Contact DocumentMaker::contact(const Contact& c, const dvec3& point) const {
+  const SourceContact place = place_of(scene_.model(), c);
+  HullDocument::Contact result{sources_.place(place.source), {}, scene_.frame().to_model(point)};
+  if (place.kind == SourceKind::face) result.uv = {place.u, place.v};
+  if (place.kind == SourceKind::edge) result.uv = {place.u};
+  return result;
+}
+
+dvec2 DocumentMaker::uv(const Contact& c) const {
+  const SourceContact place = place_of(scene_.model(), c);
+  return {place.u, place.v};
+}
+
+std::vector<Contact> DocumentMaker::contacts(const PatchRegion& region,
+                                             const TrimStretch& stretch) const {
+  std::vector<Contact> result;
+  if (stretch.arc >= 0) {
+    const ArcPiece& piece = boundary_.arcs[to_size(stretch.arc)].pieces[to_size(stretch.piece)];
+    for (const Ruling& r : piece.rulings) result.push_back(r.contact[to_size(stretch.contact)]);
+    if (stretch.reversed) std::reverse(result.begin(), result.end());
+    return result;
+  }
+  for (int k = 0; k <= border_segments; ++k) {
+    const double s = double(k) / border_segments;
+    const double t = k == border_segments ? stretch.to : (1 - s) * stretch.from + s * stretch.to;
+    Contact c{region.instance, SourceKind::face, region.patch, t, t};
+    if (stretch.side == Side::u0) c.u = 0;
+    if (stretch.side == Side::u1) c.u = 1;
+    if (stretch.side == Side::v0) c.v = 0;
+    if (stretch.side == Side::v1) c.v = 1;
+    result.push_back(c);
+  }
+  return result;
+}
+
+HullDocument::Face DocumentMaker::make_face(int index) const {
+  const HullFace& face = boundary_.faces[to_size(index)];
+  HullDocument::Face result;
+  result.kind = face.kind;
+  result.source = sources_.place(face.source);
+  if (face.kind == FaceKind::patch) make_patch(face, result);
+  if (face.kind == FaceKind::scroll) make_scroll(face, result);
+  if (face.kind == FaceKind::facet) make_facet(index, result);
+  return result;
+}
+
+/// Appends points to a polyline that may end where they begin.
+template <class Point>
+void append(std::vector<Point>& line, const std::vector<Point>& points) {
+  const bool repeated = !line.empty() && !points.empty() && line.back() == points.front();
+  line.insert(line.end(), points.begin() + (repeated ? 1 : 0), points.end());
+}
+
+/// Takes out the last point of a closed polyline that is the first.
+template <class Point>
+void close(std::vector<Point>& line) {
+  if (line.size() > 1 && line.front() == line.back()) line.pop_back();
+}
+
+void DocumentMaker::make_patch(const HullFace& face, HullDocument::Face& result) const {
+  std::vector<Stretch> stretches;
+  const Model& model = scene_.model();
+  for (const PatchRegion& region : face.regions) {
+    const Part& part = model.parts()[to_size(model.instances()[to_size(region.instance)].part)];
+    const int source_face = part.patches()[to_size(region.patch)].face;
+    HullDocument::Region& own = result.regions.emplace_back();
+    own.patch = region.patch - part.faces()[to_size(source_face)].first_patch;
+    own.sign = region.sign;
+    for (const std::vector<TrimStretch>& loop : region.loops) {
+      std::vector<dvec2>& line = own.loops.emplace_back();
+      for (const TrimStretch& stretch : loop) {
+        const std::vector<Contact> along = contacts(region, stretch);
+        std::vector<dvec2> points;
+        for (const Contact& c : along) points.push_back(uv(c));
+        append(line, points);
+        if (stretch.curve < 0) continue;
+        Stretch s{stretch.curve, std::move(points), geometry_.point(along.front()),
+                  geometry_.point(along.back()), false};
+        // Seen from outside, a region that is passed from within lies to the right.
+        if (region.sign < 0) {
+          std::reverse(s.uv.begin(), s.uv.end());
+          std::swap(s.begin, s.end);
+        }
+        stretches.push_back(std::move(s));
+      }
+      close(line);
+    }
+  }
+  for (const std::vector<DirectedCurve>& loop : face.loops) {
+    result.loops.push_back({loop, outline(loop, stretches)});
+  }
+}
+
+/// Follows the outline from stretch to stretch, each time to the one that begins nearest.
+std::vector<dvec2> DocumentMaker::outline(const std::vector<DirectedCurve>& curves,
+                                          std::vector<Stretch>& stretches) const {
+  std::vector<dvec2> line;
+  for (const DirectedCurve& c : curves) {
+    dvec3 at = end_of(c, false);
+    const dvec3 target = end_of(c, true);
+    for (bool first = true;; first = false) {
+      // Of a curve that the face meets from both sides, the others belong to the other side.
+      if (!first && glm::distance(at, target) < outline_gap) break;
+      Stretch* next = nullptr;
+      for (Stretch& s : stretches) {
+        if (s.used || s.curve != c.first) continue;
+        if (next == nullptr || glm::distance(s.begin, at) < glm::distance(next->begin, at)) {
+          next = &s;
+        }
+      }
+      if (next == nullptr) break;
+      next->used = true;
+      at = next->end;
+      append(line, next->uv);
+    }
+  }
+  close(line);
+  return line;
+}
+
+void DocumentMaker::make_scroll(const HullFace& face, HullDocument::Face& result) const {
+  result.curves = face.scroll_curves;
+  const auto same = [](const Contact& a, const Contact& b) {
+    return a.instance == b.instance && a.kind == b.kind && a.element == b.element && a.u == b.u &&
+           a.v == b.v;
+  };
+  const Ruling* last = nullptr;
+  for_each_piece(face.scroll, [&](const ArcPiece& piece) {
+    for (const Ruling& r : piece.rulings) {
+      if (last != nullptr && last->n == r.n && same(last->contact[0], r.contact[0]) &&
+          same(last->contact[1], r.contact[1])) {
+        continue;
+      }
+      result.rulings.push_back(
+          {r.n, contact(r.contact[0], r.point[0]), contact(r.contact[1], r.point[1])});
+      last = &r;
+    }
+  });
+}
+
+void DocumentMaker::make_facet(int index, HullDocument::Face& result) const {
+  const HullFace& face = boundary_.faces[to_size(index)];
+  const SceneFrame& frame = scene_.frame();
+  result.normal = face.n;
+  result.offset = frame.length_to_model(face.offset) + glm::dot(face.n, frame.center);
+  for (std::size_t i = 0; i < face.contacts.size(); ++i) {
+    result.contacts.push_back(contact(face.contacts[i], face.points[i]));
+  }
+  result.outline = facet_outline(index);
+  if (result.outline.empty()) {
+    result.boundary = to_model(face.points);
+    return;
+  }
+  for (const DirectedCurve& c : result.outline) {
+    std::vector<dvec3> points = to_model(boundary_.curves[to_size(c.first)].points);
+    if (c.second < 0) std::reverse(points.begin(), points.end());
+    if (!result.boundary.empty()) points.erase(points.begin());
+    append(result.boundary, points);
+  }
+  // It ends where it began, to rounding.
+  result.boundary.pop_back();
+}
+
+/// The curves about a facet in order; none unless they close.
+std::vector<DirectedCurve> DocumentMaker::facet_outline(int index) const {
+  std::vector<DirectedCurve> left = curves_of_[to_size(index)];
+  std::vector<DirectedCurve> outline;
+  while (!left.empty()) {
+    auto next = left.begin();
+    if (!outline.empty()) {
+      const dvec3 at = end_of(outline.back(), true);
+      const auto gap = [&](const DirectedCurve& c) { return glm::distance(end_of(c, false), at); };
+      next = std::min_element(left.begin(), left.end(),
+                              [&](const auto& a, const auto& b) { return gap(a) < gap(b); });
+      if (!(gap(*next) < outline_gap)) return {};
+    }
+    outline.push_back(*next);
+    left.erase(next);
+  }
+  if (outline.empty()) return {};
+  const double gap = glm::distance(end_of(outline.back(), true), end_of(outline.front(), false));
+  return gap < outline_gap ? outline : std::vector<DirectedCurve>();
+}
+
+}  // namespace
+
+HullDocument hull_document(const Scene& scene, const HullBoundary& boundary,
+                           const std::vector<std::string>& files) {
+  return DocumentMaker(scene, boundary, files).make();
+}
+
+HullDocument hull_document(const Model& model, const HullMesh& mesh,
+                           const std::vector<std::string>& files) {
+  HullSources sources(model, files);
+  for (const auto v : mesh.vertices()) sources.add(mesh.data(v).source);
+  for (const auto f : mesh.faces()) sources.add(mesh.data(f).source);
+  sources.finish();
+
+  HullDocument document;
+  document.diagonal = diagonal(model.control_box());
+  document.dimension = mesh.n_faces() == 0  ? int(mesh.n_vertices()) - 1
+                       : mesh.n_faces() > 2 ? 3
+                                            : 2;
+  document.sources = sources.make();
+  for (const auto f : mesh.faces()) {
+    HullDocument::Face& face = document.faces.emplace_back();
+    face.source = sources.place(mesh.data(f).source);
+    for (const auto h : mesh.fh_range(f)) {
+      const auto v = mesh.from_vertex_handle(h);
+      face.outline.emplace_back(mesh.edge_handle(h).idx(), h.idx() % 2 == 0 ? 1 : -1);
+      face.boundary.push_back(position(mesh, v));
+      face.contacts.push_back({sources.place(mesh.data(v).source), {}, position(mesh, v)});
+    }
+    dvec3 area(0.0);
+    for (std::size_t k = 1; k + 1 < face.boundary.size(); ++k) {
+      area += glm::cross(unit(face.boundary[k] - face.boundary[0]),
+                         face.boundary[k + 1] - face.boundary[0]);
+    }
+    face.normal = unit(area);
+    face.offset = -std::numeric_limits<double>::infinity();
+    for (const dvec3& p : face.boundary) {
+      face.offset = std::max(face.offset, glm::dot(face.normal, p));
+    }
+  }
+  for (const auto e : mesh.edges()) {
+    const auto h = mesh.halfedge_handle(e, 0);
+    const auto opposite = mesh.halfedge_handle(e, 1);
+    document.curves.push_back(
+        {HullCurveKind::ruling,
+         {mesh.face_handle(h).idx(), mesh.face_handle(opposite).idx()},
+         -1,
+         {position(mesh, mesh.from_vertex_handle(h)), position(mesh, mesh.to_vertex_handle(h))}});
+  }
+  return document;
+}
+
+}  // namespace taut

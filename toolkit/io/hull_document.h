@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "taut/bounds/scene.h"
+#include "taut/core/progress.h"
+#include "taut/hull/hull_boundary.h"
+#include "taut/io/model_document.h"
+
+namespace taut {
+
+/// The exact boundary of a convex hull with the pieces of geometry that it lies on: what a hull
+/// document (`.hull.json`, `.hull.cbor`) holds, in model coordinates. Every face can be rebuilt
+/// from it to machine precision without the model.
+///
+/// Sources, faces and curves refer to each other by their places in these lists.
+struct HullDocument {
+  /// A rational Bezier patch, curve (one row) or point (one row of one) of a source, placed by its
+  /// instance.
+  struct Patch {
+    /// Of the source's own parameters: two of a face, one of an edge, none of a vertex.
+    std::vector<Interval> domain;
+    int rows = 0;     ///< points along u
+    int columns = 0;  ///< points along v, or along an edge
+    /// Euclidean points with their weights, along v within along u.
+    std::vector<dvec4> points;
+  };
+  struct Source {
+    int id = -1;  ///< Model::source
+    SourceKind kind = SourceKind::face;
+    std::string file;  ///< empty if not known
+    std::string name;
+    /// In the order of the model's; none of a polygon.
+    std::vector<Patch> patches;
+  };
+  /// A place on a source.
+  struct Contact {
+    int source = -1;
+    /// The source's own parameters, as many as its domain has.
+    std::vector<double> uv;
+    dvec3 p = dvec3(0.0);
+  };
+  struct Ruling {
+    dvec3 n = dvec3(0.0);
+    Contact a, b;
+  };
+  /// A curve's number, and +1 if passed along it, -1 if against it.
+  using DirectedCurve = std::pair<int, int>;
+  /// An outline of a patch, seen from outside with the patch to the left.
+  struct Loop {
+    std::vector<DirectedCurve> curves;
+    /// Points along it in the source's parameters, the first one not again. Where it passes a seam
+    /// of the source, they go on with the parameters of the other side.
+    std::vector<dvec2> uv;
+  };
+  /// The part of a patch of the hull that lies on one Bezier patch of its source.
+  struct Region {
+    int patch = -1;  ///< of the source's patches
+    int sign = 1;    ///< the outward normal is along sign * (Su x Sv)
+    /// Closed outlines in the source's parameters, the first point not again, with the region to
+    /// the left in the (u, v) plane.
+    std::vector<std::vector<dvec2>> loops;
+  };
+  struct Face {
+    FaceKind kind = FaceKind::facet;
+    int source = -1;  ///< that it lies on, -1 if none
+    /// patch: its outlines; none of a patch that is the whole hull.
+    std::vector<Loop> loops;
+    std::vector<Region> regions;
+    /// scroll: the curves along the contacts a and b, in order; none along a vertex.
+    std::array<std::vector<int>, 2> curves;
+    /// scroll: in order, dense enough to step from one to the next; of a closed one the last has
+    /// the n of the first. Where a contact passes into another Bezier patch or source, the ruling
+    /// stands twice, once in the terms of either, so that between neighbours in the list both
+    /// contacts stay in one Bezier patch or curve, but for the pairs that share n.
+    std::vector<Ruling> rulings;
+    /// facet: the plane x . normal = offset.
+    dvec3 normal = dvec3(0.0);
+    double offset = 0;
+    /// facet: counter-clockwise from outside.
+    std::vector<Contact> contacts;
+    /// facet: its outline as curves, the facet to the left seen from outside; none where curves are
+    /// missing.
+    std::vector<DirectedCurve> outline;
+    /// facet: points along the outline, the first one not again.
+    std::vector<dvec3> boundary;
+  };
+  struct Curve {
+    HullCurveKind kind = HullCurveKind::ruling;
+    /// To the left and to the right, seen from outside; -1 where a face is missing.
+    std::array<int, 2> faces = {-1, -1};
+    int source = -1;  ///< edge: the model's edge; else -1
+    /// From its beginning to its end; of a closed curve the last is the first.
+    std::vector<dvec3> points;
+  };
+
+  double diagonal = 0;  ///< of the model's box
+  int dimension = 3;
+  std::vector<Source> sources;  ///< those that occur, ascending ids
+  std::vector<Face> faces;
+  std::vector<Curve> curves;
+  /// A JSON object as text, or empty.
+  std::string report;
+};
+
+/// The document of an exact boundary. `files`: what each of the model's parts was read from, as far
+/// as it is known.
+HullDocument hull_document(const Scene& scene, const HullBoundary& boundary,
+                           const std::vector<std::string>& files = {});
+
+/// The same of a polyhedral hull, whose mesh is its boundary: facets, and rulings between them. A
+/// planar hull has two facets, a segment one curve without faces, a point nothing but a source.
+/// @pre model.polyhedral(), and the mesh's vertices have sources
+HullDocument hull_document(const Model& model, const HullMesh& mesh,
+                           const std::vector<std::string>& files = {});
+
+/// The document in one of its encodings; numbers round-trip. @pre all numbers are finite
+std::string to_document(const HullDocument& hull, DocumentEncoding encoding);
+
+/// Writes the document, the encoding by the path's extension. The file appears whole or not at all.
+/// @throws IoError if the extension is neither .hull.json nor .hull.cbor or the file cannot be
+/// written
+void write_hull(const std::filesystem::path& path, const HullDocument& hull);
+
+/// Reads a hull document. Ids of faces and curves become places in the lists. What it says is
+/// consistent as far as one can tell without geometry: references exist, contacts have the
+/// parameters that their sources have, Bezier patches have valid degrees and weights.
+///
+/// `name` begins the messages.
+/// @throws IoError if the file cannot be read or is no hull document (NAME:LINE: or NAME:byte N:
+/// for its syntax, NAME: faces[3].rulings[0].n: for what it holds), InvalidInput (with the same
+/// places) if its numbers are no valid geometry, Cancelled
+HullDocument read_hull(std::string_view data, const std::string& name, DocumentEncoding encoding,
+                       const Progress& progress = {});
+HullDocument read_hull(const std::filesystem::path& path, const Progress& progress = {});
+
+}  // namespace taut

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "taut/io/hull_document.h"
+
+namespace taut {
+
+/// The sources that a hull document names, by their ids in the model: first all are added, then
+/// each has its place.
+class HullSources {
+ public:
+  HullSources(const Model& model, const std::vector<std::string>& files)
+      : model_(model), files_(files) {}
+
+  void add(int id) {
+    if (id >= 0) ids_.insert(id);
+  }
+  void finish() { order_.assign(ids_.begin(), ids_.end()); }
+  /// Its place; -1 of none.
+  int place(int id) const {
+    if (id < 0) return -1;
+    return int(std::lower_bound(order_.begin(), order_.end(), id) - order_.begin());
+  }
+  std::vector<HullDocument::Source> make() const {
+    std::vector<HullDocument::Source> sources;
+    for (const int id : order_) sources.push_back(source(id));
+    return sources;
+  }
+
+ private:
+  HullDocument::Source source(int id) const;
+
+  const Model& model_;
+  const std::vector<std::string>& files_;
+  std::set<int> ids_;
+  std::vector<int> order_;
+};
+
+}  // namespace taut

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "taut/io/hull_document.h"
+
+namespace taut {
+
+/// How the faces and curves of a hull document fit together.
+struct HullStructure {
+  /// There are faces, and every curve has two.
+  bool complete = false;
+  /// The curves about every face close, those that it names are those that name it, and the
+  /// outlines of patches and facets run from each curve to the next.
+  bool closed = false;
+  /// V - E + F, where a face counts as its own Euler characteristic. A curve without ends, and what
+  /// is no longer than the tolerance, counts as nothing.
+  int euler = 0;
+};
+
+/// Ends of curves closer than the tolerance, in model units, are one.
+HullStructure hull_structure(const HullDocument& hull, double tolerance);
+
+}  // namespace taut

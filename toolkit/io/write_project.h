@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "taut/bounds/scene.h"
+#include "taut/hull/hull_boundary.h"
+#include "taut/hull/hull_mesh.h"
+
+namespace taut {
+
+/// Points along a curve, in model coordinates.
+using Polyline = std::vector<dvec3>;
+
+/// The curves of an exact hull.
+std::vector<Polyline> hull_curves(const SceneFrame& frame, const HullBoundary& boundary);
+/// The edges of a mesh that separate hull faces, one polyline each.
+std::vector<Polyline> hull_curves(const HullMesh& mesh);
+
+/// The files that write_project() makes of NAME.mlp: NAME-hull.ply, NAME-curves.ply,
+/// NAME-model.ply and NAME.mlp.
+std::vector<std::filesystem::path> project_files(const std::filesystem::path& path);
+
+/// Writes a MeshLab project of three layers, in files beside it that it names relative to itself:
+/// the hull as write_mesh() has it, its curves as edges, and the model as triangles on a modest
+/// grid (free curves as edges, points alone as they are; trimmed faces untrimmed). A hull without
+/// curves has no layer of them.
+///
+/// The files appear all, or none does.
+/// @throws IoError if one of them cannot be written
+void write_project(const std::filesystem::path& path, const HullMesh& mesh,
+                   const std::vector<Polyline>& curves, const Model& model);
+
+}  // namespace taut
