@@ -109,7 +109,7 @@ void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion&
       // The region lies to the left of its outline.
       crease(region.instance, border.piece)
           .intervals.push_back(
-              {std::min(from, to), std::max(from, to), from < to, {-1, -1, index, l, k}});
+              {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k}});
     }
   }
 }

@@ -19,6 +19,8 @@ class CreaseTracks {
   struct Track {
     int arc = -1;
     int piece = -1;
+    int contact = 0;   ///< which of the piece's contacts lies on the edge
+    double sense = 0;  ///< positive if the edge's parameter grows along the arc
     int region = -1;
     std::size_t loop = 0, index = 0;
     bool empty() const { return arc < 0 && region < 0; }

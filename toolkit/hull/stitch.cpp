@@ -43,6 +43,12 @@ class UnionFind {
   std::vector<int> parent_;
 };
 
+/// A contact of a piece of an arc and, where several curves lie along it, their order.
+struct ScrollContact {
+  int arc, piece, contact;
+  double order = 0;
+};
+
 /// A piece of a curve between two faces, to be chained with others.
 struct CurveElement {
   int left = -1;
@@ -52,6 +58,8 @@ struct CurveElement {
   /// The stretches (see Stitcher::StretchAt) along it: whose face is to the left, and to the right.
   int stretch_left = -1;
   int stretch_right = -1;
+  /// The scrolls' contacts along it.
+  std::vector<ScrollContact> contacts;
 };
 
 bool vertices_only(const ArcPiece& piece) {
@@ -103,6 +111,7 @@ class Stitcher {
   void make_joins();
   void make_creases();
   void make_rulings();
+  void make_scroll_curves();
   void make_loops();
   void check();
   void chain(HullCurveKind kind, std::vector<CurveElement> elements);
@@ -122,6 +131,8 @@ class Stitcher {
   std::vector<int> face_of_region_;
   std::vector<std::vector<int>> scroll_of_;  // per arc and piece; -1 between vertices
   std::vector<int> facet_of_;                // per node
+  /// By arc, piece and contact: the curves along it, with their order.
+  std::map<std::tuple<int, int, int>, std::vector<std::pair<double, int>>> along_scroll_;
 };
 
 dvec2 on_side(Side side, double t) {
@@ -348,6 +359,7 @@ void Stitcher::make_bitangents() {
           for (const int s : trace_[{a, piece, contact}]) {
             stretch(stretches_[std::size_t(s)]).curve = curve;
           }
+          along_scroll_[{a, piece, contact}].emplace_back(0.0, curve);
         }
       }
     }
@@ -398,6 +410,9 @@ void Stitcher::chain(HullCurveKind kind, std::vector<CurveElement> elements) {
     for (const std::size_t k : run) {
       for (const int s : {elements[k].stretch_left, elements[k].stretch_right}) {
         if (s >= 0) stretch(stretches_[std::size_t(s)]).curve = curve;
+      }
+      for (const ScrollContact& c : elements[k].contacts) {
+        along_scroll_[{c.arc, c.piece, c.contact}].emplace_back(c.order, curve);
       }
     }
   }
@@ -480,6 +495,10 @@ void Stitcher::make_creases() {
     }
     e.stretch_left = stretch_at(c.low);
     e.stretch_right = stretch_at(c.high);
+    for (const CreaseTracks::Track& t : {c.low, c.high}) {
+      // Along the arc the parameter grows or falls.
+      if (t.arc >= 0) e.contacts.push_back({t.arc, t.piece, t.contact, t.sense * c.from});
+    }
     elements.push_back(std::move(e));
   }
   chain(HullCurveKind::edge, std::move(elements));
@@ -529,10 +548,32 @@ void Stitcher::make_rulings() {
       }
     }
     for (const Cut& cut : cuts) {
-      // Along n x d the faces follow each other; from contact 1 to contact 0 the next is to the
+      // Along n x d the faces follow each other; from contact 0 to contact 1 the next is to the
       // right.
-      add_curve(HullCurveKind::ruling, cut.after, cut.before, -1,
+      add_curve(HullCurveKind::ruling, cut.before, cut.after, -1,
                 {cut.ruling.point[0], cut.ruling.point[1]}, false);
+    }
+  }
+}
+
+/// The curves along a scroll's contacts, in the order of its rulings.
+void Stitcher::make_scroll_curves() {
+  for (HullFace& face : boundary_.faces) {
+    if (face.kind != FaceKind::scroll) continue;
+    const int count = int(graph_.arcs[std::size_t(face.scroll.arc)].pieces.size());
+    for (int contact = 0; contact < 2; ++contact) {
+      std::vector<int>& curves = face.scroll_curves[std::size_t(contact)];
+      for (int k = 0; k < face.scroll.count; ++k) {
+        const auto found =
+            along_scroll_.find({face.scroll.arc, (face.scroll.first + k) % count, contact});
+        if (found == along_scroll_.end()) continue;
+        std::stable_sort(found->second.begin(), found->second.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (const auto& [order, curve] : found->second) {
+          if (curves.empty() || curves.back() != curve) curves.push_back(curve);
+        }
+      }
+      if (curves.size() > 1 && curves.front() == curves.back()) curves.pop_back();
     }
   }
 }
@@ -633,6 +674,7 @@ HullBoundary Stitcher::run() {
   make_joins();
   make_creases();
   make_rulings();
+  make_scroll_curves();
   make_loops();
   check();
   for (std::size_t r = 0; r < regions_.size(); ++r) {
