@@ -1,0 +1,114 @@
+#include "taut/hull/boundary_mesh.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "taut/core/stopwatch.h"
+#include "taut/hull/contact_faces.h"
+#include "taut/hull/curve_samples.h"
+#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sampled_start.h"
+
+namespace taut {
+namespace {
+
+/// Share of the tolerance that chords of curves may take up: faces beside them that are not
+/// narrow do so too (tried; more makes fewer points on curves and more beside them).
+constexpr double sagitta_share = 0.6;
+
+/// Share of the tolerance within which samples on curves are one.
+constexpr double width_share = 1.0 / 32;
+
+/// Finds the hull face in which a face of the mesh lies.
+class BoundaryLabels {
+ public:
+  BoundaryLabels(const HullBoundary& boundary, std::vector<TouchedFaces> touched)
+      : boundary_(boundary), touched_(std::move(touched)) {}
+
+  std::optional<FaceLabel> operator()(std::span<const int> corners) const {
+    std::vector<Candidate> candidates;
+    for (const int corner : corners) {
+      for (const TouchedFace& f : touched_[std::size_t(corner)]) {
+        const auto same = [&](const Candidate& c) { return c.face == f.face; };
+        auto c = std::find_if(candidates.begin(), candidates.end(), same);
+        if (c == candidates.end()) c = candidates.insert(c, {f.face, 0, 0});
+        ++c->corners;
+        c->sides |= f.sides;
+      }
+    }
+    if (candidates.empty()) return std::nullopt;
+    const Candidate& best = *std::max_element(
+        candidates.begin(), candidates.end(),
+        [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); });
+    const bool complete = boundary_.unresolved.empty();
+    if (!complete && best.corners < int(corners.size())) return std::nullopt;
+    const HullFace& face = boundary_.faces[std::size_t(best.face)];
+    return FaceLabel{face.kind, face.source, best.face};
+  }
+
+ private:
+  struct Candidate {
+    int face;
+    int corners;
+    unsigned sides;
+  };
+
+  /// A scroll with corners on one side only may be that of the curve beside a patch.
+  std::tuple<int, int, int> rank(const Candidate& c) const {
+    constexpr unsigned both_sides = 3;
+    const FaceKind kind = boundary_.faces[std::size_t(c.face)].kind;
+    const int preference = kind == FaceKind::facet    ? 3
+                           : kind == FaceKind::scroll ? (c.sides == both_sides ? 2 : 0)
+                                                      : 1;
+    return {c.corners, preference, -c.face};
+  }
+
+  const HullBoundary& boundary_;
+  std::vector<TouchedFaces> touched_;  // per sample
+};
+
+}  // namespace
+
+Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
+                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options) {
+  const Stopwatch time;
+  const double tolerance = tolerance_for(options, scene.diagonal());
+  const ContactFaces faces(geometry, *boundary);
+  const double width =
+      std::max(width_share * tolerance, scene.frame().length_to_model(meaningful_width(scene)));
+  CurveSamples start = curve_samples(geometry, *boundary, faces, sagitta_share * tolerance, width);
+  HullStatistics statistics;
+  std::vector<dvec3> in_frame;
+  for (const dvec3& p : start.points) in_frame.push_back(scene.frame().to_frame(p));
+  if (in_frame.empty() || affine_span(in_frame, meaningful_width(scene)).dimension < 3) {
+    SupportQuery query(scene);
+    const SampledStart apart = sampled_start(scene, query);
+    for (std::size_t k = 0; k < apart.samples.size(); ++k) {
+      start.samples.push_back(apart.samples[k]);
+      start.points.push_back(apart.points[k]);
+      start.faces.push_back(faces.touched(apart.samples[k].contact));
+    }
+    statistics.support_queries = query.queries();
+    statistics.newton_iterations = query.newton_iterations();
+  }
+  SampledPolytope polytope =
+      sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
+  polytope.statistics.support_queries += statistics.support_queries;
+  polytope.statistics.newton_iterations += statistics.newton_iterations;
+  for (std::size_t k = start.faces.size(); k < polytope.samples.size(); ++k) {
+    Sample& sample = polytope.samples[k];
+    sample.contact = geometry.canonical(sample.contact);
+    start.faces.push_back(faces.touched(sample.contact));
+  }
+  const BoundaryLabels labels(*boundary, std::move(start.faces));
+  polytope.statistics.seconds_sample = 0;
+  Hull hull = polytope_hull(scene, options, polytope, {labels, int(boundary->faces.size())});
+  hull.boundary = std::move(boundary);
+  hull.statistics.seconds_mesh = time.seconds();
+  return hull;
+}
+
+}  // namespace taut
