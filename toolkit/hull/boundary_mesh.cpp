@@ -7,17 +7,13 @@
 #include <utility>
 
 #include "taut/core/stopwatch.h"
+#include "taut/hull/boundary_samples.h"
 #include "taut/hull/contact_faces.h"
-#include "taut/hull/curve_samples.h"
 #include "taut/hull/polytope_mesh.h"
 #include "taut/hull/sampled_start.h"
 
 namespace taut {
 namespace {
-
-/// Share of the tolerance that chords of curves may take up: faces beside them that are not
-/// narrow do so too (tried; more makes fewer points on curves and more beside them).
-constexpr double sagitta_share = 0.6;
 
 /// Share of the tolerance within which samples on curves are one.
 constexpr double width_share = 1.0 / 32;
@@ -79,25 +75,22 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   const ContactFaces faces(geometry, *boundary);
   const double width =
       std::max(width_share * tolerance, scene.frame().length_to_model(meaningful_width(scene)));
-  CurveSamples start = curve_samples(geometry, *boundary, faces, sagitta_share * tolerance, width);
-  HullStatistics statistics;
+  SupportQuery query(scene);
+  BoundarySamples start = boundary_samples(geometry, *boundary, faces, {tolerance, width}, query);
   std::vector<dvec3> in_frame;
   for (const dvec3& p : start.points) in_frame.push_back(scene.frame().to_frame(p));
   if (in_frame.empty() || affine_span(in_frame, meaningful_width(scene)).dimension < 3) {
-    SupportQuery query(scene);
     const SampledStart apart = sampled_start(scene, query);
     for (std::size_t k = 0; k < apart.samples.size(); ++k) {
       start.samples.push_back(apart.samples[k]);
       start.points.push_back(apart.points[k]);
       start.faces.push_back(faces.touched(apart.samples[k].contact));
     }
-    statistics.support_queries = query.queries();
-    statistics.newton_iterations = query.newton_iterations();
   }
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
-  polytope.statistics.support_queries += statistics.support_queries;
-  polytope.statistics.newton_iterations += statistics.newton_iterations;
+  polytope.statistics.support_queries += query.queries();
+  polytope.statistics.newton_iterations += query.newton_iterations();
   for (std::size_t k = start.faces.size(); k < polytope.samples.size(); ++k) {
     Sample& sample = polytope.samples[k];
     sample.contact = geometry.canonical(sample.contact);

@@ -1,4 +1,4 @@
-#include "taut/hull/curve_samples.h"
+#include "taut/hull/boundary_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,18 +94,50 @@ void add_intervals(const std::vector<T>& points, Middle middle, EvenDivision& di
   }
 }
 
-class CurveSampler {
+/// Calls visit with evenly spaced places on intervals of these lengths, the first after half a
+/// space: the interval and the share of it.
+template <class Visit>
+void visit_evenly(const std::vector<double>& lengths, double space, Visit visit) {
+  double to_next = 0.5 * space;
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    while (to_next < lengths[k]) {
+      visit(k, to_next / lengths[k]);
+      to_next += space;
+    }
+    to_next -= lengths[k];
+  }
+}
+
+/// Shares of the permitted gap (tried; more makes fewer points on curves, and more beside them):
+/// for sagittas of curves, and for the triangles beside them.
+constexpr double sagitta_share = 0.6;
+constexpr double gap_share = 0.8;
+
+/// Nearer to others than this share of its distance from its curve, a point beside the curve is
+/// not wanted: it might hide a chord (design: mesh).
+constexpr double clear_share = 0.6;
+
+/// Turns of the normal beyond which a step from a curve is no small one.
+constexpr double largest_step = 0.5;
+
+/// A Bezier border bends smoothly, its sagitta more so.
+constexpr int border_intervals = 32;
+
+class BoundarySampler {
  public:
-  CurveSampler(const ContactGeometry& geometry, const HullBoundary& boundary,
-               const ContactFaces& faces, double sagitta)
+  BoundarySampler(const ContactGeometry& geometry, const HullBoundary& boundary,
+                  const ContactFaces& faces, const SampleSpacing& spacing, SupportQuery& query)
       : geometry_(geometry),
         frame_(geometry.scene().frame()),
         boundary_(boundary),
         faces_(faces),
         system_(geometry),
-        sagitta_(sagitta * frame_.scale) {}
+        query_(query),
+        sagitta_(sagitta_share * spacing.gap * frame_.scale),
+        side_(std::sqrt(6 * gap_share * spacing.gap * frame_.scale)),
+        width_(spacing.width) {}
 
-  CurveSamples run(double width);
+  BoundarySamples run();
 
  private:
   void add(const dvec3& n, const Contact& contact, TouchedFaces touched);
@@ -116,19 +148,27 @@ class CurveSampler {
   bool same_faces(int arc, std::size_t piece, std::size_t other) const;
   bool samples_border(const PatchRegion& region, int face, const TrimStretch& stretch) const;
   void add_border(const PatchRegion& region, const TrimStretch& stretch);
+  std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch) const;
   Ruling border_place(const PatchRegion& region, Side side, double t) const;
-  CurveSamples without_near_ones(double width) const;
+  void add_rows(int arc, int piece);
+  void add_border_row(const PatchRegion& region, const TrimStretch& stretch);
+  void add_beside(const ContactJet& jet, const dvec3& n, const dvec3& across, const Contact& hint);
+  BoundarySamples without_near_ones() const;
 
   const ContactGeometry& geometry_;
   SceneFrame frame_;
   const HullBoundary& boundary_;
   const ContactFaces& faces_;
   ContactSystem system_;
+  SupportQuery& query_;
   double sagitta_;  // in the scene's frame
-  CurveSamples all_;
+  double side_;     // of triangles inside patches: the root of its second fundamental form
+  double width_;
+  BoundarySamples all_;
+  std::vector<double> clear_;  // per sample: none before may be as near; in model units
 };
 
-void CurveSampler::add(const dvec3& n, const Contact& contact, TouchedFaces touched) {
+void BoundarySampler::add(const dvec3& n, const Contact& contact, TouchedFaces touched) {
   const Contact c = geometry_.canonical(contact);
   if (c.kind != SourceKind::face) {
     for (const TouchedFace& f : faces_.touched(c)) touch(touched, f);
@@ -136,14 +176,15 @@ void CurveSampler::add(const dvec3& n, const Contact& contact, TouchedFaces touc
   all_.samples.push_back({n, c});
   all_.points.push_back(frame_.to_model(geometry_.point(c)));
   all_.faces.push_back(std::move(touched));
+  clear_.push_back(width_);
 }
 
-void CurveSampler::add_facet(int face) {
+void BoundarySampler::add_facet(int face) {
   const HullFace& f = boundary_.faces[std::size_t(face)];
   for (const Contact& c : f.contacts) add(f.n, c, {{face, 0}});
 }
 
-void CurveSampler::add_ruling(int arc, int piece, const Ruling& ruling) {
+void BoundarySampler::add_ruling(int arc, int piece, const Ruling& ruling) {
   for (int i = 0; i < 2; ++i) {
     TouchedFaces touched;
     touch(touched, {faces_.scroll(arc, piece), 1U << unsigned(i)});
@@ -152,7 +193,7 @@ void CurveSampler::add_ruling(int arc, int piece, const Ruling& ruling) {
   }
 }
 
-bool CurveSampler::same_faces(int arc, std::size_t piece, std::size_t other) const {
+bool BoundarySampler::same_faces(int arc, std::size_t piece, std::size_t other) const {
   const auto p = int(piece);
   const auto q = int(other);
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(arc)].pieces;
@@ -167,7 +208,7 @@ bool CurveSampler::same_faces(int arc, std::size_t piece, std::size_t other) con
 }
 
 /// Divides the arc wherever the faces that it touches change.
-void CurveSampler::add_arc(int arc) {
+void BoundarySampler::add_arc(int arc) {
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(arc)].pieces;
   const bool closed = boundary_.arcs[std::size_t(arc)].closed;
   std::size_t first = 0;
@@ -180,7 +221,7 @@ void CurveSampler::add_arc(int arc) {
   }
 }
 
-void CurveSampler::add_run(int arc, int first, int count, int least_parts) {
+void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(arc)].pieces;
   EvenDivision division;
   std::vector<std::pair<int, std::size_t>> from;  // per interval: piece and ruling
@@ -200,8 +241,8 @@ void CurveSampler::add_run(int arc, int first, int count, int least_parts) {
 
 /// Whether the border is part of a curve that no rulings are sampled along, and not passed from
 /// its other side.
-bool CurveSampler::samples_border(const PatchRegion& region, int face,
-                                  const TrimStretch& stretch) const {
+bool BoundarySampler::samples_border(const PatchRegion& region, int face,
+                                     const TrimStretch& stretch) const {
   if (stretch.arc >= 0 || stretch.curve < 0) return false;
   const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
   int patches = 0;
@@ -221,7 +262,7 @@ bool CurveSampler::samples_border(const PatchRegion& region, int face,
 }
 
 /// As a ruling of length zero.
-Ruling CurveSampler::border_place(const PatchRegion& region, Side side, double t) const {
+Ruling BoundarySampler::border_place(const PatchRegion& region, Side side, double t) const {
   const bool along_v = side == Side::u0 || side == Side::u1;
   const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
   const Contact c = {region.instance, SourceKind::face, region.patch, along_v ? fixed : t,
@@ -233,20 +274,26 @@ Ruling CurveSampler::border_place(const PatchRegion& region, Side side, double t
   return {n, {c, c}, {x, x}};
 }
 
-void CurveSampler::add_border(const PatchRegion& region, const TrimStretch& stretch) {
-  constexpr int intervals = 32;  // a Bezier border bends smoothly, its sagitta more so
-  std::vector<double> t;
+/// Enough to tell how a stretch bends.
+std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
+                                                   const TrimStretch& stretch) const {
   std::vector<Ruling> places;
-  for (int k = 0; k <= intervals; ++k) {
-    t.push_back(Interval{stretch.from, stretch.to}.at(double(k) / intervals));
-    places.push_back(border_place(region, stretch.side, t.back()));
+  for (int k = 0; k <= border_intervals; ++k) {
+    const double t = Interval{stretch.from, stretch.to}.at(double(k) / border_intervals);
+    places.push_back(border_place(region, stretch.side, t));
   }
+  return places;
+}
+
+void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& stretch) {
+  const std::vector<Ruling> places = border_places(region, stretch);
   EvenDivision division;
   add_intervals(
       places, [&] { return places[0]; }, division);
   const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
   for (const Place& place : division.places(sagitta_, 1)) {
-    const double at = Interval{t[place.interval], t[place.interval + 1]}.at(place.s);
+    const double s = (double(place.interval) + place.s) / border_intervals;
+    const double at = Interval{stretch.from, stretch.to}.at(s);
     const Ruling r = border_place(region, stretch.side, at);
     TouchedFaces touched;
     for (const int f : curve.faces) touch(touched, {f, 0});
@@ -254,8 +301,27 @@ void CurveSampler::add_border(const PatchRegion& region, const TrimStretch& stre
   }
 }
 
+void BoundarySampler::add_border_row(const PatchRegion& region, const TrimStretch& stretch) {
+  const std::vector<Ruling> places = border_places(region, stretch);
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    const double form =
+        glm::dot(places[k + 1].n - places[k].n, places[k + 1].point[0] - places[k].point[0]);
+    lengths.push_back(std::sqrt(std::max(form, 0.0)));
+  }
+  visit_evenly(lengths, side_, [&](std::size_t k, double s) {
+    const double at = (double(k) + s) / border_intervals;
+    const double t = Interval{stretch.from, stretch.to}.at(at);
+    const Ruling r = border_place(region, stretch.side, t);
+    // With the region to the left in (u, v), it is so from outside if the normal is Su x Sv.
+    const dvec3 along = unit(places[k + 1].point[0] - places[k].point[0]);
+    const dvec3 across = double(region.sign) * unit(glm::cross(r.n, along));
+    add_beside(geometry_.jet(r.contact[0]), r.n, across, r.contact[0]);
+  });
+}
+
 /// In the order of a direction in which few points of a model lie side by side.
-CurveSamples CurveSampler::without_near_ones(double width) const {
+BoundarySamples BoundarySampler::without_near_ones() const {
   const dvec3 across = unit(dvec3(0.7548776662466927, 0.5698402909980532, 0.4301597090019468));
   const std::size_t count = all_.points.size();
   std::vector<double> height;
@@ -267,20 +333,21 @@ CurveSamples CurveSampler::without_near_ones(double width) const {
   });
   std::vector<std::size_t> place(count);
   for (std::size_t k = 0; k < count; ++k) place[order[k]] = k;
-  CurveSamples result;
+  BoundarySamples result;
   std::vector<int> number(count, -1);  // in the result
   for (std::size_t i = 0; i < count; ++i) {
     int near = -1;
     const auto look = [&](std::size_t other) {
-      if (std::abs(height[other] - height[i]) > width) return false;
+      if (std::abs(height[other] - height[i]) > clear_[i]) return false;
       if (number[other] >= 0 && other < i &&
-          glm::distance(all_.points[other], all_.points[i]) <= width) {
+          glm::distance(all_.points[other], all_.points[i]) <= clear_[i]) {
         near = number[other];
       }
       return near < 0;
     };
     for (std::size_t k = place[i]; k > 0 && look(order[k - 1]); --k) continue;
     for (std::size_t k = place[i] + 1; near < 0 && k < count && look(order[k]); ++k) continue;
+    if (near >= 0 && clear_[i] > width_) continue;
     if (near >= 0) {
       for (const TouchedFace& f : all_.faces[i]) touch(result.faces[std::size_t(near)], f);
       continue;
@@ -293,26 +360,79 @@ CurveSamples CurveSampler::without_near_ones(double width) const {
   return result;
 }
 
-CurveSamples CurveSampler::run(double width) {
+/// Adds the support point of the direction that lies across from a place on a patch's border or
+/// trim, so far that the point moves by the height of an equilateral triangle. The contact moves by
+/// -B^-1 r for r = (Su . across, Sv . across), and -r . B^-1 r is that step's form.
+void BoundarySampler::add_beside(const ContactJet& jet, const dvec3& n, const dvec3& across,
+                                 const Contact& hint) {
+  const double a = -glm::dot(jet.dxx, n);
+  const double b = -glm::dot(jet.dxy, n);
+  const double c = -glm::dot(jet.dyy, n);
+  const double det = a * c - b * b;
+  const dvec2 r(glm::dot(jet.dx[0], across), glm::dot(jet.dx[1], across));
+  const double form = (c * r.x * r.x - 2 * b * r.x * r.y + a * r.y * r.y) / det;
+  if (!(a > 0 && det > 0 && form > 0)) return;
+  const double step = std::sqrt(0.75 / form) * side_;
+  if (!(step < largest_step)) return;
+  const dvec3 beside = unit(n + step * across);
+  const Support s = query_(beside, hint);
+  const Contact contact = geometry_.canonical(s.contact);
+  all_.samples.push_back({beside, contact});
+  all_.points.push_back(frame_.to_model(s.point));
+  all_.faces.push_back(faces_.touched(contact));
+  clear_.push_back(clear_share * frame_.length_to_model(glm::distance(s.point, jet.x)));
+}
+
+void BoundarySampler::add_rows(int arc, int piece) {
+  const std::vector<Ruling>& rulings =
+      boundary_.arcs[std::size_t(arc)].pieces[std::size_t(piece)].rulings;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (rulings.front().contact[i].kind != SourceKind::face) continue;
+    std::vector<double> lengths;
+    for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+      const double form =
+          glm::dot(rulings[k + 1].n - rulings[k].n, rulings[k + 1].point[i] - rulings[k].point[i]);
+      lengths.push_back(std::sqrt(std::max(form, 0.0)));
+    }
+    visit_evenly(lengths, side_, [&](std::size_t k, double s) {
+      const Ruling r = ruling_between(system_, rulings[k], rulings[k + 1], s);
+      const dvec3 across = unit(r.point[i] - r.point[1 - i]);
+      add_beside(geometry_.jet(r.contact[i]), r.n, across, r.contact[i]);
+    });
+  }
+}
+
+BoundarySamples BoundarySampler::run() {
   for (int f = 0; f < int(boundary_.faces.size()); ++f) add_facet(f);
   for (int a = 0; a < int(boundary_.arcs.size()); ++a) add_arc(a);
-  for (int f = 0; f < int(boundary_.faces.size()); ++f) {
-    for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
-      for (const std::vector<TrimStretch>& loop : region.loops) {
-        for (const TrimStretch& stretch : loop) {
-          if (samples_border(region, f, stretch)) add_border(region, stretch);
+  const auto for_each_border = [&](auto visit) {
+    for (int f = 0; f < int(boundary_.faces.size()); ++f) {
+      for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
+        for (const std::vector<TrimStretch>& loop : region.loops) {
+          for (const TrimStretch& stretch : loop) visit(f, region, stretch);
         }
       }
     }
+  };
+  for_each_border([&](int f, const PatchRegion& region, const TrimStretch& stretch) {
+    if (samples_border(region, f, stretch)) add_border(region, stretch);
+  });
+  for (int a = 0; a < int(boundary_.arcs.size()); ++a) {
+    const int pieces = int(boundary_.arcs[std::size_t(a)].pieces.size());
+    for (int p = 0; p < pieces; ++p) add_rows(a, p);
   }
-  return without_near_ones(width);
+  for_each_border([&](int, const PatchRegion& region, const TrimStretch& stretch) {
+    if (stretch.arc < 0 && stretch.curve >= 0) add_border_row(region, stretch);
+  });
+  return without_near_ones();
 }
 
 }  // namespace
 
-CurveSamples curve_samples(const ContactGeometry& geometry, const HullBoundary& boundary,
-                           const ContactFaces& faces, double sagitta, double width) {
-  return CurveSampler(geometry, boundary, faces, sagitta).run(width);
+BoundarySamples boundary_samples(const ContactGeometry& geometry, const HullBoundary& boundary,
+                                 const ContactFaces& faces, const SampleSpacing& spacing,
+                                 SupportQuery& query) {
+  return BoundarySampler(geometry, boundary, faces, spacing, query).run();
 }
 
 }  // namespace taut
