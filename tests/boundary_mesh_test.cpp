@@ -222,13 +222,9 @@ TEST(BoundaryMesh, TwoSpheres) {
     EXPECT_NEAR(found.at(0), 2 * pi * (1 + sine), slack);
     EXPECT_NEAR(found.at(1), 2 * pi * 0.25 * (1 - sine), slack);
     EXPECT_NEAR(found.at(2), pi * cosine * 1.5 * 2 * cosine, slack);
-    if (::testing::Test::HasFailure()) break;
+    // No more faces than the sampled hull has, but for those along the curves.
     const Hull sampled = sampled_hull(scene, {.relative = tolerance, .threads = 1, .progress = {}});
-    RecordProperty("faces", int(hull.mesh.n_faces()));
-    std::cout << tolerance << ": faces " << hull.mesh.n_faces() << " queries "
-              << hull.statistics.support_queries << " s " << hull.statistics.seconds_mesh
-              << " sampled: " << sampled.mesh.n_faces() << ' ' << sampled.statistics.support_queries
-              << ' ' << sampled.statistics.seconds_sample + sampled.statistics.seconds_mesh << '\n';
+    EXPECT_LT(double(hull.mesh.n_faces()), 1.4 * double(sampled.mesh.n_faces()));
   }
 }
 

@@ -36,11 +36,12 @@ class BoundaryLabels {
       }
     }
     if (candidates.empty()) return std::nullopt;
+    const auto count = int(corners.size());
     const Candidate& best = *std::max_element(
         candidates.begin(), candidates.end(),
-        [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); });
+        [&](const Candidate& a, const Candidate& b) { return rank(a, count) < rank(b, count); });
     const bool complete = boundary_.unresolved.empty();
-    if (!complete && best.corners < int(corners.size())) return std::nullopt;
+    if (!complete && best.corners < count) return std::nullopt;
     const HullFace& face = boundary_.faces[std::size_t(best.face)];
     return FaceLabel{face.kind, face.source, best.face};
   }
@@ -52,13 +53,16 @@ class BoundaryLabels {
     unsigned sides;
   };
 
-  /// A scroll with corners on one side only may be that of the curve beside a patch.
-  std::tuple<int, int, int> rank(const Candidate& c) const {
+  /// Corners all along one side of a scroll lie in the patch beside it; if one of several corners
+  /// is farther inside the patch beyond, they span the scroll.
+  std::tuple<int, int, int> rank(const Candidate& c, int count) const {
     constexpr unsigned both_sides = 3;
     const FaceKind kind = boundary_.faces[std::size_t(c.face)].kind;
-    const int preference = kind == FaceKind::facet    ? 3
-                           : kind == FaceKind::scroll ? (c.sides == both_sides ? 2 : 0)
-                                                      : 1;
+    int preference = 1;
+    if (kind == FaceKind::facet) preference = 3;
+    if (kind == FaceKind::scroll) {
+      preference = c.sides == both_sides || c.corners < count ? 2 : 0;
+    }
     return {c.corners, preference, -c.face};
   }
 

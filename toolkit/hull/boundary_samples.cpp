@@ -110,8 +110,8 @@ void visit_evenly(const std::vector<double>& lengths, double space, Visit visit)
 
 /// Shares of the permitted gap (tried; more makes fewer points on curves, and more beside them):
 /// for sagittas of curves, and for the triangles beside them.
-constexpr double sagitta_share = 0.6;
-constexpr double gap_share = 0.8;
+constexpr double sagitta_share = 0.4;
+constexpr double gap_share = 0.53;
 
 /// Nearer to others than this share of its distance from its curve, a point beside the curve is
 /// not wanted: it might hide a chord (design: mesh).
