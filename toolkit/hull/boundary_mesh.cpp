@@ -9,6 +9,7 @@
 #include "taut/core/stopwatch.h"
 #include "taut/hull/boundary_samples.h"
 #include "taut/hull/contact_faces.h"
+#include "taut/hull/kept_chords.h"
 #include "taut/hull/polytope_mesh.h"
 #include "taut/hull/sampled_start.h"
 
@@ -91,14 +92,18 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
       start.faces.push_back(faces.touched(apart.samples[k].contact));
     }
   }
+  KeptChords chords(geometry, *boundary, faces, start.chords, width);
   SampledPolytope polytope =
-      sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
+      sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);
   polytope.statistics.support_queries += query.queries();
   polytope.statistics.newton_iterations += query.newton_iterations();
   for (std::size_t k = start.faces.size(); k < polytope.samples.size(); ++k) {
     Sample& sample = polytope.samples[k];
     sample.contact = geometry.canonical(sample.contact);
     start.faces.push_back(faces.touched(sample.contact));
+    const auto on_curve = chords.inserted().find(int(k));
+    if (on_curve == chords.inserted().end()) continue;
+    for (const TouchedFace& f : on_curve->second) touch(start.faces.back(), f);
   }
   const BoundaryLabels labels(*boundary, std::move(start.faces));
   polytope.statistics.seconds_sample = 0;

@@ -144,7 +144,7 @@ class BoundarySampler {
   void add_facet(int face);
   void add_arc(int arc);
   void add_run(int arc, int first, int count, int least_parts);
-  void add_ruling(int arc, int piece, const Ruling& ruling);
+  void add_ruling(const ArcPlace& place);
   bool same_faces(int arc, std::size_t piece, std::size_t other) const;
   bool samples_border(const PatchRegion& region, int face, const TrimStretch& stretch) const;
   void add_border(const PatchRegion& region, const TrimStretch& stretch);
@@ -184,12 +184,10 @@ void BoundarySampler::add_facet(int face) {
   for (const Contact& c : f.contacts) add(f.n, c, {{face, 0}});
 }
 
-void BoundarySampler::add_ruling(int arc, int piece, const Ruling& ruling) {
+void BoundarySampler::add_ruling(const ArcPlace& place) {
   for (int i = 0; i < 2; ++i) {
-    TouchedFaces touched;
-    touch(touched, {faces_.scroll(arc, piece), 1U << unsigned(i)});
-    touch(touched, {faces_.patch(arc, piece, i), 0});
-    add(ruling.n, ruling.contact[std::size_t(i)], std::move(touched));
+    add(place.ruling.n, place.ruling.contact[std::size_t(i)],
+        faces_.beside(place.arc, place.piece, i));
   }
 }
 
@@ -231,11 +229,20 @@ void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
         rulings, [&] { return ruling_between(system_, rulings[0], rulings[1], 0.5); }, division);
     for (std::size_t k = 0; k + 1 < rulings.size(); ++k) from.emplace_back(p, k);
   }
+  const auto begin = int(all_.samples.size());
+  std::vector<ArcPlace> along;
   for (Place place : division.places(sagitta_, least_parts)) {
     place = snapped(place);
     const auto [piece, k] = from[place.interval];
     const std::vector<Ruling>& rulings = pieces[std::size_t(piece)].rulings;
-    add_ruling(arc, piece, ruling_between(system_, rulings[k], rulings[k + 1], place.s));
+    along.push_back({arc, piece, ruling_between(system_, rulings[k], rulings[k + 1], place.s)});
+    add_ruling(along.back());
+  }
+  for (std::size_t k = 0; k + 1 < along.size(); ++k) {
+    for (int i = 0; i < 2; ++i) {
+      const int a = begin + 2 * int(k) + i;
+      all_.chords.push_back({a, a + 2, i, along[k], along[k + 1]});
+    }
   }
 }
 
@@ -335,6 +342,7 @@ BoundarySamples BoundarySampler::without_near_ones() const {
   for (std::size_t k = 0; k < count; ++k) place[order[k]] = k;
   BoundarySamples result;
   std::vector<int> number(count, -1);  // in the result
+  std::vector<int> kept_as(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
     int near = -1;
     const auto look = [&](std::size_t other) {
@@ -350,12 +358,19 @@ BoundarySamples BoundarySampler::without_near_ones() const {
     if (near >= 0 && clear_[i] > width_) continue;
     if (near >= 0) {
       for (const TouchedFace& f : all_.faces[i]) touch(result.faces[std::size_t(near)], f);
+      kept_as[i] = near;
       continue;
     }
     number[i] = int(result.samples.size());
+    kept_as[i] = number[i];
     result.samples.push_back(all_.samples[i]);
     result.points.push_back(all_.points[i]);
     result.faces.push_back(all_.faces[i]);
+  }
+  for (CurveChord chord : all_.chords) {
+    chord.a = kept_as[std::size_t(chord.a)];
+    chord.b = kept_as[std::size_t(chord.b)];
+    if (chord.a != chord.b) result.chords.push_back(chord);
   }
   return result;
 }

@@ -8,11 +8,27 @@
 
 namespace taut {
 
+/// A place on an arc.
+struct ArcPlace {
+  int arc = -1;
+  int piece = -1;
+  Ruling ruling;
+};
+
+/// Two samples with nothing between them on the curve along which a contact of an arc runs.
+struct CurveChord {
+  int a = -1;
+  int b = -1;
+  int contact = 0;
+  ArcPlace from, to;  ///< of a and b
+};
+
 /// Samples on a hull's boundary, with the faces that each touches.
 struct BoundarySamples {
   std::vector<Sample> samples;
   std::vector<dvec3> points;  ///< per sample, in model coordinates
   std::vector<TouchedFaces> faces;
+  std::vector<CurveChord> chords;
 };
 
 /// How close samples come.

@@ -179,6 +179,13 @@ void ContactFaces::add_regions() {
   }
 }
 
+TouchedFaces ContactFaces::beside(int arc, int piece, int contact) const {
+  TouchedFaces faces;
+  touch(faces, {scroll(arc, piece), 1U << unsigned(contact)});
+  touch(faces, {patch(arc, piece, contact), 0});
+  return faces;
+}
+
 void ContactFaces::touch_regions(int instance, int patch, const dvec2& uv, bool inside_only,
                                  TouchedFaces& faces) const {
   const auto place = std::pair(instance, patch);

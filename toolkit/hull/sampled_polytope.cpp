@@ -17,9 +17,10 @@ namespace {
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
  public:
-  Sampler(const Scene& scene, const HullOptions& options, double tolerance)
+  Sampler(const Scene& scene, const HullOptions& options, double tolerance, KeptEdges* kept)
       : scene_(scene),
         options_(options),
+        kept_(kept),
         hull_(inflated(scene)),
         tolerance_(tolerance * scene.frame().scale) {}
 
@@ -47,7 +48,8 @@ class Sampler {
   void find_planes();
   void bound_vertices();
   bool refine();
-  void remember(const dvec3& n, const Contact& contact, const dvec3& point);
+  bool insert(const Sample& sample, const dvec3& point, int facet);
+  bool bisect_hidden(const dvec3& point, int facet);
   double gap(const Plane& plane, int vertex) const {
     return plane.h_bound - glm::dot(plane.n, frame_points_[std::size_t(vertex)]) + gap_rounding;
   }
@@ -59,6 +61,7 @@ class Sampler {
 
   const Scene& scene_;
   const HullOptions& options_;
+  KeptEdges* kept_;
   PointHull hull_;
   std::vector<Sample> samples_;        // per vertex
   std::vector<dvec3> frame_points_;    // per vertex
@@ -69,11 +72,6 @@ class Sampler {
   double bound_ = 0;
   HullStatistics statistics_;
 };
-
-void Sampler::remember(const dvec3& n, const Contact& contact, const dvec3& point) {
-  samples_.push_back({n, contact});
-  frame_points_.push_back(scene_.frame().to_frame(point));
-}
 
 void Sampler::begin(std::vector<Sample> samples, const std::vector<dvec3>& points) {
   samples_ = std::move(samples);
@@ -156,6 +154,40 @@ void Sampler::bound_vertices() {
   bound_ = std::min(bound_, scene_.frame().scale * scene_.diagonal());
 }
 
+bool Sampler::insert(const Sample& sample, const dvec3& point, int facet) {
+  if (!hull_.insert(scaled(point), facet)) return false;
+  samples_.push_back(sample);
+  frame_points_.push_back(scene_.frame().to_frame(point));
+  planes_.resize(hull_.facets().size());
+  for (const int f : hull_.replaced()) planes_[std::size_t(f)].known = false;
+  for (const int f : hull_.created()) planes_[std::size_t(f)].known = false;
+  return true;
+}
+
+/// Bisects an edge that is to stay and that the point would hide. False if there is none.
+bool Sampler::bisect_hidden(const dvec3& point, int facet) {
+  const std::vector<int>& visible = hull_.visible(scaled(point), facet);
+  for (const int f : visible) {
+    const PointHull::Facet& own = hull_.facet(f);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = own.vertex[k];
+      const int b = own.vertex[(k + 1) % 3];
+      const int other = own.neighbor[k];
+      if (a > b || std::find(visible.begin(), visible.end(), other) == visible.end()) continue;
+      const std::optional<KeptEdges::Middle> middle = kept_->middle(a, b);
+      if (!middle) continue;
+      const auto number = int(hull_.points().size());
+      if (!insert(middle->sample, middle->point, f) &&
+          !insert(middle->sample, middle->point, other)) {
+        return false;
+      }
+      kept_->bisect(a, b, number);
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Inserts the support points of all facets that keep a vertex from its tolerance, the largest
 /// gap first. False if none could be inserted.
 bool Sampler::refine() {
@@ -186,12 +218,8 @@ bool Sampler::refine() {
     // A facet that an earlier insertion replaced has lost its plane.
     const Plane plane = planes_[std::size_t(c.facet)];
     if (!plane.known || plane.n != c.n) continue;
-    if (!hull_.insert(scaled(plane.point), c.facet)) continue;
-    remember(plane.n, plane.contact, plane.point);
-    planes_.resize(hull_.facets().size());
-    for (const int f : hull_.replaced()) planes_[std::size_t(f)].known = false;
-    for (const int f : hull_.created()) planes_[std::size_t(f)].known = false;
-    inserted = true;
+    const bool bisected = kept_ != nullptr && bisect_hidden(plane.point, c.facet);
+    if (bisected || insert({plane.n, plane.contact}, plane.point, c.facet)) inserted = true;
   }
   return inserted;
 }
@@ -238,8 +266,9 @@ SampledPolytope Sampler::run(std::vector<Sample> samples, const std::vector<dvec
 }  // namespace
 
 SampledPolytope sampled_polytope(const Scene& scene, const HullOptions& options, double tolerance,
-                                 std::vector<Sample> samples, const std::vector<dvec3>& points) {
-  return Sampler(scene, options, tolerance).run(std::move(samples), points);
+                                 std::vector<Sample> samples, const std::vector<dvec3>& points,
+                                 KeptEdges* kept) {
+  return Sampler(scene, options, tolerance, kept).run(std::move(samples), points);
 }
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "taut/bounds/scene.h"
@@ -12,6 +13,21 @@ namespace taut {
 struct Sample {
   dvec3 n;
   Contact contact;
+};
+
+/// Edges of a polytope that are to stay, like chords of curves, whole or bisected.
+class KeptEdges {
+ public:
+  struct Middle {
+    Sample sample;
+    dvec3 point;  ///< in model coordinates
+  };
+
+  virtual ~KeptEdges() = default;
+  /// A point of the hull between two points, by number, if these are the ends of such an edge.
+  virtual std::optional<Middle> middle(int a, int b) const = 0;
+  /// It was inserted, with this number.
+  virtual void bisect(int a, int b, int middle) = 0;
 };
 
 /// The convex hull of support points of a scene, with the certificate of its distance from the
@@ -33,9 +49,11 @@ struct SampledPolytope {
 };
 
 /// Grows the hull of samples by support points, until its distance from the scene's hull is
-/// certified to be within the tolerance (in model units). The samples keep their numbers.
+/// certified to be within the tolerance (in model units). The samples keep their numbers. Before a
+/// point hides an edge that is to stay, the edge's middle is inserted.
 /// @pre the points, per sample in model coordinates, span space @throws Cancelled
 SampledPolytope sampled_polytope(const Scene& scene, const HullOptions& options, double tolerance,
-                                 std::vector<Sample> samples, const std::vector<dvec3>& points);
+                                 std::vector<Sample> samples, const std::vector<dvec3>& points,
+                                 KeptEdges* kept = nullptr);
 
 }  // namespace taut
