@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "boundary_checks.h"
 #include "hull_checks.h"
@@ -66,7 +65,7 @@ class TwoSpheres {
 
  private:
   static constexpr int quarters = 4;
-  static constexpr int rulings = 9;  // of a quarter
+  static constexpr int rulings = 3;  // of a quarter: few, so that many samples lie between two
 
   dvec3 direction(double phi) const {
     const double c = std::sqrt(1 - height_ * height_);
@@ -222,6 +221,23 @@ TEST(BoundaryMesh, TwoSpheres) {
     EXPECT_NEAR(found.at(0), 2 * pi * (1 + sine), slack);
     EXPECT_NEAR(found.at(1), 2 * pi * 0.25 * (1 - sine), slack);
     EXPECT_NEAR(found.at(2), pi * cosine * 1.5 * 2 * cosine, slack);
+    // Chords and rulings are edges: no face of the mesh crosses them.
+    int crossing = 0;
+    for (const auto f : hull.mesh.faces()) {
+      const bool between = hull.mesh.data(f).kind == FaceKind::scroll;
+      for (const auto v : hull.mesh.fv_range(f)) {
+        const double z = position(hull.mesh, v).z;
+        const bool on_curve = std::min(std::abs(z - sine), std::abs(z - 2 - 0.5 * sine)) < 1e-9;
+        const int source = hull.mesh.data(v).source;
+        if (between ? !on_curve : source != hull.mesh.data(f).source) ++crossing;
+      }
+    }
+    EXPECT_EQ(crossing, 0);
+    double shortest = 1;
+    for (const auto e : hull.mesh.edges()) {
+      shortest = std::min(shortest, hull.mesh.calc_edge_length(e));
+    }
+    EXPECT_GT(shortest, tolerance * scene.diagonal() / 32);
     // No more faces than the sampled hull has, but for those along the curves.
     const Hull sampled = sampled_hull(scene, {.relative = tolerance, .threads = 1, .progress = {}});
     EXPECT_LT(double(hull.mesh.n_faces()), 1.4 * double(sampled.mesh.n_faces()));

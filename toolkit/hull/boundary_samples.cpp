@@ -32,8 +32,11 @@ class EvenDivision {
       const double at = sums_.back() * (k / parts);
       const auto next = std::upper_bound(sums_.begin() + 1, sums_.end() - 1, at);
       const double from = *(next - 1);
-      const double s = *next > from ? (at - from) / (*next - from) : 0;
-      result.push_back({std::size_t(next - sums_.begin()) - 1, std::clamp(s, 0.0, 1.0)});
+      const double snap = snap_share * sums_.back() / parts;
+      double s = *next > from ? (at - from) / (*next - from) : 0;
+      if (at - from < snap) s = 0;
+      if (*next - at < snap) s = 1;
+      result.push_back({std::size_t(next - sums_.begin()) - 1, s});
     }
     result.push_back({sums_.size() - 2, 1});
     return result;
@@ -41,17 +44,10 @@ class EvenDivision {
 
  private:
   static constexpr double most_parts = 1e6;
+  /// Nearer than this share of a part to a place that is there, that one serves as well.
+  static constexpr double snap_share = 0.1;
   std::vector<double> sums_ = {0};
 };
-
-/// Nearer than this share of an interval to one of its ends, the end serves as well.
-constexpr double snap_share = 0.1;
-
-Place snapped(Place p) {
-  if (p.s < snap_share) p.s = 0;
-  if (p.s > 1 - snap_share) p.s = 1;
-  return p;
-}
 
 double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
   const dvec3 edge = b - a;
@@ -110,8 +106,8 @@ void visit_evenly(const std::vector<double>& lengths, double space, Visit visit)
 
 /// Shares of the permitted gap (tried; more makes fewer points on curves, and more beside them):
 /// for sagittas of curves, and for the triangles beside them.
-constexpr double sagitta_share = 0.4;
-constexpr double gap_share = 0.53;
+constexpr double sagitta_share = 0.6;
+constexpr double gap_share = 0.8;
 
 /// Nearer to others than this share of its distance from its curve, a point beside the curve is
 /// not wanted: it might hide a chord (design: mesh).
@@ -231,8 +227,7 @@ void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
   }
   const auto begin = int(all_.samples.size());
   std::vector<ArcPlace> along;
-  for (Place place : division.places(sagitta_, least_parts)) {
-    place = snapped(place);
+  for (const Place& place : division.places(sagitta_, least_parts)) {
     const auto [piece, k] = from[place.interval];
     const std::vector<Ruling>& rulings = pieces[std::size_t(piece)].rulings;
     along.push_back({arc, piece, ruling_between(system_, rulings[k], rulings[k + 1], place.s)});

@@ -19,22 +19,29 @@ void KeptChords::add(const CurveChord& chord) {
   chords_.emplace(std::minmax(chord.a, chord.b), chord);
 }
 
-/// Across pieces, where one of them ends.
+/// Across pieces, where one of them ends, unless that is one of the chord's ends already.
 ArcPlace KeptChords::middle_of(const CurveChord& chord) const {
   const ArcPlace& from = chord.from;
   const ArcPlace& to = chord.to;
-  if (from.piece == to.piece) {
-    return {from.arc, from.piece, ruling_between(system_, from.ruling, to.ruling, 0.5)};
-  }
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(from.arc)].pieces;
-  const Ruling& end = pieces[std::size_t(from.piece)].rulings.back();
-  if (end.n != from.ruling.n) return {from.arc, from.piece, end};
-  const int next = from.piece + 1;
-  return middle_of({chord.a,
-                    chord.b,
-                    chord.contact,
-                    {from.arc, next, pieces[std::size_t(next)].rulings.front()},
-                    to});
+  const auto near = [&](const Ruling& a, const Ruling& b) {
+    const auto i = std::size_t(chord.contact);
+    return glm::distance(a.point[i], b.point[i]) <= least_;
+  };
+  const auto bisected = [&](int piece, const Ruling& a, const Ruling& b) {
+    return ArcPlace{from.arc, piece, ruling_between(system_, a, b, 0.5)};
+  };
+  for (int p = from.piece; p < to.piece; ++p) {
+    const Ruling& end = pieces[std::size_t(p)].rulings.back();
+    if (near(end, from.ruling)) continue;
+    if (!near(end, to.ruling)) return {from.arc, p, end};
+    const bool begins_here = p == from.piece;
+    return bisected(p, begins_here ? from.ruling : pieces[std::size_t(p)].rulings.front(), end);
+  }
+  const bool begins_here = from.piece == to.piece;
+  return bisected(to.piece,
+                  begins_here ? from.ruling : pieces[std::size_t(to.piece)].rulings.front(),
+                  to.ruling);
 }
 
 std::optional<KeptEdges::Middle> KeptChords::middle(int a, int b) const {
