@@ -303,12 +303,12 @@ TEST(BoundaryChecks, FindWhatIsWrong) {
   EXPECT_EQ(facts_of([](HullBoundary& b) { b.curves[0].faces[1] = -1; }).open_curves, 1);
   EXPECT_EQ(facts_of([](HullBoundary& b) { b.faces[0].loops[0][0].second = 1; }).misplaced, 1);
   EXPECT_NE(facts_of([](HullBoundary& b) { b.faces[1].loops.clear(); }).euler, 2);
-  EXPECT_GT(facts_of([](HullBoundary& b) { b.arcs[0].pieces[1].rulings[3].n.x += 1e-6; }).tie,
+  EXPECT_GT(facts_of([](HullBoundary& b) { b.arcs[0].pieces[1].rulings[1].n.x += 1e-6; }).tie,
             1e-7);
   EXPECT_GT(
-      facts_of([](HullBoundary& b) { b.arcs[0].pieces[1].rulings[3].point[0].x -= 1e-6; }).point,
+      facts_of([](HullBoundary& b) { b.arcs[0].pieces[1].rulings[1].point[0].x -= 1e-6; }).point,
       1e-7);
-  EXPECT_GT(facts_of([](HullBoundary& b) { b.curves[0].points[3] *= 1.5; }).overshoot, 0.01);
+  EXPECT_GT(facts_of([](HullBoundary& b) { b.curves[0].points[1] *= 1.5; }).overshoot, 0.01);
   const BoundaryFacts missing = facts_of([](HullBoundary& b) { b.faces[0].regions.pop_back(); });
   EXPECT_GT(missing.misses, 0);
   EXPECT_GT(missing.mismatches, 0);
