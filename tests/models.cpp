@@ -1,6 +1,8 @@
 #include "models.h"
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "taut/core/tolerances.h"
 #include "taut/io/read_model.h"
@@ -67,6 +69,93 @@ Shape teapot() {
     shape.surfaces.push_back(taut::as_nurbs(patch.bezier));
   }
   return shape;
+}
+
+Model posed_teapots(unsigned seed, int count) {
+  Model model = make_model(teapot());
+  const taut::Box box = model.control_box();
+  const dvec3 center = box.center();
+  const double half = 0.25 * std::cbrt(double(count)) * taut::diagonal(box);
+  Random random(seed);
+  model.clear_instances();
+  for (int k = 0; k < count; ++k) {
+    taut::RigidMotion pose;
+    pose.rotation = random_rotation(random);
+    pose.translation = half * random_point(random) - pose.rotation * center;
+    model.add_instance(0, pose);
+  }
+  return model;
+}
+
+Shape blob(unsigned seed) {
+  constexpr double pi = std::numbers::pi;
+  constexpr int around = 6;  // spans of u, periodic
+  constexpr int down = 4;    // spans of v, pole to pole
+  Random random(seed);
+
+  struct Dent {
+    dvec3 direction;
+    double depth, width;
+  };
+  std::vector<Dent> dents(std::size_t(pick(random, 1, 3)));
+  for (Dent& dent : dents) {
+    // About the equator, where control points can move freely.
+    const double t = uniform(random, 0, 2 * pi);
+    const double z = uniform(random, -0.5, 0.5);
+    const double r = std::sqrt(1 - z * z);
+    dent = {
+        {r * std::cos(t), r * std::sin(t), z}, uniform(random, 0.6, 1), uniform(random, 0.5, 0.8)};
+  }
+  const dvec3 wave = 2.0 * random_direction(random);
+  const double phase = uniform(random, 0, 2 * pi);
+  const auto radius = [&](const dvec3& direction) {
+    double r = 1 + 0.15 * std::sin(glm::dot(wave, direction) + phase);
+    for (const Dent& dent : dents) {
+      const double off = std::acos(glm::clamp(glm::dot(direction, dent.direction), -1.0, 1.0));
+      r *= 1 - dent.depth * std::exp(-(off * off) / (dent.width * dent.width));
+    }
+    return r;
+  };
+
+  // Rows of control points: pole, ring in the pole's tangent plane, three free rows, ring, pole.
+  std::array<std::array<dvec3, down + 3>, around> net;
+  const double start = uniform(random, 0, 2 * pi);
+  const auto angle = [&](int i) { return start + 2 * pi * i / around; };
+  for (int i = 0; i < around; ++i) {
+    for (int row = 2; row <= down; ++row) {
+      const double t = angle(i) + uniform(random, -0.15, 0.15);
+      const double s = pi * (row - 1) / down + uniform(random, -0.1, 0.1);
+      const dvec3 d(std::sin(s) * std::cos(t), std::sin(s) * std::sin(t), std::cos(s));
+      net[std::size_t(i)][std::size_t(row)] = radius(d) * d;
+    }
+  }
+  for (const int sign : {1, -1}) {
+    const auto row = std::size_t(sign > 0 ? 0 : down + 2);
+    const auto ring = std::size_t(sign > 0 ? 1 : down + 1);
+    const double r = uniform(random, 0.7, 1);
+    const dvec3 pole(uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1), sign * r);
+    // Two vectors that span the tangent plane, not quite orthogonal nor level.
+    const auto off = [&] { return uniform(random, -0.08, 0.08); };
+    const double x = uniform(random, 0.3, 0.45);
+    const double y = uniform(random, 0.3, 0.45);
+    const dvec3 a(x, off(), off());
+    const dvec3 b(off(), y, off());
+    for (int i = 0; i < around; ++i) {
+      net[std::size_t(i)][row] = pole;
+      net[std::size_t(i)][ring] = pole + std::cos(angle(i)) * a + std::sin(angle(i)) * b;
+    }
+  }
+
+  NurbsSurface surface{3, 3, {}, {0, 0, 0}, {}};
+  for (int k = -3; k <= around + 3; ++k) surface.knots_u.push_back(k);
+  for (int k = 0; k <= down; ++k) surface.knots_v.push_back(k);
+  surface.knots_v.insert(surface.knots_v.end(), 3, double(down));
+  for (int i = 0; i < around + 3; ++i) {
+    for (const dvec3& p : net[std::size_t(i % around)]) {
+      surface.points.push_back(taut::homogeneous(p));
+    }
+  }
+  return mapped({{surface}, {}, {}}, random_rotation(random), 0.3 * random_point(random));
 }
 
 BezierPatch random_patch(Random& random, int degree_u, int degree_v, double weight_range) {

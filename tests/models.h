@@ -39,6 +39,13 @@ taut::Scene make_scene(const Shape& shape, int threads = 1);
 
 /// The Utah teapot from the data folder.
 Shape teapot();
+/// As many teapots, one part, in random poses in a box of half their number times the box of one:
+/// they overlap loosely.
+Model posed_teapots(unsigned seed, int count);
+
+/// A closed smooth body of size about two with one to three dents, in general position: 24 bicubic
+/// patches, C2 but for two poles, at which it is G1.
+Shape blob(unsigned seed);
 
 /// @name Random geometry of size about one
 /// @{

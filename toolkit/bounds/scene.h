@@ -19,6 +19,11 @@ struct Contact {
   double v = 0;
 };
 
+/// Both lie on the same patch, piece or vertex.
+inline bool same_element(const Contact& a, const Contact& b) {
+  return a.instance == b.instance && a.kind == b.kind && a.element == b.element;
+}
+
 /// A contact in the terms of the model: its source and the source's own parameters.
 struct SourceContact {
   int source = -1;

@@ -33,4 +33,12 @@ dvec3 unit(const dvec3& v) {
   return s / glm::length(s);
 }
 
+std::array<dvec3, 2> tangent_frame(const dvec3& n) {
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1.0 / (sign + n.z);
+  const double b = n.x * n.y * a;
+  return {dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+          dvec3(b, sign + n.y * n.y * a, -n.y)};
+}
+
 }  // namespace taut

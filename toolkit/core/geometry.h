@@ -49,6 +49,9 @@ double diagonal(const Box& box);
 /// The zero vector stays zero.
 dvec3 unit(const dvec3& v);
 
+/// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
+std::array<dvec3, 2> tangent_frame(const dvec3& n);
+
 /// A rigid motion x -> rotation * x + translation. @pre rotation is orthogonal with determinant 1.
 struct RigidMotion {
   dmat3 rotation = dmat3(1.0);

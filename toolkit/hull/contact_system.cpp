@@ -6,19 +6,13 @@
 namespace taut {
 namespace {
 
+/// Tangents shorter than this, in the scene's frame, are near a pole.
+constexpr double small_tangent = 0.01;
+
 constexpr int max_unknowns = 2 + 2 * CommonSupport::capacity;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_unknowns,
                              max_unknowns>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_unknowns, 1>;
-
-/// Two unit vectors that with n make a right-handed frame (Duff et al. 2017).
-std::array<dvec3, 2> tangent_frame(const dvec3& n) {
-  const double sign = std::copysign(1.0, n.z);
-  const double a = -1.0 / (sign + n.z);
-  const double b = n.x * n.y * a;
-  return {dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-          dvec3(b, sign + n.y * n.y * a, -n.y)};
-}
 
 /// The linearised equations of contacts at a direction. Unknowns: the coordinates of dn in the
 /// tangent frame, and for every parameter the length that the contact's point moves by.
@@ -149,8 +143,17 @@ std::optional<double> ContactSystem::step(CommonSupport& s, const LinearEquation
 }
 
 double ContactSystem::residual(const CommonSupport& s) const {
-  const Linearized l(s);
-  return l.right.lpNorm<Eigen::Infinity>();
+  double largest = 0;
+  for (std::size_t i = 0; i < std::size_t(s.count); ++i) {
+    const ContactJet& j = s.jet[i];
+    largest = std::max(largest, std::abs(glm::dot(s.jet[0].x - j.x, s.n)));
+    for (std::size_t a = 0; a < std::size_t(j.dimension); ++a) {
+      // About a pole tangents are as short as they like, their rounding is not.
+      const double length = std::max(glm::length(j.dx[a]), small_tangent);
+      largest = std::max(largest, std::abs(glm::dot(j.dx[a], s.n)) / length);
+    }
+  }
+  return largest;
 }
 
 bool ContactSystem::solve(CommonSupport& s) const {
@@ -183,14 +186,13 @@ std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
     square += glm::dot(t.x[k], t.x[k]);
   }
   if (!(square > 0)) return std::nullopt;
-  double sign = 0;
-  if (before != nullptr) {
-    sign =
+  const double size = std::sqrt(square);
+  double sense = glm::dot(t.n, unit(glm::cross(s.n, s.d()))) / size;
+  if (before != nullptr && std::abs(sense) < least_turn) {
+    sense =
         glm::dot(t.n, before->n) + glm::dot(t.x[0], before->x[0]) + glm::dot(t.x[1], before->x[1]);
-  } else {
-    sign = glm::dot(t.n, glm::cross(s.n, s.d()));
   }
-  const double factor = std::copysign(1 / std::sqrt(square), sign);
+  const double factor = std::copysign(1 / size, sense);
   t.n *= factor;
   for (std::size_t k = 0; k < 2; ++k) {
     t.parameter[k] *= factor;

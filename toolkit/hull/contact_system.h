@@ -87,6 +87,8 @@ class ContactSystem {
   static constexpr double converged_step = 1e-11;
   static constexpr double noise_step = 1e-7;
   static constexpr double residual_limit = 1e-13;
+  /// A turn of n per length below which its sense is not trusted.
+  static constexpr double least_turn = 1e-6;
 
   std::optional<double> step(CommonSupport& s, const LinearEquation* extra) const;
   double residual(const CommonSupport& s) const;

@@ -1,0 +1,563 @@
+#include "taut/hull/arc_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/hull/contact_exits.h"
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+namespace {
+
+/// Lengths are in (n, x_0, x_1), in the scene's frame, whose size is about one.
+constexpr double first_step = 0.02;
+constexpr double longest_step = 0.12;
+constexpr double shortest_step = 1e-11;
+/// A step is halved where the tangent turns by more than the one cosine tells, and the next one
+/// grows where it turns by less than the other.
+constexpr double turn_limit = 0.97;
+constexpr double turn_small = 0.995;
+constexpr double growth = 1.6;
+/// A plane may lie behind the last ruling by this much: a third contact that surpasses the two by
+/// less than support_tie went unseen.
+constexpr double plane_slack = 1e-6;
+/// How far the corrector may move the prediction, as a share of the step.
+constexpr double correction_limit = 0.15;
+/// Contacts so near to each other that keep approaching merge. The system's smallest singular value
+/// falls with the third power of their distance; here rounding moves them by about 1e-8 yet.
+constexpr double merge_distance = 4e-3;
+/// Margins below this are crossed.
+constexpr double margin_slack = 1e-12;
+/// Turn of n by the first step away from a pole.
+constexpr double pole_step = 1e-3;
+/// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
+constexpr double border_slack = 1e-9;
+constexpr int step_limit = 20000;
+/// Changes of elements without progress after which the curve is lost.
+constexpr int idle_limit = 12;
+
+struct Event {
+  double length = 0;  ///< along the step's tangent
+  int contact = 0;
+  ContactExit exit;
+  CommonSupport support;
+};
+
+class Trace {
+ public:
+  Trace(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
+        std::span<const Landmark> landmarks)
+      : system_(system),
+        geometry_(system.geometry()),
+        query_(query),
+        landmarks_(landmarks),
+        start_(start),
+        at_(start) {}
+
+  TracedArc run(const Progress& progress);
+
+ private:
+  /// A corrected step of this length along the tangent.
+  std::optional<CommonSupport> stepped(double length) const;
+  CommonSupport predicted(double length) const;
+  double length_to(const CommonSupport& s) const {
+    return length_along(s.n, s.jet[0].x, s.jet[1].x);
+  }
+  double length_along(const dvec3& n, const dvec3& x0, const dvec3& x1) const {
+    return glm::dot(n - at_.n, tangent_.n) + glm::dot(x0 - at_.jet[0].x, tangent_.x[0]) +
+           glm::dot(x1 - at_.jet[1].x, tangent_.x[1]);
+  }
+  double distance_to(const CommonSupport& s) const {
+    return std::sqrt(square(s.n - at_.n) + square(s.jet[0].x - at_.jet[0].x) +
+                     square(s.jet[1].x - at_.jet[1].x));
+  }
+  static double square(const dvec3& x) { return glm::dot(x, x); }
+
+  std::optional<Event> first_event(const CommonSupport& next, double length) const;
+  std::optional<Event> solved_event(const CommonSupport& next, double share, int contact,
+                                    const ContactExit& exit) const;
+  double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
+    return exit_margin(geometry_, s, contact, exit).residual;
+  }
+  /// A contact that the step takes across a pole, or -1, and the side.
+  std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
+  bool pass_pole(int contact, Side side, double length);
+  bool leave_pole();
+  bool arrives(const Landmark& landmark, double length);
+  bool is_closing(const CommonSupport& next, double length) const;
+  bool merge();
+  bool settle();
+  void begin_piece();
+  void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
+  TracedArc lost(const char* reason) {
+    arc_.end = TracedArc::End::lost;
+    arc_.reason = reason;
+    return std::move(arc_);
+  }
+
+  const ContactSystem& system_;
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  std::span<const Landmark> landmarks_;
+  CommonSupport start_;
+  CommonSupport at_;
+  CurveTangent tangent_;
+  std::array<std::vector<ContactExit>, 2> exits_;
+  TracedArc arc_;
+};
+
+CommonSupport Trace::predicted(double length) const {
+  CommonSupport s = at_;
+  s.n = glm::normalize(s.n + length * tangent_.n);
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.contact[i].u += length * tangent_.parameter[i].x;
+    s.contact[i].v += length * tangent_.parameter[i].y;
+  }
+  s.evaluate(geometry_);
+  return s;
+}
+
+std::optional<CommonSupport> Trace::stepped(double length) const {
+  CommonSupport s = predicted(length);
+  const bool solved = system_.solve(s, [&](const CommonSupport& now) {
+    LinearEquation e;
+    e.residual = length_to(now) - length;
+    e.n = tangent_.n;
+    for (int i = 0; i < 2; ++i) e.add_point(now, i, tangent_.x[std::size_t(i)]);
+    return e;
+  });
+  if (!solved) return std::nullopt;
+  return s;
+}
+
+std::optional<Event> Trace::solved_event(const CommonSupport& next, double share, int contact,
+                                         const ContactExit& exit) const {
+  Event event;
+  event.contact = contact;
+  event.exit = exit;
+  CommonSupport& s = event.support;
+  s = at_;
+  s.n = glm::normalize((1 - share) * at_.n + share * next.n);
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.contact[i].u += share * (next.contact[i].u - at_.contact[i].u);
+    s.contact[i].v += share * (next.contact[i].v - at_.contact[i].v);
+  }
+  s.evaluate(geometry_);
+  const bool solved = system_.solve(
+      s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, contact, exit); });
+  if (!solved) return std::nullopt;
+  // On the border exactly.
+  Contact& c = s.contact[std::size_t(contact)];
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    (side == Side::u0 || side == Side::u1 ? c.u : c.v) =
+        side == Side::u1 || side == Side::v1 ? 1 : 0;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    c.u = exit.index;
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.contact[i].u = std::clamp(s.contact[i].u, 0.0, 1.0);
+    s.contact[i].v = std::clamp(s.contact[i].v, 0.0, 1.0);
+  }
+  s.evaluate(geometry_);
+  event.length = length_to(s);
+  return event;
+}
+
+/// The first margin on the way to `next` that is crossed there.
+std::optional<Event> Trace::first_event(const CommonSupport& next, double length) const {
+  std::optional<Event> first;
+  for (int i = 0; i < 2; ++i) {
+    for (const ContactExit& exit : exits_[std::size_t(i)]) {
+      const double after = margin(next, i, exit);
+      if (after >= -margin_slack) continue;
+      const double before = std::max(margin(at_, i, exit), 0.0);
+      const double share = before / (before - after);
+      const std::optional<Event> event = solved_event(next, share, i, exit);
+      if (!event || event->length > length + margin_slack) continue;
+      if (!first || event->length < first->length) first = event;
+    }
+  }
+  return first;
+}
+
+std::pair<int, Side> Trace::pole_crossed(const CommonSupport& next) const {
+  for (int i = 0; i < 2; ++i) {
+    for (const ContactExit& exit : exits_[std::size_t(i)]) {
+      if (exit.kind != ContactExit::Kind::side) continue;
+      const Side side = all_sides[std::size_t(exit.index)];
+      if (is_pole(geometry_, next.contact[std::size_t(i)], side) && margin(next, i, exit) < 0) {
+        return {i, side};
+      }
+    }
+  }
+  return {-1, Side::u0};
+}
+
+/// A contact at the pole of its side, at the same parameter along the side.
+Contact at_pole(Contact c, Side side) {
+  (side == Side::u0 || side == Side::u1 ? c.u : c.v) = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  return c;
+}
+
+/// Goes to a pole, where the patch's parameters fail, if the curve does so to within support_tie,
+/// and on beyond it.
+bool Trace::pass_pole(int contact, Side side, double length) {
+  const auto i = std::size_t(contact);
+  const std::size_t other = 1 - i;
+  CommonSupport pole = at_;
+  pole.contact[i] = at_pole(at_.contact[i], side);
+  pole.n = unit_normal(geometry_, pole.contact[i]);
+  if (glm::dot(pole.n, at_.n) < 0) pole.n = -pole.n;
+  const std::optional<Contact> c = climbed(geometry_, at_.contact[other], pole.n);
+  if (!c || !same_element(*c, at_.contact[other])) return false;
+  pole.contact[other] = *c;
+  pole.evaluate(geometry_);
+  const double ahead = length_to(pole);
+  if (std::abs(glm::dot(pole.d(), pole.n)) > support_tie || ahead < 0 || ahead > 2 * length ||
+      query_(pole.n, pole.contact[i]).h > glm::dot(pole.jet[i].x, pole.n) + support_tie) {
+    return false;
+  }
+  at_ = pole;
+  push(at_);
+  return leave_pole();
+}
+
+/// From a common support with contacts at poles, the first step away from it, in a piece of its
+/// own.
+bool Trace::leave_pole() {
+  const dvec3 along = unit(glm::cross(at_.n, at_.d()));
+  CommonSupport next = at_;
+  next.n = glm::normalize(at_.n + pole_step * along);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool pole = pole_side(geometry_, at_.contact[i]).has_value();
+    const std::optional<Contact> c = pole ? beside_pole(geometry_, at_.contact[i], next.n)
+                                          : climbed(geometry_, at_.contact[i], next.n);
+    if (!c) return false;
+    next.contact[i] = *c;
+  }
+  next.evaluate(geometry_);
+  const dvec3 n = at_.n;
+  const auto corrected = [&] {
+    return system_.solve(next, [&](const CommonSupport& now) {
+      LinearEquation e;
+      e.residual = glm::dot(now.n - n, along) - pole_step;
+      e.n = along;
+      return e;
+    });
+  };
+  if (!corrected()) return false;
+  bool moved = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& own = next.contact[i];
+    const Contact inside{own.instance, own.kind, own.element, std::clamp(own.u, 0.0, 1.0),
+                         std::clamp(own.v, 0.0, 1.0)};
+    if (inside.u == own.u && inside.v == own.v) continue;
+    // Beyond the border of a patch about the pole.
+    const std::optional<Contact> c = climbed(geometry_, inside, next.n);
+    if (!c) return false;
+    own = *c;
+    moved = true;
+  }
+  next.evaluate(geometry_);
+  if ((moved && !corrected()) ||
+      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + support_tie) {
+    return false;
+  }
+  const CommonSupport pole = at_;
+  at_ = next;
+  tangent_ = CurveTangent();
+  if (!settle()) return false;
+  next = at_;
+  at_ = pole;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!pole_side(geometry_, at_.contact[i])) {
+      if (!same_element(at_.contact[i], next.contact[i])) return false;
+      continue;
+    }
+    // The pole as the patch that the contact moves into has it.
+    Contact& c = at_.contact[i];
+    c = next.contact[i];
+    for (const Side own : all_sides) {
+      const Contact there = at_pole(c, own);
+      if (is_pole(geometry_, c, own) &&
+          glm::distance(geometry_.point(there), pole.jet[i].x) < same_contact) {
+        c = there;
+        break;
+      }
+    }
+  }
+  at_.evaluate(geometry_);
+  begin_piece();
+  at_ = next;
+  push(at_);
+  return true;
+}
+
+/// Ends the arc in a landmark that lies within the step.
+bool Trace::arrives(const Landmark& landmark, double length) {
+  if (glm::distance(landmark.n, at_.n) > 1.5 * length) return false;
+  CommonSupport end = at_;
+  end.n = landmark.n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto nearest =
+        std::min_element(landmark.facet.points.begin(), landmark.facet.points.end(),
+                         [&](const dvec3& p, const dvec3& q) {
+                           return glm::distance(p, at_.jet[i].x) < glm::distance(q, at_.jet[i].x);
+                         });
+    const Contact& c =
+        landmark.facet.contacts[std::size_t(nearest - landmark.facet.points.begin())];
+    if (pole_side(geometry_, c)) {
+      for (const Side side : all_sides) {
+        if (!is_pole(geometry_, at_.contact[i], side)) continue;
+        const Contact pole = at_pole(at_.contact[i], side);
+        if (glm::distance(geometry_.point(pole), *nearest) < same_contact) end.contact[i] = pole;
+      }
+    } else {
+      const std::optional<Contact> there = climbed(geometry_, at_.contact[i], landmark.n);
+      if (!there || !same_element(*there, at_.contact[i])) return false;
+      end.contact[i] = *there;
+    }
+    if (glm::distance(geometry_.point(end.contact[i]), *nearest) > same_contact) return false;
+  }
+  end.evaluate(geometry_);
+  const double ahead = length_to(end);
+  if (ahead <= margin_slack || ahead > length + margin_slack ||
+      distance_to(end) > (1 + correction_limit) * length) {
+    return false;
+  }
+  push(end);
+  arc_.end = TracedArc::End::plane;
+  arc_.n = landmark.n;
+  arc_.contacts = landmark.facet.contacts;
+  return true;
+}
+
+bool Trace::is_closing(const CommonSupport& next, double length) const {
+  const double ahead = length_to(start_);
+  if (ahead <= margin_slack || ahead > length_to(next) + margin_slack) return false;
+  if (distance_to(start_) > 1.5 * length) return false;
+  const std::optional<CommonSupport> there = stepped(ahead);
+  return there && glm::distance(there->n, start_.n) < same_contact &&
+         glm::distance(there->jet[0].x, start_.jet[0].x) < same_contact &&
+         glm::distance(there->jet[1].x, start_.jet[1].x) < same_contact;
+}
+
+/// Ends the arc where the contacts merge, if they do: their parameters and n, as functions of the
+/// distance rho between them, are smooth there, n and the middle in its square.
+bool Trace::merge() {
+  const std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
+  const Ruling& last = rulings.back();
+  const auto length = [](const Ruling& r) { return glm::distance(r.point[0], r.point[1]); };
+  const double rho = length(last);
+  const auto before = std::find_if(rulings.rbegin(), rulings.rend(),
+                                   [&](const Ruling& r) { return length(r) > 1.5 * rho; });
+  if (before == rulings.rend()) return false;
+  const double other = length(*before);
+  const double linear = rho / (other - rho);
+  const double squared = rho * rho / (other * other - rho * rho);
+  Ruling end = last;
+  end.n = last.n + squared * (last.n - before->n);
+  const bool one_element = same_element(last.contact[0], last.contact[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& c = end.contact[i];
+    const auto extrapolated = [&](double Contact::*t) {
+      const auto middle = [&](const Ruling& r) {
+        return 0.5 * (r.contact[0].*t + r.contact[1].*t);
+      };
+      const double value =
+          one_element ? middle(last) + squared * (middle(last) - middle(*before))
+                      : last.contact[i].*t + linear * (last.contact[i].*t - before->contact[i].*t);
+      return std::clamp(value, 0.0, 1.0);
+    };
+    c.u = extrapolated(&Contact::u);
+    c.v = extrapolated(&Contact::v);
+  }
+  move_together(geometry_, end.contact[0], end.contact[1]);
+  const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
+                                         geometry_.jet(end.contact[1])};
+  if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
+  // The direction is that of the higher-dimensional contact's tangents.
+  for (const ContactJet& j : jet) {
+    if (j.dimension == 1) {
+      const dvec3 along = unit(j.dx[0]);
+      end.n -= glm::dot(end.n, along) * along;
+    }
+  }
+  for (const ContactJet& j : jet) {
+    if (j.dimension != 2) continue;
+    const dvec3 normal = unit(glm::cross(j.dx[0], j.dx[1]));
+    if (normal == dvec3(0.0)) continue;
+    end.n = glm::dot(normal, end.n) < 0 ? -normal : normal;
+    break;
+  }
+  end.n = unit(end.n);
+  const std::size_t anchor = jet[0].dimension <= jet[1].dimension ? 0 : 1;
+  const dvec3 x = jet[anchor].x;
+  const Support top = query_(end.n, last.contact[0]);
+  // About a free end heights differ by the fourth power of distances, at a border by the third.
+  if (top.h - glm::dot(x, end.n) > rho * rho * rho || glm::distance(top.point, x) > 4 * rho) {
+    return false;
+  }
+  end.point = {x, x};
+  arc_.pieces.back().rulings.push_back(end);
+  return true;
+}
+
+/// Where a contact moves along a smooth join, it is told as one of the patch into which its region
+/// extends. Sets the tangent anew; false if there is none.
+bool Trace::settle() {
+  const CurveTangent* before = tangent_.n == dvec3(0.0) ? nullptr : &tangent_;
+  const std::optional<CurveTangent> t = system_.tangent(at_, before);
+  if (!t) return false;
+  tangent_ = *t;
+  bool changed = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact c = at_.contact[i];
+    if (c.kind != SourceKind::face) continue;
+    for (const ContactExit& exit : exits(geometry_, c)) {
+      const LinearEquation e = exit_margin(geometry_, at_, int(i), exit);
+      const double along = glm::dot(e.parameter[i], tangent_.parameter[i]);
+      if (std::abs(e.residual) > border_slack || std::abs(along) > border_slack) continue;
+      // How the contact moves where the direction turns into its own region.
+      const ContactJet& j = at_.jet[i];
+      const dvec3 inward = i == 0 ? at_.d() : -at_.d();
+      const double uu = glm::dot(j.dxx, at_.n);
+      const double uv = glm::dot(j.dxy, at_.n);
+      const double vv = glm::dot(j.dyy, at_.n);
+      const double det = uu * vv - uv * uv;
+      const dvec2 slope(glm::dot(j.dx[0], inward), glm::dot(j.dx[1], inward));
+      const dvec2 rate = dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
+      if (!(det > 0) || glm::dot(e.parameter[i], rate) >= 0) continue;
+      const std::optional<Contact> over = beyond(geometry_, c, exit);
+      if (!over || over->kind != SourceKind::face) continue;
+      at_.contact[i] = *over;
+      changed = true;
+      break;
+    }
+  }
+  if (!changed) return true;
+  at_.evaluate(geometry_);
+  const std::optional<CurveTangent> again = system_.tangent(at_, before);
+  if (again) tangent_ = *again;
+  return again.has_value();
+}
+
+void Trace::begin_piece() {
+  if (!arc_.pieces.empty() && arc_.pieces.back().rulings.size() < 2) arc_.pieces.pop_back();
+  arc_.pieces.emplace_back();
+  push(at_);
+  for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
+}
+
+TracedArc Trace::run(const Progress& progress) {
+  if (pole_side(geometry_, at_.contact[0]) || pole_side(geometry_, at_.contact[1])) {
+    if (!leave_pole()) return lost("a separating curve cannot be followed from a pole");
+  } else {
+    if (!settle()) return lost("a separating curve has no tangent");
+    begin_piece();
+  }
+  double step = first_step;
+  int idle = 0;
+  for (int k = 0; k < step_limit; ++k) {
+    if (k % 64 == 0) progress.check();
+    const double apart = glm::length(at_.d());
+    const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / apart;
+    if (rate < 0 && apart < -2 * rate * step) {
+      if (apart < merge_distance) {
+        if (!merge()) return lost("two contacts approach each other and do not merge");
+        arc_.end = TracedArc::End::merged;
+        return std::move(arc_);
+      }
+      step = -0.5 * apart / rate;
+    }
+    for (const Landmark& landmark : landmarks_) {
+      if (arrives(landmark, step)) return std::move(arc_);
+    }
+    std::optional<CommonSupport> next = stepped(step);
+    std::optional<CurveTangent> turned;
+    if (next) turned = system_.tangent(*next, &tangent_);
+    double cosine = 0;
+    if (turned) {
+      cosine = glm::dot(turned->n, tangent_.n) + glm::dot(turned->x[0], tangent_.x[0]) +
+               glm::dot(turned->x[1], tangent_.x[1]);
+      const bool corrected_far = distance_to(*next) > (1 + correction_limit) * step;
+      if (cosine < turn_limit || corrected_far) turned.reset();
+    }
+    if (!turned) {
+      step *= 0.5;
+      if (step < shortest_step) return lost("a separating curve cannot be followed");
+      continue;
+    }
+    if (const auto [contact, side] = pole_crossed(*next); contact >= 0) {
+      if (!pass_pole(contact, side, step)) {
+        step *= 0.5;
+        if (step < shortest_step) return lost("a separating curve cannot be followed past a pole");
+      }
+      continue;
+    }
+    const std::optional<Event> event = first_event(*next, step);
+    if (event) next = event->support;
+    const bool closing = is_closing(*next, step);
+    const Support top = query_(next->n, next->contact[0]);
+    if (!closing && top.h > glm::dot(next->jet[0].x, next->n) + support_tie) {
+      std::optional<CommonSupport> plane = common_plane(system_, query_, *next, top.contact);
+      const double there = plane ? length_to(*plane) : 0;
+      if (plane && (there < -plane_slack || there > length_to(*next) + plane_slack)) plane.reset();
+      if (!plane) {
+        step *= 0.5;
+        if (step < shortest_step) return lost("no common plane with a contact that surpasses two");
+        continue;
+      }
+      if (there <= 0 && arc_.pieces.back().rulings.size() > 1)
+        arc_.pieces.back().rulings.pop_back();
+      push(*plane);
+      arc_.end = TracedArc::End::plane;
+      arc_.n = plane->n;
+      arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
+      return std::move(arc_);
+    }
+    if (closing) {
+      push(start_);
+      Ruling& end = arc_.pieces.back().rulings.back();
+      const Ruling& own = next->ruling();
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Contact& c = own.contact[i];
+        if (end.contact[i].kind != c.kind || end.contact[i].element != c.element) {
+          return lost("a closed separating curve begins on a border");
+        }
+      }
+      arc_.end = TracedArc::End::closed;
+      return std::move(arc_);
+    }
+    const double moved = length_to(*next);
+    idle = moved > margin_slack ? 0 : idle + 1;
+    if (idle > idle_limit) return lost("a separating curve stays on a border");
+    at_ = *next;
+    if (moved > margin_slack) push(at_);
+    if (event) {
+      const auto i = std::size_t(event->contact);
+      const std::optional<Contact> over = beyond(geometry_, at_.contact[i], event->exit);
+      if (!over) return lost("a separating curve passes through a pole");
+      at_.contact[i] = *over;
+      at_.evaluate(geometry_);
+      if (!settle()) return lost("a separating curve has no tangent");
+      begin_piece();
+      step = std::max(0.5 * step, shortest_step);
+    } else {
+      tangent_ = *turned;
+      if (cosine > turn_small) step *= growth;
+      step = std::min(longest_step, step);
+    }
+  }
+  return lost("a separating curve has no end");
+}
+
+}  // namespace
+
+TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
+                    std::span<const Landmark> landmarks, const Progress& progress) {
+  return Trace(system, query, start, landmarks).run(progress);
+}
+
+}  // namespace taut

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/progress.h"
+#include "taut/hull/contact_system.h"
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+
+/// A direction that is known to have three contacts or more, some of them at poles.
+struct Landmark {
+  dvec3 n = dvec3(0.0);
+  FacetContacts facet;
+};
+
+/// One way along a separating curve.
+struct TracedArc {
+  enum class End {
+    plane,   ///< other contacts support too: see `n` and `contacts`
+    merged,  ///< the two contacts merge in a free end
+    closed,  ///< back where it began
+    lost,    ///< see `reason`
+  };
+  std::vector<ArcPiece> pieces;
+  End end = End::lost;
+  dvec3 n = dvec3(0.0);
+  std::vector<Contact> contacts;
+  const char* reason = "";
+};
+
+/// Follows the separating curve of two contacts in the direction n x (x_0 - x_1), over the borders
+/// of their elements, until a third contact supports, the two merge, or the curve closes in its
+/// start. Steps are predicted along the tangent and corrected across it (pseudo-arclength
+/// continuation; Allgower, Georg 1990); every ruling is checked by a support query.
+///
+/// Poles, where a patch's parameters fail, are gone through, left and arrived at along chords: the
+/// directions of poles with three and more contacts are told by `landmarks`.
+///
+/// @pre the start's two contacts support at its n
+/// @throws Cancelled
+TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
+                    std::span<const Landmark> landmarks, const Progress& progress);
+
+}  // namespace taut

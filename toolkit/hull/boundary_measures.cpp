@@ -1,0 +1,673 @@
+#include "taut/hull/boundary_measures.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "taut/core/tolerances.h"
+#include "taut/hull/contact_system.h"
+#include "taut/hull/quadrature.h"
+
+namespace taut {
+namespace {
+
+/// The integrals over the boundary, where x is relative to a point inside. By the divergence
+/// theorem, of the fields x, x_i x and x_i x_j x with divergences 3, 4 x_i and 5 x_i x_j:
+///   volume = int x . dA / 3,  moments = int x_i x . dA / 4,  int x_i x_j x . dA / 5.
+enum Quantity : std::size_t {
+  volume = 0,
+  area = 1,
+  curvature = 2,        ///< total mean curvature, int (k1 + k2) / 2 dA, creases included
+  moment = 3,           ///< int x dV
+  second = 6,           ///< int x_i x_j dV: xx, yy, zz, yz, zx, xy
+  surface_moment = 12,  ///< int x dA
+  vector_area = 15,     ///< int n dA
+  quantities = 18
+};
+using Sample = std::array<double, quantities>;
+using Sums = Integrals<quantities>;
+
+/// Relative accuracy of every single rule: what contacts solved to 1e-13 can give.
+constexpr double rule_accuracy = 1e-13;
+
+/// Adds w times the area element of size dA with unit or any normal, n dA = A.
+void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double w) {
+  const double flux = w * glm::dot(x, A);
+  sum[volume] += flux / 3;
+  sum[area] += w * dA;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = std::size_t(i);
+    sum[moment + k] += flux / 4 * x[i];
+    sum[second + k] += flux / 5 * x[i] * x[i];
+    sum[second + 3 + k] += flux / 5 * x[(i + 1) % 3] * x[(i + 2) % 3];
+    sum[surface_moment + k] += w * dA * x[i];
+    sum[vector_area + k] += w * A[i];
+  }
+}
+
+/// Tolerances relative to the largest component of each kind, but not below the rounding of the
+/// areas that they are made of (lengths in the scene's frame are about one at most).
+Sample tolerances(const Sample& magnitude) {
+  Sample result{};
+  const auto largest = [&](std::size_t from, std::size_t to) {
+    double m = 0;
+    for (std::size_t k = from; k < to; ++k) m = std::max(m, magnitude[k]);
+    return m;
+  };
+  const double areas = std::max(magnitude[area], largest(vector_area, quantities));
+  const auto set = [&](std::size_t from, std::size_t to) {
+    const double m = rule_accuracy * largest(from, to) + 8 * rounding_unit * areas;
+    for (std::size_t k = from; k < to; ++k) result[k] = m;
+  };
+  set(volume, volume + 1);
+  set(curvature, curvature + 1);
+  set(moment, second);
+  set(second, surface_moment);
+  set(surface_moment, vector_area);
+  set(vector_area, quantities);
+  result[area] = result[vector_area];
+  result[curvature] += 8 * rounding_unit * magnitude[curvature];
+  return result;
+}
+
+/// A region with what its integrals need.
+struct Region {
+  const PatchRegion* region = nullptr;
+  /// Where inner integrals along u begin.
+  double base = 0;
+  dvec3 origin = dvec3(0.0);
+
+  Contact contact(double u, double v) const {
+    return {region->instance, SourceKind::face, region->patch, u, v};
+  }
+};
+
+/// A stretch of a region's outline along a piece of an arc.
+struct Trace {
+  int region = -1;
+  int contact = 0;
+  double direction = 1;
+};
+
+/// Integrands over a patch per du dv, times w.
+void add_patch(const ContactJet& j, const Region& region, double w, Sample& sum) {
+  const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
+  const double length = glm::length(N);
+  add_element(sum, j.x - region.origin, N, length, w);
+  if (length == 0) return;
+  // H dA with H = (E n - 2 F m + G l) / (2 |N|^2), l = -Suu . N / |N| and so on: positive where the
+  // surface is convex (do Carmo 1976, section 3-3).
+  const double E = glm::dot(j.dx[0], j.dx[0]);
+  const double F = glm::dot(j.dx[0], j.dx[1]);
+  const double G = glm::dot(j.dx[1], j.dx[1]);
+  const double form = E * glm::dot(j.dyy, N) - 2 * F * glm::dot(j.dxy, N) + G * glm::dot(j.dxx, N);
+  sum[curvature] -= w * form / (2 * length * length);
+}
+
+/// A ruling within an interval and its derivative along it.
+struct Moving {
+  CommonSupport at;
+  dvec3 dn = dvec3(0.0);
+  std::array<dvec2, 2> dp = {dvec2(0.0), dvec2(0.0)};
+  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
+
+  /// Derivatives of the points and of the unit normal from those of the parameters and of n.
+  void complete() {
+    for (std::size_t i = 0; i < 2; ++i) {
+      dx[i] = dp[i].x * at.jet[i].dx[0] + dp[i].y * at.jet[i].dx[1];
+    }
+    dn -= glm::dot(dn, at.n) * at.n;
+  }
+  void move(const CurveTangent& t, double speed) {
+    dn = speed * t.n;
+    for (std::size_t i = 0; i < 2; ++i) dp[i] = speed * t.parameter[i];
+    complete();
+  }
+};
+
+dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
+
+double chord_square(const Ruling& from, const Ruling& to) {
+  const auto square = [](const dvec3& x) { return glm::dot(x, x); };
+  return square(to.n - from.n) + square(to.point[0] - from.point[0]) +
+         square(to.point[1] - from.point[1]);
+}
+
+/// A free end: its two points are one, though they may come from two elements.
+bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
+
+/// n and the contacts' parameters of a ruling, as functions of one variable.
+using RulingState = std::array<double, 7>;
+
+RulingState state(const dvec3& n, const dvec2& p0, const dvec2& p1) {
+  return {n.x, n.y, n.z, p0.x, p0.y, p1.x, p1.y};
+}
+
+/// Hermite's interpolation in Newton's form.
+class RulingPolynomial {
+ public:
+  void add(double r, const RulingState& value) { append(r, value, nullptr); }
+  void add(double r, const RulingState& value, const RulingState& slope) {
+    append(r, value, nullptr);
+    append(r, value, &slope);
+  }
+
+  RulingState value(double r) const { return evaluate(r)[0]; }
+  RulingState slope(double r) const { return evaluate(r)[1]; }
+
+ private:
+  std::array<RulingState, 2> evaluate(double r) const {
+    RulingState p{}, q{};
+    for (std::size_t k = node_.size(); k-- > 0;) {
+      for (std::size_t c = 0; c < p.size(); ++c) {
+        q[c] = q[c] * (r - node_[k]) + p[c];
+        p[c] = p[c] * (r - node_[k]) + coefficient_[k][c];
+      }
+    }
+    return {p, q};
+  }
+  /// The next divided difference: what is left of the value, or of the slope at the node that was
+  /// added last, over the product of distances to the nodes before.
+  void append(double r, const RulingState& value, const RulingState* slope) {
+    const auto [p, q] = evaluate(r);
+    double product = 1;
+    for (std::size_t k = 0; k + (slope != nullptr ? 1 : 0) < node_.size(); ++k) {
+      product *= r - node_[k];
+    }
+    RulingState next;
+    for (std::size_t c = 0; c < next.size(); ++c) {
+      next[c] = (slope != nullptr ? (*slope)[c] - q[c] : value[c] - p[c]) / product;
+    }
+    node_.push_back(r);
+    coefficient_.push_back(next);
+  }
+
+  std::vector<double> node_;
+  std::vector<RulingState> coefficient_;
+};
+
+/// The rulings between two neighbouring ones.
+class RulingInterval {
+ public:
+  RulingInterval(const ContactSystem& system, const Ruling& from, const Ruling& to)
+      : system_(system), from_(from), to_(to), square_(chord_square(from, to)) {
+    const bool begins = merged(from);
+    const bool ends = merged(to);
+    if (begins == ends) return;
+    free_end_ = begins ? 0 : 1;
+    fit_free_end(begins ? from : to, begins ? to : from);
+  }
+
+  bool empty() const { return square_ == 0; }
+
+  Moving operator()(double s) const {
+    if (free_end_ >= 0) return near_free_end(s);
+    Moving m;
+    m.at = CommonSupport(system_.geometry(), ruling_between(system_, from_, to_, s));
+    // ruling_between() divides the chord in the ratio s, so the chord's share in the tangent tells
+    // the speed.
+    if (const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr)) {
+      const double share = glm::dot(to_.n - from_.n, t->n) +
+                           glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
+                           glm::dot(to_.point[1] - from_.point[1], t->x[1]);
+      const double speed = square_ / share;
+      // An arc ten times its chord is none that was traced.
+      if (std::abs(speed) < 10 * std::sqrt(square_)) {
+        m.move(*t, speed);
+        return m;
+      }
+    }
+    m.dn = to_.n - from_.n;
+    for (std::size_t i = 0; i < 2; ++i) {
+      m.dp[i] = parameters(to_.contact[i]) - parameters(from_.contact[i]);
+    }
+    m.complete();
+    return m;
+  }
+
+ private:
+  /// Next to a free end the contacts, and n, are smooth functions of r, their distance in units of
+  /// the last ruling's length (mathematics: near an A3 end, m +- rho e; a B3 end, linear). They are
+  /// interpolated from the end and rulings from r = 1/4 on, with slopes.
+  ///
+  /// Newton's method finds those in between unless it cannot tell them better than a quadratic: at
+  /// a distance rho from the end its system's smallest singular value is about rho^3, so the error
+  /// of its answer about the rounding unit over that; and the quadratic errs by about rho^3.
+  void fit_free_end(const Ruling& end, const Ruling& longer) {
+    Moving m;
+    m.at = CommonSupport(system_.geometry(), longer);
+    const double square = glm::dot(m.at.d(), m.at.d());
+    const auto own = [](const Moving& at) {
+      return state(at.at.n, parameters(at.at.contact[0]), parameters(at.at.contact[1]));
+    };
+    const auto rate = [](const Moving& at) { return state(at.dn, at.dp[0], at.dp[1]); };
+    const RulingState begin = state(end.n, parameters(end.contact[0]), parameters(end.contact[1]));
+    polynomial_.add(0, begin);
+    if (!find_slope(m, 1, square) || bends(end, m)) {
+      // Too far from the end, or too close to it for the tangent: straight.
+      polynomial_.add(1, own(m));
+      return;
+    }
+    polynomial_.add(1, own(m), rate(m));
+    for (const double r : {0.75, 0.5, 0.25}) {
+      const double length = r * std::sqrt(square);
+      if (length * length * length < std::sqrt(rounding_unit)) break;
+      Moving next = moving(end, polynomial_, r, 1);
+      if (!solve_length(next, r, square, end) || !find_slope(next, r, square)) break;
+      polynomial_.add(r, own(next), rate(next));
+    }
+  }
+
+  /// Derivatives with respect to r, where |d|^2 = r^2 `square`.
+  bool find_slope(Moving& m, double r, double square) const {
+    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+    if (!t) return false;
+    m.move(*t, r * square / glm::dot(m.at.d(), t->x[0] - t->x[1]));
+    return true;
+  }
+
+  bool bends(const Ruling& end, const Moving& m) const {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec2 straight = parameters(m.at.contact[i]) - parameters(end.contact[i]);
+      const dvec2 bend = m.dp[i] - straight;
+      if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
+    }
+    return false;
+  }
+
+  /// The ruling with |d|^2 = r^2 `square` near m.
+  bool solve_length(Moving& m, double r, double square, const Ruling& end) const {
+    const CommonSupport start = m.at;
+    const bool solved = system_.solve(m.at, [&](const CommonSupport& at) {
+      LinearEquation e;
+      const dvec3 d = at.d() / (r * r * square);
+      e.residual = 0.5 * (glm::dot(at.d(), d) - 1);
+      e.add_point(at, 0, d);
+      e.add_point(at, 1, -d);
+      return e;
+    });
+    if (!solved) return false;
+    for (std::size_t i = 0; i < 2; ++i) {
+      // Not another solution, like the one with the contacts exchanged.
+      const dvec2 p = parameters(start.contact[i]);
+      const dvec2 change = parameters(m.at.contact[i]) - p;
+      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
+      if (glm::dot(change, change) > glm::dot(way, way)) return false;
+    }
+    return true;
+  }
+
+  Moving moving(const Ruling& elements, const RulingPolynomial& polynomial, double r,
+                double sense) const {
+    const RulingState value = polynomial.value(r);
+    const RulingState slope = polynomial.slope(r);
+    Ruling ruling = elements;
+    Moving m;
+    const dvec3 n(value[0], value[1], value[2]);
+    ruling.n = glm::normalize(n);
+    m.dn = sense / glm::length(n) * dvec3(slope[0], slope[1], slope[2]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      ruling.contact[i].u = value[3 + 2 * i];
+      ruling.contact[i].v = value[4 + 2 * i];
+      m.dp[i] = sense * dvec2(slope[3 + 2 * i], slope[4 + 2 * i]);
+    }
+    m.at = CommonSupport(system_.geometry(), ruling);
+    m.complete();
+    return m;
+  }
+
+  Moving near_free_end(double s) const {
+    return free_end_ == 0 ? moving(from_, polynomial_, s, 1) : moving(to_, polynomial_, 1 - s, -1);
+  }
+
+  const ContactSystem& system_;
+  const Ruling& from_;
+  const Ruling& to_;
+  double square_;
+  int free_end_ = -1;
+  RulingPolynomial polynomial_;
+};
+
+/// The integrals over a whole boundary, in the scene's frame.
+class Summation {
+ public:
+  Summation(const ContactGeometry& geometry, const HullBoundary& boundary)
+      : geometry_(geometry), system_(geometry), boundary_(boundary) {
+    origin_ = interior_point();
+    find_uses();
+    for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
+      for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) add_piece(a, p);
+    }
+    for (const Region& region : regions_) {
+      for (const std::vector<TrimStretch>& loop : region.region->loops) {
+        for (const TrimStretch& stretch : loop) {
+          if (stretch.arc < 0) add_border(region, stretch);
+        }
+      }
+    }
+    for (const HullFace& face : boundary.faces) {
+      if (face.kind == FaceKind::facet) add_facet(face);
+    }
+  }
+
+  const dvec3& origin() const { return origin_; }
+  const Sums& sums() const { return sums_; }
+
+ private:
+  dvec3 interior_point() const;
+  void find_uses();
+  double base(const PatchRegion& region) const;
+
+  void add_piece(std::size_t arc, std::size_t piece);
+  void add_border(const Region& region, const TrimStretch& stretch);
+  void add_facet(const HullFace& face);
+
+  void add_scroll(const Moving& m, Sample& sum) const;
+  double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
+  void add_line(const Region& region, double u, double v, double rate, double weight, Sample& sum);
+
+  const ContactGeometry& geometry_;
+  ContactSystem system_;
+  const HullBoundary& boundary_;
+  dvec3 origin_ = dvec3(0.0);
+  std::vector<Region> regions_;
+  /// Per arc and piece.
+  std::vector<std::vector<bool>> in_scroll_;
+  std::vector<std::vector<std::vector<Trace>>> traces_;
+  Sums sums_;
+};
+
+/// The parameters of a border's point.
+dvec2 on_border(Side side, double t) {
+  switch (side) {
+    case Side::u0:
+      return {0, t};
+    case Side::u1:
+      return {1, t};
+    case Side::v0:
+      return {t, 0};
+    case Side::v1:
+      return {t, 1};
+  }
+  return dvec2(0.0);
+}
+
+/// The mean of points on the boundary that span the hull, so a point inside.
+dvec3 Summation::interior_point() const {
+  dvec3 sum(0.0);
+  double count = 0;
+  const auto add = [&](const dvec3& x) {
+    sum += x;
+    ++count;
+  };
+  for (const SeparatingArc& arc : boundary_.arcs) {
+    for (const ArcPiece& piece : arc.pieces) {
+      for (const Ruling& ruling : piece.rulings) {
+        for (const dvec3& x : ruling.point) add(x);
+      }
+    }
+  }
+  for (const HullFace& face : boundary_.faces) {
+    for (const dvec3& x : face.points) add(x);
+    for (const PatchRegion& region : face.regions) {
+      for (const std::vector<TrimStretch>& loop : region.loops) {
+        for (const TrimStretch& stretch : loop) {
+          if (stretch.arc >= 0) continue;
+          for (const double s : {0.0, 0.25, 0.5, 0.75}) {
+            const dvec2 p = on_border(stretch.side, (1 - s) * stretch.from + s * stretch.to);
+            add(geometry_.point({region.instance, SourceKind::face, region.patch, p.x, p.y}));
+          }
+        }
+      }
+    }
+  }
+  return count > 0 ? sum / count : sum;
+}
+
+/// A place for inner integrals to begin that keeps them short along traces, or makes them vanish
+/// along a border. Any is right: what differs depends on v alone, and its integral around a loop is
+/// zero.
+double Summation::base(const PatchRegion& region) const {
+  bool right = false, left = false;
+  Interval range{1, 0};
+  for (const std::vector<TrimStretch>& loop : region.loops) {
+    for (const TrimStretch& stretch : loop) {
+      if (stretch.arc < 0) {
+        left |= stretch.side == Side::u0;
+        right |= stretch.side == Side::u1;
+        continue;
+      }
+      const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
+      for (const Ruling& ruling : arc.pieces[std::size_t(stretch.piece)].rulings) {
+        const double u = ruling.contact[std::size_t(stretch.contact)].u;
+        range.lower = std::min(range.lower, u);
+        range.upper = std::max(range.upper, u);
+      }
+    }
+  }
+  if (range.lower <= range.upper) return 0.5 * range.lower + 0.5 * range.upper;
+  return right && !left ? 1 : 0;
+}
+
+void Summation::find_uses() {
+  for (const SeparatingArc& arc : boundary_.arcs) {
+    in_scroll_.emplace_back(arc.pieces.size(), false);
+    traces_.emplace_back(arc.pieces.size());
+  }
+  for (const HullFace& face : boundary_.faces) {
+    if (face.kind == FaceKind::scroll) {
+      std::vector<bool>& used = in_scroll_[std::size_t(face.scroll.arc)];
+      for (int k = 0; k < face.scroll.count; ++k) {
+        used[std::size_t(face.scroll.first + k) % used.size()] = true;
+      }
+    }
+    for (const PatchRegion& region : face.regions) {
+      const int number = int(regions_.size());
+      regions_.push_back({&region, base(region), origin_});
+      for (const std::vector<TrimStretch>& loop : region.loops) {
+        for (const TrimStretch& stretch : loop) {
+          if (stretch.arc < 0) continue;
+          traces_[std::size_t(stretch.arc)][std::size_t(stretch.piece)].push_back(
+              {number, stretch.contact, stretch.reversed ? -1.0 : 1.0});
+        }
+      }
+    }
+  }
+}
+
+/// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
+/// of f from the base to u along u; `rate` is dv/ds.
+void Summation::add_line(const Region& region, double u, double v, double rate, double weight,
+                         Sample& sum) {
+  if (u == region.base || rate == 0) return;
+  Sums line;
+  const auto f = [&](double at, double, Sample& sample) {
+    add_patch(geometry_.jet(region.contact(at, v)), region, 1, sample);
+  };
+  if (std::abs(u - region.base) < 0.25) {
+    integrate<8>(f, tolerances, region.base, u, line);
+  } else {
+    integrate<16>(f, tolerances, region.base, u, line);
+  }
+  for (std::size_t k = 0; k < quantities; ++k) {
+    sum[k] += rate * double(line.value[k]);
+    sums_.error[k] += std::abs(weight * rate) * line.error[k];
+  }
+}
+
+/// The points a + r (b - a) of the rulings, with the area element n . (dX/ds x (b - a)) dr ds,
+/// which is positive where contact 0 lies to the right of n's path. Three nodes in r are exact for
+/// its fourth degree. Curvature is half the length times the angle that n turns by.
+void Summation::add_scroll(const Moving& m, Sample& sum) const {
+  const dvec3 a = m.at.jet[0].x - origin_;
+  const dvec3 along = -m.at.d();
+  const double size0 = glm::dot(m.at.n, glm::cross(m.dx[0], along));
+  const double size1 = glm::dot(m.at.n, glm::cross(m.dx[1], along));
+  // Nodes (1 -+ sqrt(3/5)) / 2 with 5/18, 1/2 with 8/18.
+  const double offset = std::sqrt(0.15);
+  for (int k = -1; k <= 1; ++k) {
+    const double r = 0.5 + k * offset;
+    const double size = (1 - r) * size0 + r * size1;
+    add_element(sum, a + r * along, size * m.at.n, size, (k == 0 ? 8 : 5) / 18.0);
+  }
+  sum[curvature] += 0.5 * glm::dot(m.dn, glm::cross(m.at.n, m.at.d()));
+}
+
+/// Half the angle of n about an edge's tangent, from the direction away from the interior point:
+/// between -pi/4 and pi/4, since (x - origin) . n > 0.
+double Summation::crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const {
+  const double length = glm::length(tangent);
+  if (length == 0) return 0;
+  const dvec3 T = tangent / length;
+  const dvec3 across = glm::cross(T, x - origin_);  // T x m, as long as m
+  const double phi = std::atan2(glm::dot(n, across), glm::dot(n, glm::cross(across, T)));
+  return 0.5 * length * phi;
+}
+
+/// Along a piece of an arc: its scroll, the regions it bounds, and the creases of contacts on
+/// edges.
+///
+/// Of the normals (t, phi) of an edge, the crease's integral of angle times length is that of
+/// -+ phi |x'| dt along the arcs that bound them, in the direction of the arcs: along one, dt has
+/// the sign of x' . (n x d), d = x_0 - x_1, so that t grows where d points towards growing phi
+/// (T x n); contact 0 supports on the side of +d, and contact 1 on that of -d.
+void Summation::add_piece(std::size_t arc, std::size_t piece) {
+  const std::vector<Ruling>& rulings = boundary_.arcs[arc].pieces[piece].rulings;
+  if (rulings.empty()) return;
+  const std::array<Contact, 2>& contact = rulings[0].contact;
+  const auto is = [&](std::size_t i, SourceKind kind) { return contact[i].kind == kind; };
+  if (is(0, SourceKind::vertex) && is(1, SourceKind::vertex)) {
+    // A crease along the segment itself; n turns along a great circle.
+    const double length = glm::length(rulings[0].point[0] - rulings[0].point[1]);
+    for (std::size_t k = 1; k < rulings.size(); ++k) {
+      const dvec3& n0 = rulings[k - 1].n;
+      const dvec3& n1 = rulings[k].n;
+      const double angle = std::atan2(glm::length(glm::cross(n0, n1)), glm::dot(n0, n1));
+      sums_.value[curvature] += 0.5 * length * angle;
+    }
+    return;
+  }
+  const bool scroll = in_scroll_[arc][piece];
+  const std::vector<Trace>& traces = traces_[arc][piece];
+  for (std::size_t k = 1; k < rulings.size(); ++k) {
+    const RulingInterval between(system_, rulings[k - 1], rulings[k]);
+    if (between.empty()) continue;
+    const auto f = [&](double s, double weight, Sample& sample) {
+      const Moving m = between(s);
+      if (scroll) add_scroll(m, sample);
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (!is(i, SourceKind::edge)) continue;
+        const double half = crease(m.at.jet[i].x, m.at.jet[i].dx[0], m.at.n);
+        sample[curvature] += (i == 0 ? -1 : 1) * half * m.dp[i].x;
+      }
+      for (const Trace& trace : traces) {
+        const auto i = std::size_t(trace.contact);
+        const Contact& c = m.at.contact[i];
+        add_line(regions_[std::size_t(trace.region)], c.u, c.v, trace.direction * m.dp[i].y, weight,
+                 sample);
+      }
+    };
+    integrate<6>(f, tolerances, 0, 1, sums_);
+  }
+}
+
+/// Along a stretch of a patch's border, and where that is an edge, its crease: the normals of the
+/// edge lie beyond the patch's own n, away from the patch. With the patch to the left of the
+/// direction T of travel seen from outside (positive sign), they have larger phi: its lower end.
+void Summation::add_border(const Region& region, const TrimStretch& stretch) {
+  const bool along_v = stretch.side == Side::u0 || stretch.side == Side::u1;
+  const bool edge = stretch.curve >= 0 &&
+                    boundary_.curves[std::size_t(stretch.curve)].kind == HullCurveKind::edge;
+  if (!along_v && !edge) return;
+  const double sense = stretch.to < stretch.from ? -1 : 1;
+  const auto f = [&](double t, double weight, Sample& sample) {
+    const dvec2 p = on_border(stretch.side, t);
+    if (along_v) add_line(region, p.x, p.y, 1, weight, sample);
+    if (!edge) return;
+    const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
+    const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
+    const double half = crease(j.x, sense * j.dx[along_v ? 1 : 0], unit(N));
+    // The integral runs from `from` to `to`, so backwards dt is negative.
+    sample[curvature] -= region.region->sign * sense * half;
+  };
+  integrate<16>(f, tolerances, stretch.from, stretch.to, sums_);
+}
+
+/// A plane polygon, by the tetrahedra over a fan of triangles with the interior point as tip: the
+/// integral of x_i x_j over one is det / 120 ((sum of x)_i (sum of x)_j + sum of x_i x_j).
+void Summation::add_facet(const HullFace& face) {
+  using Vector = glm::vec<3, long double>;
+  const auto at = [&](std::size_t k) {
+    return Vector(face.points[k % face.points.size()]) - Vector(origin_);
+  };
+  Vector total(0);
+  for (std::size_t k = 0; k < face.points.size(); ++k) {
+    total += 0.5L * glm::cross(at(k) - at(0), at(k + 1) - at(0));
+  }
+  const long double size = glm::length(total);
+  if (!(size > 0)) return;
+  const Vector n = total / size;
+  auto& sum = sums_.value;
+  sum[area] += size;
+  for (int i = 0; i < 3; ++i) sum[vector_area + std::size_t(i)] += total[i];
+  for (std::size_t k = 1; k + 1 < face.points.size(); ++k) {
+    const Vector a = at(0), b = at(k), c = at(k + 1);
+    const Vector corners = a + b + c;
+    const long double det = glm::dot(a, glm::cross(b, c));
+    const long double twice = glm::dot(n, glm::cross(b - a, c - a));
+    const auto product = [&](int i, int j) {
+      return det / 120 * (corners[i] * corners[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
+    };
+    sum[volume] += det / 6;
+    for (int i = 0; i < 3; ++i) {
+      const auto q = std::size_t(i);
+      sum[moment + q] += det / 24 * corners[i];
+      sum[second + q] += product(i, i);
+      sum[second + 3 + q] += product((i + 1) % 3, (i + 2) % 3);
+      sum[surface_moment + q] += twice / 6 * corners[i];
+    }
+  }
+}
+
+}  // namespace
+
+BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
+                         const HullBoundary& boundary) {
+  using Vector = glm::vec<3, long double>;
+  const Summation summation(geometry, boundary);
+  const auto& sum = summation.sums().value;
+  const auto& error = summation.sums().error;
+  const auto vector_at = [&](std::size_t k) { return Vector(sum[k], sum[k + 1], sum[k + 2]); };
+
+  BoundaryMeasures result;
+  const SceneFrame& frame = scene.frame();
+  const double unit_length = 1 / frame.scale;
+  result.volume = double(sum[volume]) * unit_length * unit_length * unit_length;
+  result.area = double(sum[area]) * unit_length * unit_length;
+  // Mean width = M / (2 pi) (Santalo 1976, chapter 13).
+  result.mean_width = double(sum[curvature] / (2 * std::numbers::pi_v<long double>)) * unit_length;
+  Vector center(0);
+  if (sum[volume] > 0) {
+    center = vector_at(moment) / sum[volume];
+    // About the centroid, by the parallel axis theorem.
+    const dvec3 s(vector_at(second) - sum[volume] * center * center);
+    const dvec3 p(vector_at(second + 3) - sum[volume] * Vector(center.y * center.z,
+                                                               center.z * center.x,
+                                                               center.x * center.y));
+    result.inertia = std::pow(unit_length, 5) * dmat3(s.y + s.z, -p.z, -p.y,  //
+                                                      -p.z, s.z + s.x, -p.x,  //
+                                                      -p.y, -p.x, s.x + s.y);
+  } else if (sum[area] > 0) {
+    center = vector_at(surface_moment) / sum[area];
+  }
+  result.centroid = frame.to_model(summation.origin() + dvec3(center));
+
+  const auto relative = [&](std::size_t k) { return sum[k] > 0 ? error[k] / double(sum[k]) : 0.0; };
+  result.accuracy = std::max({relative(volume), relative(area), relative(curvature)});
+  if (sum[area] > 0) {
+    const double open = double(glm::length(vector_at(vector_area)) / sum[area]);
+    result.accuracy = std::max(result.accuracy, open);
+  }
+  return result;
+}
+
+}  // namespace taut

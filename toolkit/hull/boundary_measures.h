@@ -1,0 +1,34 @@
+#pragma once
+
+#include "taut/hull/contact_geometry.h"
+#include "taut/hull/hull_boundary.h"
+#include "taut/hull/measures.h"
+
+namespace taut {
+
+/// Measures of a convex hull, integrated over the exact faces of its boundary, in model units.
+struct BoundaryMeasures : Measures {
+  /// Mean over all directions n of h(n) + h(-n): of a sphere its diameter.
+  double mean_width = 0;
+  /// Estimated relative accuracy of volume, area and mean width. It is the largest of the
+  /// quadratures' estimated errors relative to the three, and of |integral of n dA| over the area,
+  /// which is zero for a closed surface and tells of faces that are missing or do not meet.
+  double accuracy = 0;
+};
+
+/// Measures of the hull with this boundary.
+///
+/// Patches by Green's theorem in their parameters, scrolls along their rulings, facets as polygons;
+/// creases, needed for the mean width, from the normals that bound them: from separating curves
+/// with a contact on an edge or two at vertices, and from patches' borders on edges.
+///
+/// Of a complete boundary whose rulings are exact to rounding, errors are about 1e-13, however far
+/// apart the rulings are; where a piece ends in a free end, below 1e-10 if the whole piece has but
+/// five rulings, and soon as small with more. Time is 30 to 60 microseconds for each pair of
+/// neighbouring rulings and each side of it on a patch.
+///
+/// Volume, centroid and inertia of a boundary without volume (a flat hull) are as in Measures.
+BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
+                         const HullBoundary& boundary);
+
+}  // namespace taut

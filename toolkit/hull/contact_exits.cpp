@@ -1,0 +1,403 @@
+#include "taut/hull/contact_exits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+bool across_u(Side side) { return side == Side::u0 || side == Side::u1; }
+bool at_end(Side side) { return side == Side::u1 || side == Side::v1; }
+
+/// The patch's contact at a side, where the side's free parameter is t.
+Contact on_side(int instance, int patch, Side side, double t) {
+  const double fixed = at_end(side) ? 1 : 0;
+  return across_u(side) ? Contact{instance, SourceKind::face, patch, fixed, t}
+                        : Contact{instance, SourceKind::face, patch, t, fixed};
+}
+
+Contact on_side(const Contact& edge, const ContactGeometry::PieceSide& side) {
+  return on_side(edge.instance, side.patch, side.side, side.reversed ? 1 - edge.u : edge.u);
+}
+
+/// The patch's derivative across the side, into the patch.
+dvec3 inward(const ContactJet& j, Side side) {
+  const dvec3& d = j.dx[across_u(side) ? 0 : 1];
+  return at_end(side) ? -d : d;
+}
+
+/// Sine of the angle that a vector makes with the plane across n; zero of a zero vector.
+double elevation(const dvec3& v, const dvec3& n) {
+  const double length = glm::length(v);
+  return length > 0 ? glm::dot(v, n) / length : 0;
+}
+
+/// The edge's tangent at the end of the piece, away from the end.
+dvec3 leaving(const ContactGeometry& geometry, int instance, const ContactGeometry::PieceEnd& end) {
+  const ContactJet j = geometry.jet({instance, SourceKind::edge, end.piece, double(end.end), 0});
+  return end.end == 0 ? j.dx[0] : -j.dx[0];
+}
+
+std::optional<Contact> beyond_side(const ContactGeometry& geometry, const Contact& c, Side side) {
+  const Border& border =
+      geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+  const double t = std::clamp(across_u(side) ? c.v : c.u, 0.0, 1.0);
+  if (border.kind == BorderKind::smooth) {
+    return on_side(c.instance, border.neighbor, border.neighbor_side, border.reversed ? 1 - t : t);
+  }
+  if (border.kind == BorderKind::edge && border.piece >= 0) {
+    return Contact{c.instance, SourceKind::edge, border.piece, border.piece_reversed ? 1 - t : t,
+                   0};
+  }
+  if (border.vertex >= 0) return Contact{c.instance, SourceKind::vertex, border.vertex, 0, 0};
+  return std::nullopt;
+}
+
+std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact& c, int end) {
+  const EdgePiece& piece = geometry.part(c).pieces()[std::size_t(c.element)];
+  if (const int vertex = piece.end_vertex[std::size_t(end)]; vertex >= 0) {
+    return Contact{c.instance, SourceKind::vertex, vertex, 0, 0};
+  }
+  const int next = piece.end_neighbor[std::size_t(end)];
+  if (next < 0) return std::nullopt;
+  // The end at which the neighbour goes on: the one that is nearer to this one's.
+  const dvec3 here = geometry.point({c.instance, SourceKind::edge, c.element, double(end), 0});
+  const auto distance = [&](double t) {
+    return glm::distance(geometry.point({c.instance, SourceKind::edge, next, t, 0}), here);
+  };
+  double t = distance(0) <= distance(1) ? 0 : 1;
+  if (next == c.element) t = 1 - end;
+  return Contact{c.instance, SourceKind::edge, next, t, 0};
+}
+
+/// The contact moved to the side or end at which the exit lies.
+Contact at_exit(Contact c, const ContactExit& exit) {
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    (across_u(side) ? c.u : c.v) = at_end(side) ? 1 : 0;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    c.u = exit.index;
+  }
+  return c;
+}
+
+/// A contact whose parameter is so near to a collapsed side is at the pole.
+constexpr double pole_parameter = 1e-9;
+/// Parameters about a pole that are tried for the steepest way up, a patch.
+constexpr int pole_samples = 8;
+/// How far from a pole a climb begins at most.
+constexpr double off_pole = 0.3;
+/// A contact is at a pole for good if n is the pole's normal to within this.
+constexpr double pole_angle = 1e-8;
+
+/// From a pole whose normal is not n, a start of a climb on the steepest way up among all patches
+/// about it, at the maximum of the parabola along it. None at a vertex of another kind, and where
+/// no way leads up.
+std::optional<Contact> way_off_pole(const ContactGeometry& geometry, const Contact& c,
+                                    const dvec3& n) {
+  const dvec3 x = geometry.point(c);
+  const std::vector<Patch>& patches = geometry.part(c).patches();
+  std::optional<Contact> best;
+  double steepest = 0;
+  for (int p = 0; p < int(patches.size()); ++p) {
+    for (const Side side : all_sides) {
+      if (!is_pole(geometry, {c.instance, SourceKind::face, p, 0, 0}, side)) continue;
+      if (glm::distance(geometry.point(on_side(c.instance, p, side, 0.5)), x) > join_distance) {
+        continue;
+      }
+      for (int k = 0; k <= pole_samples; ++k) {
+        Contact at = on_side(c.instance, p, side, double(k) / pole_samples);
+        const ContactJet j = geometry.jet(at);
+        const dvec3 away = inward(j, side);
+        const double slope = elevation(away, n);
+        if (slope <= steepest) continue;
+        const double second = glm::dot(across_u(side) ? j.dxx : j.dyy, n);
+        const double rise = glm::dot(away, n);
+        const double step = second < 0 ? std::min(-rise / second, off_pole) : off_pole;
+        (across_u(side) ? at.u : at.v) = at_end(side) ? 1 - step : step;
+        steepest = slope;
+        best = at;
+      }
+    }
+  }
+  return best;
+}
+
+/// Climbs; one element at a time.
+class Climb {
+ public:
+  Climb(const ContactGeometry& geometry, const Contact& c, const dvec3& n)
+      : geometry_(geometry), c_(c), n_(n) {}
+
+  std::optional<Contact> run() {
+    for (int k = 0; k < step_limit; ++k) {
+      const Progress progress = c_.kind == SourceKind::face   ? on_face()
+                                : c_.kind == SourceKind::edge ? on_edge()
+                                                              : at_vertex();
+      if (progress == Progress::arrived) return c_;
+      if (progress == Progress::lost) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  enum class Progress { moved, arrived, lost };
+  static constexpr int step_limit = 60;
+  /// Steps of the point shorter than this end the climb; the maximum is flat there.
+  static constexpr double short_step = 1e-13;
+  /// Slopes below this are rounding.
+  static constexpr double flat = 1e-13;
+  /// Beside the tangents' own length: those about a pole are as short as they like, their rounding
+  /// is not.
+  static constexpr double small_tangent = 0.01;
+  /// Share of a patch that steps may take where the value is not concave.
+  static constexpr double stride = 0.2;
+
+  Progress leave(const ContactExit& exit) {
+    const std::optional<Contact> next = beyond(geometry_, c_, exit);
+    if (!next) return Progress::lost;
+    c_ = *next;
+    return Progress::moved;
+  }
+
+  Progress on_face() {
+    const ContactJet j = geometry_.jet(c_);
+    const dvec2 slope(glm::dot(j.dx[0], n_), glm::dot(j.dx[1], n_));
+    const dvec2 size(glm::length(j.dx[0]), glm::length(j.dx[1]));
+    dvec2 at(c_.u, c_.v);
+    for (int a = 0; a < 2; ++a) {
+      const bool low = at[a] <= 0 && slope[a] < -flat * (size[a] + small_tangent);
+      const bool high = at[a] >= 1 && slope[a] > flat * (size[a] + small_tangent);
+      if (!low && !high) continue;
+      const Side side = a == 0 ? (low ? Side::u0 : Side::u1) : (low ? Side::v0 : Side::v1);
+      if (is_pole(geometry_, c_, side)) return off_the_pole();
+      return leave({ContactExit::Kind::side, int(side)});
+    }
+    const double uu = glm::dot(j.dxx, n_);
+    const double uv = glm::dot(j.dxy, n_);
+    const double vv = glm::dot(j.dyy, n_);
+    dvec2 step(0.0);
+    const double det = uu * vv - uv * uv;
+    if (uu < 0 && det > 0) {
+      step = {(uv * slope.y - vv * slope.x) / det, (uv * slope.x - uu * slope.y) / det};
+    } else {
+      for (int a = 0; a < 2; ++a) {
+        if (size[a] == 0) continue;
+        const double second = a == 0 ? uu : vv;
+        step[a] = second < 0
+                      ? -slope[a] / second
+                      : std::copysign(std::min(stride, std::abs(slope[a]) / size[a]), slope[a]);
+      }
+    }
+    // On a border that the slope does not lead over.
+    for (int a = 0; a < 2; ++a) {
+      if (step[a] != 0 && room_for(a, step[a]) <= 0) step[a] = 0;
+    }
+    if (glm::length(step * size) <= short_step) {
+      return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
+    }
+    const double longest = std::max(std::abs(step.x), std::abs(step.y));
+    if (longest > 0.5) step *= 0.5 / longest;
+    double share = 1;
+    for (int a = 0; a < 2; ++a) {
+      const double room = room_for(a, step[a]);
+      if (std::abs(step[a]) > room) share = std::min(share, room / std::abs(step[a]));
+    }
+    for (int a = 0; a < 2; ++a) {
+      const double room = room_for(a, step[a]);
+      const bool meets = std::abs(step[a]) * share >= room && std::abs(step[a]) > room;
+      at[a] = meets && !at_pole(a, step[a]) ? (step[a] < 0 ? 0.0 : 1.0)
+                                            : std::clamp(at[a] + share * step[a], 0.0, 1.0);
+    }
+    const bool still = share * glm::length(step * size) <= short_step;
+    c_.u = at.x;
+    c_.v = at.y;
+    return still && ++stuck_ > 4 ? Progress::lost : Progress::moved;
+  }
+
+  /// At a pole: arrived, unless it is not the maximum.
+  Progress off_the_pole() {
+    if (left_pole_) return Progress::lost;
+    const dvec3 normal = unit_normal(geometry_, c_);
+    if (glm::length(glm::cross(normal, n_)) < pole_angle) return Progress::arrived;
+    const std::optional<Contact> start = way_off_pole(geometry_, c_, n_);
+    if (!start) return Progress::lost;
+    left_pole_ = true;
+    c_ = *start;
+    return Progress::moved;
+  }
+  bool at_pole(int parameter, double step) const {
+    const Side side =
+        parameter == 0 ? (step < 0 ? Side::u0 : Side::u1) : (step < 0 ? Side::v0 : Side::v1);
+    return is_pole(geometry_, c_, side);
+  }
+  /// How far a step may go: to the border, but only most of the way to a pole, where the parameters
+  /// fail.
+  double room_for(int parameter, double step) const {
+    const double at = parameter == 0 ? c_.u : c_.v;
+    const double room = step < 0 ? at : 1 - at;
+    return at_pole(parameter, step) ? 0.95 * room : room;
+  }
+
+  Progress on_edge() {
+    const ContactJet j = geometry_.jet(c_);
+    const double slope = glm::dot(j.dx[0], n_);
+    const double size = glm::length(j.dx[0]);
+    if (c_.u <= 0 && slope < -flat * size) return leave({ContactExit::Kind::end, 0});
+    if (c_.u >= 1 && slope > flat * size) return leave({ContactExit::Kind::end, 1});
+    const double second = glm::dot(j.dxx, n_);
+    double step = second < 0 ? -slope / second
+                             : std::copysign(std::min(stride, std::abs(slope) / size), slope);
+    step = std::clamp(step, -0.5, 0.5);
+    const double to = std::clamp(c_.u + step, 0.0, 1.0);
+    if (std::abs(to - c_.u) * size > short_step) {
+      c_.u = to;
+      return Progress::moved;
+    }
+    if (std::abs(slope) > flat * size && second >= 0) return Progress::lost;
+    const auto& sides = geometry_.sides(c_);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const dvec3 c = inward(geometry_.jet(on_side(c_, sides[k])), sides[k].side);
+      if (elevation(c, n_) > flat) return leave({ContactExit::Kind::face, int(k)});
+    }
+    return Progress::arrived;
+  }
+
+  Progress at_vertex() {
+    const auto& ends = geometry_.ends(c_);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      if (elevation(leaving(geometry_, c_.instance, ends[k]), n_) > flat) {
+        return leave({ContactExit::Kind::edge, int(k)});
+      }
+    }
+    return Progress::arrived;
+  }
+
+  const ContactGeometry& geometry_;
+  Contact c_;
+  dvec3 n_;
+  int stuck_ = 0;
+  bool left_pole_ = false;
+};
+
+}  // namespace
+
+std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c) {
+  using Kind = ContactExit::Kind;
+  std::vector<ContactExit> result;
+  const auto add = [&](Kind kind, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) result.push_back({kind, int(k)});
+  };
+  if (c.kind == SourceKind::face) {
+    add(Kind::side, 4);
+  } else if (c.kind == SourceKind::edge) {
+    add(Kind::end, 2);
+    add(Kind::face, geometry.sides(c).size());
+  } else {
+    add(Kind::edge, geometry.ends(c).size());
+  }
+  return result;
+}
+
+LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                           const ContactExit& exit) {
+  const Contact& c = s.contact[std::size_t(i)];
+  LinearEquation e;
+  dvec2& parameter = e.parameter[std::size_t(i)];
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    const int a = across_u(side) ? 0 : 1;
+    const double value = a == 0 ? c.u : c.v;
+    e.residual = at_end(side) ? 1 - value : value;
+    parameter[a] = at_end(side) ? -1 : 1;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    e.residual = exit.index == 0 ? c.u : 1 - c.u;
+    parameter.x = exit.index == 0 ? 1 : -1;
+  } else if (exit.kind == ContactExit::Kind::face) {
+    const ContactGeometry::PieceSide& side = geometry.sides(c)[std::size_t(exit.index)];
+    const ContactJet j = geometry.jet(on_side(c, side));
+    const dvec3 in = inward(j, side.side);
+    const double length = glm::length(in);
+    if (length == 0) return e;
+    e.n = -in / length;
+    e.residual = glm::dot(e.n, s.n);
+    const double sense = (side.reversed ? -1.0 : 1.0) * (at_end(side.side) ? -1.0 : 1.0);
+    parameter.x = -sense * glm::dot(j.dxy, s.n) / length;
+  } else {
+    const ContactGeometry::PieceEnd& end = geometry.ends(c)[std::size_t(exit.index)];
+    const dvec3 away = leaving(geometry, c.instance, end);
+    const double length = glm::length(away);
+    if (length == 0) return e;
+    e.n = -away / length;
+    e.residual = glm::dot(e.n, s.n);
+  }
+  return e;
+}
+
+std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
+                              const ContactExit& exit) {
+  switch (exit.kind) {
+    case ContactExit::Kind::side:
+      return beyond_side(geometry, c, all_sides[std::size_t(exit.index)]);
+    case ContactExit::Kind::end:
+      return beyond_end(geometry, c, exit.index);
+    case ContactExit::Kind::face:
+      return on_side(c, geometry.sides(c)[std::size_t(exit.index)]);
+    case ContactExit::Kind::edge: {
+      const ContactGeometry::PieceEnd& end = geometry.ends(c)[std::size_t(exit.index)];
+      return Contact{c.instance, SourceKind::edge, end.piece, double(end.end), 0};
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side) {
+  const Border& border =
+      geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+  return border.kind == BorderKind::collapsed && border.vertex < 0;
+}
+
+dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c) {
+  const BezierPatch& patch = geometry.part(c).patches()[std::size_t(c.element)].bezier;
+  return geometry.to_frame(c.instance, unit_normal(patch, c.u, c.v));
+}
+
+std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const double t = across_u(side) ? c.u : c.v;
+    if ((at_end(side) ? 1 - t : t) < pole_parameter && is_pole(geometry, c, side)) return side;
+  }
+  return std::nullopt;
+}
+
+std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
+                                   const dvec3& n) {
+  const std::optional<Contact> start = way_off_pole(geometry, pole, n);
+  return start ? climbed(geometry, *start, n) : std::nullopt;
+}
+
+void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
+  const auto moved = [&](Contact& from, Contact& to) {
+    for (const ContactExit& exit : exits(geometry, from)) {
+      if (exit.kind == ContactExit::Kind::face || exit.kind == ContactExit::Kind::edge) continue;
+      const Contact border = at_exit(from, exit);
+      const std::optional<Contact> over = beyond(geometry, border, exit);
+      if (!over || over->kind != to.kind || over->element != to.element) continue;
+      from = border;
+      to = *over;
+      return true;
+    }
+    return false;
+  };
+  if (a.instance != b.instance || (a.kind == b.kind && a.element == b.element)) return;
+  if (!moved(a, b)) moved(b, a);
+}
+
+std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {
+  return Climb(geometry, geometry.canonical(c), n).run();
+}
+
+}  // namespace taut

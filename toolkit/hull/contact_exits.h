@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "taut/hull/contact_system.h"
+
+namespace taut {
+
+/// A way in which a contact that moves with its direction leaves its element: where a margin that
+/// is positive inside falls to zero.
+struct ContactExit {
+  enum class Kind {
+    side,  ///< a face's contact reaches the side `index` of its patch
+    end,   ///< an edge's contact reaches the end `index` of its piece
+    face,  ///< an edge's contact slides into the face at ContactGeometry::sides()[index]
+    edge,  ///< a vertex's contact slides onto the edge at ContactGeometry::ends()[index]
+  };
+  Kind kind = Kind::side;
+  int index = 0;
+};
+
+/// The exits that contacts of this element have.
+std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c);
+
+/// The exit's margin of contact i, linearised: a parameter's distance from its end, or the sine of
+/// the angle by which the direction misses the face's normal or the plane across the edge.
+LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                           const ContactExit& exit);
+
+/// The contact beyond the exit at which it stands: the same point in the next element. None where
+/// there is no next one that is known (the pole of a collapsed side).
+std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
+                              const ContactExit& exit);
+
+/// A side collapsed to a point at which the surface is smooth.
+bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side);
+
+/// The side at whose pole the contact lies, if it does; parameters fail there.
+std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c);
+
+/// The outward normal in the direction of Su x Sv at the contact, in the scene's frame; at a pole
+/// the limit. Zero where there is none.
+dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c);
+
+/// The contact about the pole, in whichever patch, that supports locally in a direction near the
+/// pole's normal. @pre the contact lies at a pole
+std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
+                                   const dvec3& n);
+
+/// Two neighbouring elements' contacts that are about to merge, moved onto the border between them;
+/// as they are where there is none.
+void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
+
+/// The local maximum of x . n that a climb from the contact leads to, over smooth joins, onto and
+/// off edges and vertices. None where the climb gets lost.
+std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n);
+
+}  // namespace taut

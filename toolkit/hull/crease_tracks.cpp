@@ -1,0 +1,164 @@
+#include "taut/hull/crease_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/hull/contact_system.h"
+
+namespace taut {
+namespace {
+
+/// Parameters that agree to this are the same place of an edge.
+constexpr double same_parameter = 1e-7;
+/// Halvings with which a ruling along the edge is found.
+constexpr int halving_limit = 60;
+
+/// Positive where a supporting direction of an edge may still turn to the left of the edge before
+/// it reaches the end of those that support: `towards` leads from this end into them.
+double turn(const ContactJet& edge, const dvec3& n, const dvec3& towards) {
+  return glm::dot(towards, glm::cross(unit(edge.dx[0]), n));
+}
+
+}  // namespace
+
+CreaseTracks::CreaseTracks(const ContactGeometry& geometry, const SeparatingGraph& graph,
+                           const std::vector<TrimRegion>& regions) {
+  for (int a = 0; a < int(graph.arcs.size()); ++a) {
+    add_arc(geometry, graph.arcs[std::size_t(a)], a);
+  }
+  for (int r = 0; r < int(regions.size()); ++r) {
+    add_region(geometry, regions[std::size_t(r)], r);
+  }
+  std::sort(creases_.begin(), creases_.end(), [](const Crease& a, const Crease& b) {
+    return std::pair(a.instance, a.piece) < std::pair(b.instance, b.piece);
+  });
+}
+
+CreaseTracks::Crease& CreaseTracks::crease(int instance, int piece) {
+  for (Crease& c : creases_) {
+    if (c.instance == instance && c.piece == piece) return c;
+  }
+  creases_.push_back({instance, piece, {}});
+  return creases_.back();
+}
+
+/// The parameter along the edge grows or falls along an arc, and turns where a ruling is tangent to
+/// the edge.
+void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index) {
+  const ContactSystem system(geometry);
+  for (int p = 0; p < int(arc.pieces.size()); ++p) {
+    const std::vector<Ruling>& rulings = arc.pieces[std::size_t(p)].rulings;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Contact& first = rulings.front().contact[i];
+      if (first.kind != SourceKind::edge) continue;
+      const auto side = [&](const Ruling& r) {
+        const dvec3 d = r.point[0] - r.point[1];
+        return turn(geometry.jet(r.contact[i]), r.n, i == 0 ? d : -d);
+      };
+      Crease& own = crease(first.instance, first.element);
+      const auto add = [&](double from, double to, double sense) {
+        if (std::abs(to - from) < same_parameter) return;
+        own.intervals.push_back(
+            {std::min(from, to), std::max(from, to), sense > 0, {index, p, -1, 0, 0}});
+      };
+      double from = first.u;
+      // Runs of rulings on one side of the edge; the ends of arcs may be tangent to it.
+      std::size_t k = 0;
+      while (k + 1 < rulings.size()) {
+        std::size_t next = k + 1;
+        const double here = side(ruling_between(system, rulings[k], rulings[next], 0.5));
+        while (next + 1 < rulings.size() && side(rulings[next]) * here > 0 &&
+               side(ruling_between(system, rulings[next], rulings[next + 1], 0.5)) * here > 0) {
+          ++next;
+        }
+        double to = rulings[next].contact[i].u;
+        if (next + 1 < rulings.size()) {
+          // It turns between the middles of the two chords about `next`.
+          const bool before = side(rulings[next]) * here <= 0;
+          const Ruling& a = before ? rulings[next - 1] : rulings[next];
+          const Ruling& b = before ? rulings[next] : rulings[next + 1];
+          double lower = before ? 0.5 : 0.0;
+          double upper = before ? 1.0 : 0.5;
+          for (int h = 0; h < halving_limit && upper - lower > 1e-15; ++h) {
+            const double middle = 0.5 * (lower + upper);
+            (side(ruling_between(system, a, b, middle)) * here > 0 ? lower : upper) = middle;
+          }
+          to = ruling_between(system, a, b, upper).contact[i].u;
+        }
+        add(from, to, here);
+        from = to;
+        k = next;
+      }
+    }
+  }
+}
+
+void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion& region,
+                              int index) {
+  const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
+  const Patch& patch = geometry.part(any).patches()[std::size_t(region.patch)];
+  for (std::size_t l = 0; l < region.loops.size(); ++l) {
+    for (std::size_t k = 0; k < region.loops[l].size(); ++k) {
+      const TrimStretch& s = region.loops[l][k];
+      if (s.arc >= 0) continue;
+      const Border& border = patch.borders[std::size_t(s.side)];
+      if (border.kind != BorderKind::edge || border.piece < 0) continue;
+      const auto over = [&](double t) { return border.piece_reversed ? 1 - t : t; };
+      const double from = over(s.from);
+      const double to = over(s.to);
+      // The region lies to the left of its outline.
+      crease(region.instance, border.piece)
+          .intervals.push_back(
+              {std::min(from, to), std::max(from, to), from < to, {-1, -1, index, l, k}});
+    }
+  }
+}
+
+std::vector<double> CreaseTracks::Crease::ends() const {
+  std::vector<double> all;
+  for (const Interval& i : intervals) {
+    all.push_back(i.from);
+    all.push_back(i.to);
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<double> distinct;
+  for (const double t : all) {
+    if (distinct.empty() || t - distinct.back() > same_parameter) distinct.push_back(t);
+  }
+  return distinct;
+}
+
+std::vector<CreaseTracks::Stretch> CreaseTracks::overlay() const {
+  std::vector<Stretch> result;
+  for (const Crease& c : creases_) {
+    const std::vector<double> ends = c.ends();
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      Stretch s{c.instance, c.piece, ends[k], ends[k + 1], {}, {}};
+      const double middle = 0.5 * (s.from + s.to);
+      for (const Interval& i : c.intervals) {
+        if (i.from < middle && middle < i.to) (i.low ? s.low : s.high) = i.track;
+      }
+      if (!s.low.empty() || !s.high.empty()) result.push_back(s);
+    }
+  }
+  return result;
+}
+
+std::vector<double> CreaseTracks::breaks(int instance, int piece, bool reversed, double from,
+                                         double to) const {
+  std::vector<double> result;
+  for (const Crease& c : creases_) {
+    if (c.instance != instance || c.piece != piece) continue;
+    for (const double end : c.ends()) {
+      const double t = reversed ? 1 - end : end;
+      if (t > std::min(from, to) + same_parameter && t < std::max(from, to) - same_parameter) {
+        result.push_back(t);
+      }
+    }
+  }
+  std::sort(result.begin(), result.end());
+  if (from > to) std::reverse(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace taut

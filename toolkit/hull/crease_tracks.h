@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/hull/separating_graph.h"
+#include "taut/hull/trim_loops.h"
+
+namespace taut {
+
+/// What lies on the hull beside the model's edges. At each point of an edge that the hull touches,
+/// the directions that support it make an arc across the tangent; beyond its two ends lies the
+/// surface to the left and to the right of the edge: a patch that ends in it, or a scroll.
+class CreaseTracks {
+ public:
+  CreaseTracks(const ContactGeometry& geometry, const SeparatingGraph& graph,
+               const std::vector<TrimRegion>& regions);
+
+  /// One side of a stretch of an edge: a piece of an arc, or a stretch of a region's outline.
+  struct Track {
+    int arc = -1;
+    int piece = -1;
+    int region = -1;
+    std::size_t loop = 0, index = 0;
+    bool empty() const { return arc < 0 && region < 0; }
+  };
+  /// A stretch of a piece of an edge, from < to, with what lies to its left and to its right, seen
+  /// from outside along the growing parameter.
+  struct Stretch {
+    int instance = -1;
+    int piece = -1;
+    double from = 0;
+    double to = 0;
+    Track low;   ///< to the left
+    Track high;  ///< to the right
+  };
+  /// All stretches of edges on the hull along which nothing changes.
+  std::vector<Stretch> overlay() const;
+
+  /// The parameters, of a border that the piece lies on, strictly between two of them at which
+  /// something changes, in order from the first to the second.
+  std::vector<double> breaks(int instance, int piece, bool reversed, double from, double to) const;
+
+ private:
+  struct Interval {
+    double from, to;
+    bool low;
+    Track track;
+  };
+  struct Crease {
+    int instance, piece;
+    std::vector<Interval> intervals;
+    std::vector<double> ends() const;
+  };
+  Crease& crease(int instance, int piece);
+  void add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index);
+  void add_region(const ContactGeometry& geometry, const TrimRegion& region, int index);
+
+  std::vector<Crease> creases_;  // by instance and piece
+};
+
+}  // namespace taut

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/contact_system.h"
+#include "taut/hull/polytope_mesh.h"
+
+namespace taut {
+
+/// A direction in which three or more contacts support: a facet of the hull.
+struct FacetNode {
+  dvec3 n = dvec3(0.0);
+  /// Counter-clockwise from outside; with their points in the scene's frame.
+  std::vector<Contact> contacts;
+  std::vector<dvec3> points;
+  /// Per side from contact i to i + 1: the arc that leaves across it, contact i being the arc's
+  /// contact 0 if it begins here (end 0), contact 1 if it ends here (end 1).
+  struct Slot {
+    int arc = -1;
+    int end = 0;
+  };
+  std::vector<Slot> slots;
+};
+
+/// The separating curves of a scene's support function on the sphere of directions: a planar graph
+/// whose nodes are facets and whose arcs end in nodes (SeparatingArc::facet are indices into
+/// nodes), in free ends, or close up.
+struct SeparatingGraph {
+  std::vector<SeparatingArc> arcs;
+  std::vector<FacetNode> nodes;
+  std::vector<Unresolved> unresolved;
+  long newton_iterations = 0;
+};
+
+/// Finds and traces the separating curves that part the samples from each other: between every two
+/// neighbours on the samples' polytope whose contacts no climb joins there is a curve; it is traced
+/// to its ends, and so are all that leave its facets. Every ruling is checked against the support
+/// function, to within support_tie.
+///
+/// Complete as far as the samples show: a curve that no two of them are parted by, and that no
+/// facet is connected with, is not found.
+/// @throws Cancelled
+SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
+                                        const std::vector<Sample>& samples,
+                                        const Progress& progress = {});
+
+}  // namespace taut

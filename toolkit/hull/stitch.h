@@ -1,0 +1,15 @@
+#pragma once
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/hull_boundary.h"
+#include "taut/hull/separating_graph.h"
+
+namespace taut {
+
+/// Joins the separating curves of a scene to the boundary of its convex hull: trimmed patches,
+/// scrolls and facets with the curves between them. What does not fit is told in
+/// HullBoundary::unresolved, after what the graph has there; a boundary without any is closed:
+/// every curve has two faces, and its Euler characteristic is that of the sphere.
+HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph);
+
+}  // namespace taut

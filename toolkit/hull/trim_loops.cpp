@@ -1,0 +1,423 @@
+#include "taut/hull/trim_loops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+namespace {
+
+/// Parameters that agree to this are the same place of a border.
+constexpr double same_parameter = 1e-9;
+
+/// The trace of a contact along a piece of a half-arc, in the walk's direction.
+struct Stroke {
+  TrimStretch stretch;
+  dvec2 from = dvec2(0.0);
+  dvec2 to = dvec2(0.0);
+  dvec3 n = dvec3(0.0);  ///< where the stroke begins
+  int sheet = -1;
+  int next = -1;  ///< stroke of the same sheet that it runs into; -1: the border
+};
+
+/// One side of a Bezier patch, by the sign of its normal.
+struct Sheet {
+  int instance, patch, sign;
+  std::vector<int> strokes;
+  /// Where strokes meet the border, by position around it.
+  struct Meeting {
+    double position;
+    int stroke;
+    bool arrives;
+  };
+  std::vector<Meeting> meetings;
+};
+
+dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
+
+/// Position around the unit square, counter-clockwise from (0, 0), in [0, 4).
+double position(const dvec2& p) {
+  const std::array<double, 4> off = {p.y, 1 - p.x, 1 - p.y, p.x};
+  const auto side = std::min_element(off.begin(), off.end()) - off.begin();
+  const std::array<double, 4> along = {p.x, p.y, 1 - p.x, 1 - p.y};
+  return std::fmod(double(side) + std::clamp(along[std::size_t(side)], 0.0, 1.0), 4.0);
+}
+
+constexpr std::array<Side, 4> around = {Side::v0, Side::u1, Side::v1, Side::u0};
+
+/// The border's stretch between two positions of one side, in either direction.
+TrimStretch on_border(int side, double from, double to) {
+  TrimStretch s;
+  s.side = around[std::size_t(side)];
+  s.from = side < 2 ? from : 1 - from;
+  s.to = side < 2 ? to : 1 - to;
+  return s;
+}
+
+/// The whole border, with the patch to the left as seen against its normal times the sign.
+std::vector<TrimStretch> all_around(int sign) {
+  std::vector<TrimStretch> loop;
+  for (int k = 0; k < 4; ++k) {
+    loop.push_back(sign > 0 ? on_border(k, 0, 1) : on_border(3 - k, 1, 0));
+  }
+  return loop;
+}
+
+dvec2 border_point(const TrimStretch& s, double t) {
+  switch (s.side) {
+    case Side::u0:
+      return {0, t};
+    case Side::u1:
+      return {1, t};
+    case Side::v0:
+      return {t, 0};
+    case Side::v1:
+      return {t, 1};
+  }
+  return dvec2(0.0);
+}
+
+class Trimmer {
+ public:
+  Trimmer(const ContactGeometry& geometry, SupportQuery& query, const SeparatingGraph& graph,
+          std::vector<Unresolved>& unresolved)
+      : geometry_(geometry), query_(query), graph_(graph), unresolved_(unresolved) {}
+
+  std::vector<TrimRegion> run() {
+    for (int a = 0; a < int(graph_.arcs.size()); ++a) {
+      for (int contact = 0; contact < 2; ++contact) add_strokes({a, contact});
+    }
+    link();
+    for (Sheet& sheet : sheets_) trim(sheet);
+    add_whole_patches();
+    return std::move(regions_);
+  }
+
+ private:
+  using Loop = std::vector<TrimStretch>;
+
+  void add_strokes(const HalfArc& half);
+  int sheet_of(const Contact& c, const dvec3& n);
+  void link();
+  void meet(int stroke, bool arrives);
+  void trim(Sheet& sheet);
+  void add_border(const Sheet& sheet, double from, double to, Loop& loop) const;
+  void add_regions(const Sheet& sheet, std::vector<Loop> loops);
+  std::vector<dvec2> polyline(const Loop& loop) const;
+  bool supports(int instance, int patch, int sign, const dvec2& at);
+  void add_whole_patches();
+  void fail(const dvec3& n, const char* reason) { unresolved_.push_back({n, reason}); }
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  const SeparatingGraph& graph_;
+  std::vector<Unresolved>& unresolved_;
+  std::vector<Stroke> strokes_;
+  std::vector<std::vector<int>> strokes_of_;  // per half-arc 2 * arc + contact: its strokes or -1
+  std::vector<Sheet> sheets_;
+  std::map<std::tuple<int, int, int>, int> sheet_index_;
+  std::vector<TrimRegion> regions_;
+};
+
+int Trimmer::sheet_of(const Contact& c, const dvec3& n) {
+  const ContactJet j = geometry_.jet(c);
+  const int sign = glm::dot(glm::cross(j.dx[0], j.dx[1]), n) < 0 ? -1 : 1;
+  const auto [at, is_new] =
+      sheet_index_.try_emplace({c.instance, c.element, sign}, int(sheets_.size()));
+  if (is_new) sheets_.push_back({c.instance, c.element, sign, {}, {}});
+  return at->second;
+}
+
+void Trimmer::add_strokes(const HalfArc& half) {
+  const SeparatingArc& arc = graph_.arcs[std::size_t(half.arc)];
+  const bool backward = half.contact == 0;
+  const int count = int(arc.pieces.size());
+  strokes_of_.emplace_back();
+  for (int k = 0; k < count; ++k) {
+    const int piece = backward ? count - 1 - k : k;
+    const std::vector<Ruling>& rulings = arc.pieces[std::size_t(piece)].rulings;
+    const auto i = std::size_t(half.contact);
+    if (rulings.front().contact[i].kind != SourceKind::face) {
+      strokes_of_.back().push_back(-1);
+      continue;
+    }
+    const Ruling& first = backward ? rulings.back() : rulings.front();
+    const Ruling& last = backward ? rulings.front() : rulings.back();
+    Stroke stroke;
+    stroke.stretch.arc = half.arc;
+    stroke.stretch.piece = piece;
+    stroke.stretch.contact = half.contact;
+    stroke.stretch.reversed = backward;
+    stroke.from = parameters(first.contact[i]);
+    stroke.to = parameters(last.contact[i]);
+    stroke.n = first.n;
+    const Ruling& middle = rulings[rulings.size() / 2];
+    Contact inside = middle.contact[i];
+    if (rulings.size() == 2) {
+      inside.u = 0.5 * (stroke.from.x + stroke.to.x);
+      inside.v = 0.5 * (stroke.from.y + stroke.to.y);
+    }
+    stroke.sheet = sheet_of(inside, middle.n);
+    sheets_[std::size_t(stroke.sheet)].strokes.push_back(int(strokes_.size()));
+    strokes_of_.back().push_back(int(strokes_.size()));
+    strokes_.push_back(stroke);
+  }
+}
+
+void Trimmer::meet(int stroke, bool arrives) {
+  const Stroke& s = strokes_[std::size_t(stroke)];
+  const dvec2& p = arrives ? s.to : s.from;
+  const double off = std::min({p.x, 1 - p.x, p.y, 1 - p.y});
+  if (off > same_parameter) fail(s.n, "a trim curve ends inside a patch");
+  sheets_[std::size_t(s.sheet)].meetings.push_back({position(p), stroke, arrives});
+}
+
+/// Lets each stroke run into the next, or into the border.
+void Trimmer::link() {
+  for (int a = 0; a < int(graph_.arcs.size()); ++a) {
+    for (int contact = 0; contact < 2; ++contact) {
+      const std::vector<int>& own = strokes_of_[std::size_t(2 * a + contact)];
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        int next = -1;
+        if (k + 1 < own.size()) {
+          next = own[k + 1];
+        } else {
+          const HalfArc after = next_half_arc(graph_, {a, contact});
+          if (after.arc < 0) {
+            if (own[k] >= 0)
+              fail(strokes_[std::size_t(own[k])].n, "a separating curve ends nowhere");
+            continue;
+          }
+          next = strokes_of_[std::size_t(2 * after.arc + after.contact)].front();
+        }
+        const int stroke = own[k];
+        if (stroke < 0 && next < 0) continue;
+        if (stroke >= 0 && next >= 0) {
+          Stroke& s = strokes_[std::size_t(stroke)];
+          const Stroke& t = strokes_[std::size_t(next)];
+          if (s.sheet == t.sheet && glm::distance(s.to, t.from) < same_parameter) {
+            s.next = next;
+            continue;
+          }
+        }
+        if (stroke >= 0) meet(stroke, true);
+        if (next >= 0) meet(next, false);
+      }
+    }
+  }
+}
+
+/// The border's stretches from one position to another in the walk's direction.
+void Trimmer::add_border(const Sheet& sheet, double from, double to, Loop& loop) const {
+  const double sense = sheet.sign;
+  double length = sense * (to - from);
+  if (length < 0) length += 4;
+  if (length < same_parameter || length > 4 - same_parameter) return;
+  double at = from;
+  while (length > same_parameter) {
+    int side = int(std::floor(at));
+    double local = at - side;
+    if (sense < 0 && local == 0) {
+      side = (side + 3) % 4;
+      local = 1;
+    }
+    const double room = sense > 0 ? 1 - local : local;
+    const double step = std::min(room, length);
+    const double end = step == room ? (sense > 0 ? 1.0 : 0.0) : local + sense * step;
+    loop.push_back(on_border(side, local, end));
+    length -= step;
+    at = sense > 0 && end == 1 ? double((side + 1) % 4) : side + end;
+  }
+}
+
+void Trimmer::trim(Sheet& sheet) {
+  auto& meetings = sheet.meetings;
+  const double sense = sheet.sign;
+  std::sort(meetings.begin(), meetings.end(), [&](const auto& a, const auto& b) {
+    return a.position != b.position ? sense * a.position < sense * b.position
+           : a.arrives != b.arrives ? a.arrives
+                                    : a.stroke < b.stroke;
+  });
+  const std::size_t count = meetings.size();
+  // The strokes that leave the border after each that arrives.
+  std::map<int, std::pair<int, std::size_t>> after;  // arriving stroke: leaving stroke, meeting
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!meetings[k].arrives) continue;
+    const auto& next = meetings[(k + 1) % count];
+    if (next.arrives) {
+      fail(strokes_[std::size_t(meetings[k].stroke)].n, "trim curves do not alternate on a border");
+      return;
+    }
+    after[meetings[k].stroke] = {next.stroke, k};
+  }
+  std::vector<Loop> loops;
+  std::vector<bool> done(sheet.strokes.size(), false);
+  std::map<int, std::size_t> place;
+  for (std::size_t k = 0; k < sheet.strokes.size(); ++k) place[sheet.strokes[k]] = k;
+  for (const int start : sheet.strokes) {
+    if (done[place[start]]) continue;
+    Loop loop;
+    int at = start;
+    do {
+      if (done[place[at]]) {
+        fail(strokes_[std::size_t(at)].n, "a trim loop runs into another");
+        return;
+      }
+      done[place[at]] = true;
+      const Stroke& s = strokes_[std::size_t(at)];
+      loop.push_back(s.stretch);
+      if (s.next >= 0) {
+        at = s.next;
+        continue;
+      }
+      const auto found = after.find(at);
+      if (found == after.end()) {
+        fail(s.n, "a trim loop does not close");
+        return;
+      }
+      const auto& [leaving, meeting] = found->second;
+      add_border(sheet, meetings[meeting].position, meetings[(meeting + 1) % count].position, loop);
+      at = leaving;
+    } while (at != start);
+    loops.push_back(std::move(loop));
+  }
+  add_regions(sheet, std::move(loops));
+}
+
+std::vector<dvec2> Trimmer::polyline(const Loop& loop) const {
+  std::vector<dvec2> points;
+  for (const TrimStretch& s : loop) {
+    if (s.arc < 0) {
+      points.push_back(border_point(s, s.from));
+      continue;
+    }
+    std::vector<Ruling> rulings =
+        graph_.arcs[std::size_t(s.arc)].pieces[std::size_t(s.piece)].rulings;
+    if (s.reversed) std::reverse(rulings.begin(), rulings.end());
+    for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+      points.push_back(parameters(rulings[k].contact[std::size_t(s.contact)]));
+    }
+  }
+  return points;
+}
+
+double signed_area(const std::vector<dvec2>& p) {
+  double area = 0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const dvec2& a = p[k];
+    const dvec2& b = p[(k + 1) % p.size()];
+    area += 0.5 * (a.x * b.y - a.y * b.x);
+  }
+  return area;
+}
+
+bool winds_about(const std::vector<dvec2>& polygon, const dvec2& x) {
+  bool inside = false;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const dvec2& a = polygon[k];
+    const dvec2& b = polygon[(k + 1) % polygon.size()];
+    if ((a.y > x.y) != (b.y > x.y) && x.x < a.x + (x.y - a.y) / (b.y - a.y) * (b.x - a.x)) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+/// Loops that run about a region, with those around its holes.
+void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
+  const std::size_t first = regions_.size();
+  std::vector<std::vector<dvec2>> outlines;
+  std::vector<std::pair<Loop, dvec2>> holes;
+  for (Loop& loop : loops) {
+    std::vector<dvec2> outline = polyline(loop);
+    if (sheet.sign * signed_area(outline) > 0) {
+      regions_.push_back({sheet.instance, sheet.patch, sheet.sign, {std::move(loop)}});
+      outlines.push_back(std::move(outline));
+    } else {
+      holes.emplace_back(std::move(loop), outline.front());
+    }
+  }
+  bool whole = false;
+  if (sheet.meetings.empty() && !holes.empty()) {
+    // Nothing meets the border: it lies on the hull all around, or nowhere.
+    const auto inside_other = [&](const dvec2& x) {
+      return std::any_of(outlines.begin(), outlines.end(),
+                         [&](const auto& outline) { return winds_about(outline, x); });
+    };
+    whole = std::any_of(holes.begin(), holes.end(),
+                        [&](const auto& hole) { return !inside_other(hole.second); });
+    if (whole) {
+      regions_.push_back({sheet.instance, sheet.patch, sheet.sign, {all_around(sheet.sign)}});
+      outlines.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    }
+  }
+  for (auto& [loop, point] : holes) {
+    std::size_t owner = outlines.size();
+    for (std::size_t k = 0; k < outlines.size(); ++k) {
+      if (!winds_about(outlines[k], point)) continue;
+      if (owner == outlines.size() ||
+          std::abs(signed_area(outlines[k])) < std::abs(signed_area(outlines[owner]))) {
+        owner = k;
+      }
+    }
+    if (owner == outlines.size()) {
+      fail(strokes_[std::size_t(sheet.strokes.front())].n, "a trim loop lies in no other");
+      return;
+    }
+    regions_[first + owner].loops.push_back(std::move(loop));
+  }
+}
+
+/// Whether the patch's point supports the model in the direction of its normal.
+bool Trimmer::supports(int instance, int patch, int sign, const dvec2& at) {
+  const Contact c{instance, SourceKind::face, patch, at.x, at.y};
+  const ContactJet j = geometry_.jet(c);
+  const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
+  if (n == dvec3(0.0)) return false;
+  return query_(n, c).h <= glm::dot(j.x, n) + support_tie;
+}
+
+/// Patches that no separating curve enters lie on the hull as a whole or not at all.
+void Trimmer::add_whole_patches() {
+  const Model& model = geometry_.scene().model();
+  for (int i = 0; i < int(model.instances().size()); ++i) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    for (int p = 0; p < int(part.patches().size()); ++p) {
+      for (const int sign : {1, -1}) {
+        if (sheet_index_.contains({i, p, sign})) continue;
+        if (!supports(i, p, sign, {0.5, 0.5})) continue;
+        regions_.push_back({i, p, sign, {all_around(sign)}});
+        break;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+HalfArc next_half_arc(const SeparatingGraph& graph, const HalfArc& half) {
+  const SeparatingArc& arc = graph.arcs[std::size_t(half.arc)];
+  if (arc.closed) return half;
+  const int end = half.contact;  // contact 1 is walked to the end, contact 0 to the beginning
+  const int node = arc.facet[std::size_t(end)];
+  if (node < 0) return {half.arc, 1 - half.contact};
+  const std::vector<FacetNode::Slot>& slots = graph.nodes[std::size_t(node)].slots;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].arc != half.arc || slots[i].end != end) continue;
+    const FacetNode::Slot& next = slots[(i + slots.size() - 1) % slots.size()];
+    if (next.arc < 0) return {};
+    return {next.arc, next.end == 0 ? 1 : 0};
+  }
+  return {};
+}
+
+std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, SupportQuery& query,
+                                     const SeparatingGraph& graph,
+                                     std::vector<Unresolved>& unresolved) {
+  return Trimmer(geometry, query, graph, unresolved).run();
+}
+
+}  // namespace taut
