@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "boundary_checks.h"
 #include "hull_checks.h"
@@ -268,6 +269,36 @@ TEST(BoundaryMesh, NothingKnown) {
   for (const auto f : hull.mesh.faces()) {
     EXPECT_EQ(hull.mesh.data(f).hull_face, sampled.mesh.data(f).hull_face);
     EXPECT_EQ(hull.mesh.data(f).kind, sampled.mesh.data(f).kind);
+  }
+}
+
+TEST(BoundaryMesh, Polyhedra) {
+  const std::vector<dvec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0.1, 0.2, 3}};
+  std::vector<dvec3> cube;
+  for (int k = 0; k < 27; ++k) cube.emplace_back(k % 3, k / 3 % 3, k / 9);
+  for (const bool turned : {false, true}) {
+    for (const auto& [points, faces] : {std::pair(tetrahedron, 4), std::pair(cube, 6)}) {
+      const Shape at_rest{{}, {}, points};
+      const Shape shape = turned ? mapped(at_rest, skew_rotation(), {0.3, 7, -2}) : at_rest;
+      const Model model = make_model(shape);
+      const Hull exact = polyhedral_hull(model);
+      ASSERT_NE(exact.boundary, nullptr);
+      EXPECT_EQ(exact.boundary->count(FaceKind::facet), faces);
+      EXPECT_EQ(int(exact.boundary->curves.size()), faces == 4 ? 6 : 12);
+      expect_labelled(exact);
+      const Scene scene(model);
+      EXPECT_EQ(exact.boundary->frame.center, scene.frame().center);
+      EXPECT_EQ(exact.boundary->frame.scale, scene.frame().scale);
+      const BoundaryFacts facts = boundary_facts(scene, exact, 300);
+      EXPECT_TRUE(facts.sound()) << facts;
+      const ContactGeometry geometry(scene);
+      const Hull hull = boundary_mesh(scene, geometry, exact.boundary,
+                                      {.relative = 1e-3, .threads = 1, .progress = {}});
+      expect_certified(scene, hull, 1e-3, {});
+      expect_labelled(hull);
+      EXPECT_EQ(int(areas(hull).size()), faces);
+      EXPECT_EQ(int(hull.mesh.n_vertices()), faces == 4 ? 4 : 8);
+    }
   }
 }
 
