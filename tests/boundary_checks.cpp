@@ -142,6 +142,16 @@ class BoundaryCheck {
     return 2 - (face.scroll_curves[0].empty() ? 0 : 1) - (face.scroll_curves[1].empty() ? 0 : 1);
   }
 
+  bool is_bare(const HullFace& face) const {
+    const taut::SeparatingArc& arc = boundary_.arcs.at(std::size_t(face.scroll.arc));
+    const Ruling& first = arc.pieces.at(std::size_t(face.scroll.first)).rulings.front();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const bool at_vertex = first.contact[i].kind == SourceKind::vertex;
+      if (!at_vertex && face.scroll_curves[i].empty()) return true;
+    }
+    return false;
+  }
+
   void check_curves() {
     for (const HullCurve& curve : boundary_.curves) {
       const int count = int(boundary_.faces.size());
@@ -156,6 +166,7 @@ class BoundaryCheck {
     for (int f = 0; f < int(boundary_.faces.size()); ++f) {
       const HullFace& face = boundary_.faces[std::size_t(f)];
       facts_.euler += characteristic(face);
+      if (face.kind == FaceKind::scroll && is_bare(face)) ++facts_.bare_scrolls;
       for (const auto& loop : face.loops) {
         for (std::size_t k = 0; k < loop.size(); ++k) {
           const auto [number, direction] = loop[k];
@@ -416,10 +427,10 @@ std::ostream& operator<<(std::ostream& out, const BoundaryFacts& f) {
   const auto vector = [&](const dvec3& x) -> std::ostream& {
     return out << '(' << x.x << ", " << x.y << ", " << x.z << ')';
   };
-  out << "open curves " << f.open_curves << ", misplaced " << f.misplaced << ", loop gap "
-      << f.loop_gap << ", region gap " << f.region_gap << ", Euler " << f.euler << "; point "
-      << f.point << ", stationary " << f.stationary << ", tie " << f.tie << ", support "
-      << f.support << " at ";
+  out << "open curves " << f.open_curves << ", misplaced " << f.misplaced << ", bare scrolls "
+      << f.bare_scrolls << ", loop gap " << f.loop_gap << ", region gap " << f.region_gap
+      << ", Euler " << f.euler << "; point " << f.point << ", stationary " << f.stationary
+      << ", tie " << f.tie << ", support " << f.support << " at ";
   vector(f.worst_support) << "; missed " << f.misses << " of " << f.directions << " as ";
   vector(f.missed) << ", overshoot " << f.overshoot << "; mismatches " << f.mismatches << " of "
                    << f.points << " (" << f.undecided << " undecided) as patch "

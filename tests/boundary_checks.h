@@ -15,6 +15,7 @@ struct BoundaryFacts {
   /// @{
   int open_curves = 0;    ///< curves without two faces
   int misplaced = 0;      ///< curves in a patch's loops that do not name the patch on that side
+  int bare_scrolls = 0;   ///< scrolls that name no curve along a contact that is no vertex
   double loop_gap = 0;    ///< largest distance between consecutive curves of a patch's loop
   double region_gap = 0;  ///< the same of stretches of a region's outline, in (u, v)
   /// V - E + sum of the faces' Euler characteristics; 2.
@@ -49,9 +50,10 @@ struct BoundaryFacts {
 
   /// Nothing is wrong, to within these shares of the scene's size.
   bool sound(double residual = 1e-12, double gap = 1e-9) const {
-    return open_curves == 0 && misplaced == 0 && loop_gap <= gap && region_gap <= gap &&
-           euler == 2 && point <= residual && stationary <= residual && tie <= residual &&
-           support <= residual && misses == 0 && overshoot <= residual && mismatches == 0;
+    return open_curves == 0 && misplaced == 0 && bare_scrolls == 0 && loop_gap <= gap &&
+           region_gap <= gap && euler == 2 && point <= residual && stationary <= residual &&
+           tie <= residual && support <= residual && misses == 0 && overshoot <= residual &&
+           mismatches == 0;
   }
 };
 

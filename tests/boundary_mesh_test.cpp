@@ -272,6 +272,45 @@ TEST(BoundaryMesh, NothingKnown) {
   }
 }
 
+TEST(BoundaryMesh, APatchIsMissing) {
+  const Scene scene = make_scene(two_spheres(1, 0.5, 2));
+  const TwoSpheres spheres(scene, 1, 0.5, 2);
+  auto boundary = std::make_shared<HullBoundary>(*spheres.boundary);
+  boundary->faces[1].regions.clear();
+  boundary->unresolved.push_back({dvec3(0, 0, 1), "a patch is missing"});
+  const Hull hull = boundary_mesh(scene, spheres.geometry(), boundary,
+                                  {.relative = 1e-3, .threads = 1, .progress = {}});
+  expect_certified(scene, hull, 1e-3, {6.250460383704693, 17.86780821729195});
+  for (const auto f : hull.mesh.faces()) {
+    const auto& data = hull.mesh.data(f);
+    ASSERT_GE(data.hull_face, 0);
+    const bool guessed = data.hull_face >= int(boundary->faces.size());
+    if (guessed || data.kind != FaceKind::patch) continue;
+    EXPECT_EQ(data.hull_face, 0);
+    EXPECT_EQ(data.source, 0);
+  }
+  double known = 0;
+  for (const auto& [face, area] : areas(hull)) known += face < 3 ? area : 0;
+  EXPECT_NEAR(known, 17.86780821729195 - 2 * pi * 0.25 * 0.75, 0.1);
+}
+
+TEST(BoundaryMesh, SameBitsForAnyNumberOfThreads) {
+  const Scene scene = make_scene(two_spheres(1, 0.5, 2));
+  const TwoSpheres spheres(scene, 1, 0.5, 2);
+  const auto mesh_of = [&](int threads) {
+    return boundary_mesh(scene, spheres.geometry(), spheres.boundary,
+                         {.relative = 1e-3, .threads = threads, .progress = {}});
+  };
+  const Hull one = mesh_of(1);
+  const Hull more = mesh_of(3);
+  EXPECT_EQ(one.distance_bound, more.distance_bound);
+  EXPECT_EQ(polygons(one.mesh).points, polygons(more.mesh).points);
+  EXPECT_EQ(polygons(one.mesh).polygons, polygons(more.mesh).polygons);
+  for (const auto f : one.mesh.faces()) {
+    EXPECT_EQ(one.mesh.data(f).hull_face, more.mesh.data(f).hull_face);
+  }
+}
+
 TEST(BoundaryMesh, Polyhedra) {
   const std::vector<dvec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0.1, 0.2, 3}};
   std::vector<dvec3> cube;

@@ -27,6 +27,7 @@ class PolyhedralBoundary {
     for (const auto f : mesh_.faces()) {
       if (boundary_.faces[std::size_t(face(f))].contacts.empty()) add_facet(f);
     }
+    boundary_.curves.reserve(mesh_.n_edges());
     for (const auto e : mesh_.edges()) {
       const auto h = mesh_.halfedge_handle(e, 0);
       const std::array<int, 2> sides = {face(mesh_.face_handle(h)),
@@ -60,6 +61,8 @@ class PolyhedralBoundary {
       if (face(mesh_.opposite_face_handle(start)) == number) continue;
       HullFace& facet = boundary_.faces[std::size_t(number)];
       facet.source = mesh_.data(f).source;
+      facet.contacts.reserve(mesh_.valence(f));
+      facet.points.reserve(mesh_.valence(f));
       OpenMesh::HalfedgeHandle h = start;
       do {
         const auto v = mesh_.from_vertex_handle(h);
