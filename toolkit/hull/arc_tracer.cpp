@@ -23,16 +23,13 @@ constexpr double growth = 1.6;
 constexpr double plane_slack = 1e-6;
 /// How far the corrector may move the prediction, as a share of the step.
 constexpr double correction_limit = 0.15;
-/// Contacts so near to each other that keep approaching merge. The system's smallest singular value
-/// falls with the third power of their distance; here rounding moves them by about 1e-8 yet.
-constexpr double merge_distance = 4e-3;
 /// Margins below this are crossed.
 constexpr double margin_slack = 1e-12;
 /// Turn of n by the first step away from a pole.
 constexpr double pole_step = 1e-3;
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
 constexpr double border_slack = 1e-9;
-constexpr int step_limit = 20000;
+constexpr int step_limit = 4000;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
@@ -51,7 +48,6 @@ class Trace {
         geometry_(system.geometry()),
         query_(query),
         landmarks_(landmarks),
-        start_(start),
         at_(start) {}
 
   TracedArc run(const Progress& progress);
@@ -85,6 +81,7 @@ class Trace {
   bool leave_pole();
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
+  TracedArc closed();
   bool merge();
   bool settle();
   void begin_piece();
@@ -99,7 +96,10 @@ class Trace {
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   std::span<const Landmark> landmarks_;
-  CommonSupport start_;
+  /// The first ruling inside a piece, at which the curve closes if it does.
+  std::optional<CommonSupport> home_;
+  std::size_t home_piece_ = 0;
+  std::size_t home_ruling_ = 0;
   CommonSupport at_;
   CurveTangent tangent_;
   std::array<std::vector<ContactExit>, 2> exits_;
@@ -334,44 +334,52 @@ bool Trace::arrives(const Landmark& landmark, double length) {
 }
 
 bool Trace::is_closing(const CommonSupport& next, double length) const {
-  const double ahead = length_to(start_);
+  if (!home_ || !same_element(home_->contact[0], at_.contact[0]) ||
+      !same_element(home_->contact[1], at_.contact[1])) {
+    return false;
+  }
+  const double ahead = length_to(*home_);
   if (ahead <= margin_slack || ahead > length_to(next) + margin_slack) return false;
-  if (distance_to(start_) > 1.5 * length) return false;
+  if (distance_to(*home_) > 1.5 * length) return false;
   const std::optional<CommonSupport> there = stepped(ahead);
-  return there && glm::distance(there->n, start_.n) < same_contact &&
-         glm::distance(there->jet[0].x, start_.jet[0].x) < same_contact &&
-         glm::distance(there->jet[1].x, start_.jet[1].x) < same_contact;
+  return there && glm::distance(there->n, home_->n) < same_contact &&
+         glm::distance(there->jet[0].x, home_->jet[0].x) < same_contact &&
+         glm::distance(there->jet[1].x, home_->jet[1].x) < same_contact;
 }
 
-/// Ends the arc where the contacts merge, if they do: their parameters and n, as functions of the
-/// distance rho between them, are smooth there, n and the middle in its square.
+/// Ends the arc at home, and drops what led there from the start.
+TracedArc Trace::closed() {
+  push(*home_);
+  auto& first = arc_.pieces[home_piece_].rulings;
+  first.erase(first.begin(), first.begin() + std::ptrdiff_t(home_ruling_));
+  arc_.pieces.erase(arc_.pieces.begin(), arc_.pieces.begin() + std::ptrdiff_t(home_piece_));
+  arc_.end = TracedArc::End::closed;
+  return std::move(arc_);
+}
+
+/// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
+/// parameters are smooth there; n and, where both are in one element, the parameters' mean are
+/// smooth functions of its square.
 bool Trace::merge() {
-  const std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
-  const Ruling& last = rulings.back();
-  const auto length = [](const Ruling& r) { return glm::distance(r.point[0], r.point[1]); };
-  const double rho = length(last);
-  const auto before = std::find_if(rulings.rbegin(), rulings.rend(),
-                                   [&](const Ruling& r) { return length(r) > 1.5 * rho; });
-  if (before == rulings.rend()) return false;
-  const double other = length(*before);
-  const double linear = rho / (other - rho);
-  const double squared = rho * rho / (other * other - rho * rho);
+  const Ruling last = at_.ruling();
+  const double rho = glm::distance(last.point[0], last.point[1]);
+  const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / rho;
+  // f(0) = f - rho f' for a function of rho, f - rho f' / 2 for one of its square.
+  const double linear = rho / rate;
+  const double squared = 0.5 * rho / rate;
   Ruling end = last;
-  end.n = last.n + squared * (last.n - before->n);
+  end.n = last.n - squared * tangent_.n;
   const bool one_element = same_element(last.contact[0], last.contact[1]);
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = end.contact[i];
-    const auto extrapolated = [&](double Contact::*t) {
-      const auto middle = [&](const Ruling& r) {
-        return 0.5 * (r.contact[0].*t + r.contact[1].*t);
-      };
-      const double value =
-          one_element ? middle(last) + squared * (middle(last) - middle(*before))
-                      : last.contact[i].*t + linear * (last.contact[i].*t - before->contact[i].*t);
-      return std::clamp(value, 0.0, 1.0);
-    };
-    c.u = extrapolated(&Contact::u);
-    c.v = extrapolated(&Contact::v);
+    dvec2 at = dvec2(c.u, c.v) - linear * tangent_.parameter[i];
+    if (one_element) {
+      at = 0.5 * (dvec2(last.contact[0].u, last.contact[0].v) +
+                  dvec2(last.contact[1].u, last.contact[1].v)) -
+           0.5 * squared * (tangent_.parameter[0] + tangent_.parameter[1]);
+    }
+    c.u = std::clamp(at.x, 0.0, 1.0);
+    c.v = std::clamp(at.y, 0.0, 1.0);
   }
   move_together(geometry_, end.contact[0], end.contact[1]);
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
@@ -517,24 +525,17 @@ TracedArc Trace::run(const Progress& progress) {
       arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
       return std::move(arc_);
     }
-    if (closing) {
-      push(start_);
-      Ruling& end = arc_.pieces.back().rulings.back();
-      const Ruling& own = next->ruling();
-      for (std::size_t i = 0; i < 2; ++i) {
-        const Contact& c = own.contact[i];
-        if (end.contact[i].kind != c.kind || end.contact[i].element != c.element) {
-          return lost("a closed separating curve begins on a border");
-        }
-      }
-      arc_.end = TracedArc::End::closed;
-      return std::move(arc_);
-    }
+    if (closing) return closed();
     const double moved = length_to(*next);
     idle = moved > margin_slack ? 0 : idle + 1;
     if (idle > idle_limit) return lost("a separating curve stays on a border");
     at_ = *next;
     if (moved > margin_slack) push(at_);
+    if (!home_ && !event && moved > margin_slack) {
+      home_ = at_;
+      home_piece_ = arc_.pieces.size() - 1;
+      home_ruling_ = arc_.pieces.back().rulings.size() - 1;
+    }
     if (event) {
       const auto i = std::size_t(event->contact);
       const std::optional<Contact> over = beyond(geometry_, at_.contact[i], event->exit);

@@ -11,6 +11,12 @@
 
 namespace taut {
 
+/// Contacts so near to each other, in the scene's frame, that keep approaching merge. The smallest
+/// singular value of the system of two contacts falls with the third power of their distance; here
+/// rounding moves them by about 1e-8 yet. What the hull bridges over a shorter distance deviates
+/// from the surface by less than the fourth power of it.
+inline constexpr double merge_distance = 4e-3;
+
 /// A direction that is known to have three contacts or more, some of them at poles.
 struct Landmark {
   dvec3 n = dvec3(0.0);
@@ -22,7 +28,7 @@ struct TracedArc {
   enum class End {
     plane,   ///< other contacts support too: see `n` and `contacts`
     merged,  ///< the two contacts merge in a free end
-    closed,  ///< back where it began
+    closed,  ///< the curve closes; the pieces are one way round
     lost,    ///< see `reason`
   };
   std::vector<ArcPiece> pieces;

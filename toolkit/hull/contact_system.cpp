@@ -202,8 +202,8 @@ std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
 }
 
 Ruling ruling_between(const ContactSystem& system, const Ruling& from, const Ruling& to, double s) {
-  if (s <= 0) return from;
-  if (s >= 1) return to;
+  if (s == 0) return from;
+  if (s == 1) return to;
   const auto mix = [&](double a, double b) { return (1 - s) * a + s * b; };
   Ruling start = from;
   start.n = glm::normalize((1 - s) * from.n + s * to.n);

@@ -7,6 +7,7 @@
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/surface_seeds.h"
 
 namespace taut {
 namespace {
@@ -15,10 +16,18 @@ namespace {
 constexpr double same_branch = 1e-6;
 /// Directions so near to each other are not parted any further.
 constexpr double narrow = 1e-9;
+/// Share of its motion by which a contact may miss the first order of it.
+constexpr double first_order = 0.3;
+/// Spots that are left unresolved before the search is given up.
+constexpr std::size_t failure_limit = 64;
 constexpr int secant_limit = 60;
+/// Values of two contacts that differ by so little are equal.
+constexpr double parting_tie = 1e-15;
 constexpr int depth_limit = 40;
 /// A seed lies on a curve that was traced if the curve passes it within this distance.
 constexpr double same_curve = 1e-6;
+/// Chords count as this much longer at both ends, as a share, because the curve turns between them.
+constexpr double overlap = 0.2;
 /// Normals of facets are the same below this difference.
 constexpr double same_plane = 1e-7;
 /// Directions of consecutive rulings are no farther apart.
@@ -29,7 +38,7 @@ class GraphTracer {
   GraphTracer(const ContactGeometry& geometry, SupportQuery& query, const Progress& progress)
       : geometry_(geometry), system_(geometry), query_(query), progress_(progress) {}
 
-  SeparatingGraph run(const std::vector<Sample>& samples);
+  SeparatingGraph run(const std::vector<Sample>& samples, const std::vector<CulledCell>& cells);
 
  private:
   /// A direction and its support contact.
@@ -40,13 +49,18 @@ class GraphTracer {
   };
   Sighting seen(const dvec3& n, const Contact& hint);
   void part(const Sighting& a, const Sighting& b, int depth);
+  bool is_near(const Sighting& from, const Sighting& to) const;
   bool joined(const Sighting& a, const Sighting& b) const;
   std::optional<CommonSupport> parting(const Sighting& a, const Sighting& b) const;
   bool is_traced(const CommonSupport& seed) const;
   void trace(const CommonSupport& seed);
   void trace_waiting();
-  void add(TracedArc&& traced, int begin_node, int begin_slot);
-  void connect(int arc, int end, int node, const dvec3& first, const dvec3& second);
+  static constexpr int free_end = -1;
+  static constexpr int no_node = -2;
+  int store(SeparatingArc arc);
+  int side_of(int node, const dvec3& first, const dvec3& second) const;
+  bool is_taken(int node, const std::vector<ArcPiece>& pieces) const;
+  void connect(int arc, int end, int node);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int add_node(const dvec3& n, FacetContacts facet);
   void find_poles();
@@ -67,60 +81,66 @@ GraphTracer::Sighting GraphTracer::seen(const dvec3& n, const Contact& hint) {
   return {n, geometry_.canonical(s.contact), s.point};
 }
 
+/// Whether the contact's motion, to first order, is that to the other in the same patch: then they
+/// are joined without a climb.
+bool GraphTracer::is_near(const Sighting& from, const Sighting& to) const {
+  if (from.contact.kind != SourceKind::face || !same_element(from.contact, to.contact)) {
+    return false;
+  }
+  const ContactJet j = geometry_.jet(from.contact);
+  const dvec3 dn = to.n - from.n;
+  const double uu = glm::dot(j.dxx, from.n);
+  const double uv = glm::dot(j.dxy, from.n);
+  const double vv = glm::dot(j.dyy, from.n);
+  const double det = uu * vv - uv * uv;
+  if (!(det > 0) || !(uu < 0)) return false;
+  const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
+  const dvec2 rate = dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
+  const dvec2 moved(to.contact.u - from.contact.u, to.contact.v - from.contact.v);
+  const auto length = [&](const dvec2& p) { return glm::length(p.x * j.dx[0] + p.y * j.dx[1]); };
+  return length(rate - moved) < first_order * length(moved);
+}
+
 /// Whether a climb leads from the one contact to the other.
 bool GraphTracer::joined(const Sighting& a, const Sighting& b) const {
   if (glm::distance(a.x, b.x) < same_branch) return true;
   const auto leads = [&](const Sighting& from, const Sighting& to) {
+    if (is_near(from, to)) return true;
     const std::optional<Contact> c = climbed(geometry_, from.contact, to.n);
     return c && glm::distance(geometry_.point(*c), to.x) < same_branch;
   };
-  return leads(a, b) || leads(b, a);
+  return leads(a, b) && leads(b, a);
 }
 
-/// The direction on the great arc between the two at which their contacts' branches tie.
+/// The direction on the great arc between the two at which their contacts' branches tie: Newton's
+/// method on the difference of the two values, the slope of which is the contacts' difference,
+/// within the bracket that their signs make.
 std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sighting& b) const {
-  struct Difference {
-    double value;
-    Contact ca, cb;
-    dvec3 n;
-  };
-  const auto difference = [&](double t) -> std::optional<Difference> {
-    const dvec3 n = glm::normalize((1 - t) * a.n + t * b.n);
-    const std::optional<Contact> ca = climbed(geometry_, a.contact, n);
-    const std::optional<Contact> cb = climbed(geometry_, b.contact, n);
-    if (!ca || !cb) return std::nullopt;
-    return Difference{glm::dot(geometry_.point(*ca) - geometry_.point(*cb), n), *ca, *cb, n};
-  };
-  // Positive at a, negative at b; the Illinois variant of regula falsi.
+  CommonSupport s;
+  s.add(geometry_, a.contact);
+  s.add(geometry_, b.contact);
   double lower = 0;
   double upper = 1;
-  const auto at_lower = difference(0);
-  const auto at_upper = difference(1);
-  if (!at_lower || !at_upper || at_lower->value < 0 || at_upper->value > 0) return std::nullopt;
-  double f_lower = at_lower->value;
-  double f_upper = at_upper->value;
+  double t = 0.5;
   for (int k = 0; k < secant_limit; ++k) {
-    double t = f_lower == f_upper ? 0.5 * (lower + upper)
-                                  : (f_lower * upper - f_upper * lower) / (f_lower - f_upper);
-    if (k > 8) t = 0.5 * (lower + upper);
-    const auto at = difference(t);
-    if (!at) return std::nullopt;
-    if (std::abs(at->value) < 1e-14 || upper - lower < 1e-15) {
-      CommonSupport s;
-      s.n = at->n;
-      s.add(geometry_, at->ca);
-      s.add(geometry_, at->cb);
-      if (glm::length(s.d()) < same_branch) return std::nullopt;
-      return s;
+    const dvec3 mixed = (1 - t) * a.n + t * b.n;
+    s.n = glm::normalize(mixed);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::optional<Contact> c = climbed(geometry_, s.contact[i], s.n);
+      if (!c) return std::nullopt;
+      s.contact[i] = *c;
     }
-    if (at->value > 0) {
-      lower = t;
-      f_lower = at->value;
-      f_upper *= 0.5;
-    } else {
-      upper = t;
-      f_upper = at->value;
-      f_lower *= 0.5;
+    s.evaluate(geometry_);
+    if (glm::length(s.d()) < same_branch) return std::nullopt;
+    const double value = glm::dot(s.d(), s.n);
+    if (std::abs(value) < parting_tie) return s;
+    (value > 0 ? lower : upper) = t;
+    const double slope = glm::dot(s.d(), b.n - a.n) / glm::length(mixed);
+    const double next = t - value / slope;
+    t = next > lower && next < upper ? next : 0.5 * (lower + upper);
+    if (upper - lower < parting_tie) {
+      if (std::abs(value) < support_tie) return s;
+      return std::nullopt;
     }
   }
   return std::nullopt;
@@ -130,7 +150,16 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
 void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   if (joined(a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
-    fail(a.n, "two contacts that are not joined are not parted either");
+    // Two samples on the curve itself.
+    CommonSupport tie;
+    tie.n = a.n;
+    tie.add(geometry_, a.contact);
+    tie.add(geometry_, b.contact);
+    if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < support_tie) {
+      if (!is_traced(tie)) trace(tie);
+    } else {
+      fail(a.n, "two contacts that are not joined are not parted either");
+    }
     return;
   }
   const std::optional<CommonSupport> seed = parting(a, b);
@@ -168,7 +197,7 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
           const dvec3 e0 = x0 - from.point[0];
           const dvec3 e1 = x1 - from.point[1];
           const double s = (glm::dot(en, dn) + glm::dot(e0, d0) + glm::dot(e1, d1)) / square;
-          if (s < -1e-6 || s > 1 + 1e-6) continue;
+          if (s < -overlap || s > 1 + overlap) continue;
           const double off = glm::dot(en, en) + glm::dot(e0, e0) + glm::dot(e1, e1);
           if (off - s * s * square > 0.25 * square + same_curve * same_curve) continue;
           const Ruling there = ruling_between(system_, from, to, s);
@@ -184,7 +213,8 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
   return false;
 }
 
-/// The facet node of a plane, a new one if there is none yet; -1 if its contacts cannot be told.
+/// The facet node of a plane, a new one if there is none yet; no_node if its contacts cannot be
+/// told.
 int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
     const FacetNode& node = graph_.nodes[k];
@@ -200,7 +230,7 @@ int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, n, contacts);
   if (f) return add_node(n, std::move(*f));
   fail(n, "a plane has contact along a curve");
-  return -1;
+  return no_node;
 }
 
 int GraphTracer::add_node(const dvec3& n, FacetContacts facet) {
@@ -242,24 +272,41 @@ void GraphTracer::find_poles() {
   }
 }
 
-/// Plugs an arc's end into the node's side from the first to the second contact.
-void GraphTracer::connect(int arc, int end, int node, const dvec3& first, const dvec3& second) {
-  FacetNode& own = graph_.nodes[std::size_t(node)];
-  const std::size_t count = own.points.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (glm::distance(own.points[i], first) > same_branch ||
-        glm::distance(own.points[(i + 1) % count], second) > same_branch) {
-      continue;
+/// The side of a facet from its contact at the one point to that at the other; -1 if there is none.
+int GraphTracer::side_of(int node, const dvec3& first, const dvec3& second) const {
+  const std::vector<dvec3>& points = graph_.nodes[std::size_t(node)].points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (glm::distance(points[i], first) < same_branch &&
+        glm::distance(points[(i + 1) % points.size()], second) < same_branch) {
+      return int(i);
     }
-    if (own.slots[i].arc >= 0) {
-      fail(own.n, "two separating curves leave a facet across one side");
-      return;
-    }
-    own.slots[i] = {arc, end};
-    graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
-    return;
   }
-  fail(own.n, "a separating curve meets a facet in none of its sides");
+  return -1;
+}
+
+/// Whether an arc is there already across the side of the node at which these pieces arrive.
+bool GraphTracer::is_taken(int node, const std::vector<ArcPiece>& pieces) const {
+  if (node == free_end) return false;
+  const Ruling& last = pieces.back().rulings.back();
+  const int side = side_of(node, last.point[1], last.point[0]);
+  return side >= 0 && graph_.nodes[std::size_t(node)].slots[std::size_t(side)].arc >= 0;
+}
+
+/// Plugs an arc's end into the side of the node that it crosses.
+void GraphTracer::connect(int arc, int end, int node) {
+  if (node == free_end) return;
+  FacetNode& own = graph_.nodes[std::size_t(node)];
+  const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(arc)].pieces;
+  const Ruling& r = end == 0 ? pieces.front().rulings.front() : pieces.back().rulings.back();
+  const int side = side_of(node, r.point[end == 0 ? 0 : 1], r.point[end == 0 ? 1 : 0]);
+  if (side < 0) {
+    fail(own.n, "a separating curve meets a facet in none of its sides");
+  } else if (own.slots[std::size_t(side)].arc >= 0) {
+    fail(own.n, "two separating curves leave a facet across one side");
+  } else {
+    own.slots[std::size_t(side)] = {arc, end};
+    graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
+  }
 }
 
 /// Reverses the direction, and with it the order of contacts.
@@ -298,47 +345,52 @@ void GraphTracer::trace(const CommonSupport& seed) {
     return;
   }
   SeparatingArc arc;
-  const int index = int(graph_.arcs.size());
   if (ahead.end == TracedArc::End::closed) {
     arc.closed = true;
     arc.pieces = std::move(ahead.pieces);
-    // It began in the middle of a piece.
+    // It begins in the middle of a piece.
     if (arc.pieces.size() > 1 &&
         same_elements(arc.pieces.back().rulings.back(), arc.pieces.front().rulings.front())) {
       std::vector<ArcPiece> first(1, std::move(arc.pieces.front()));
       arc.pieces.erase(arc.pieces.begin());
       append(arc.pieces, std::move(first));
     }
-  } else {
-    CommonSupport turned = seed;
-    std::swap(turned.contact[0], turned.contact[1]);
-    std::swap(turned.jet[0], turned.jet[1]);
-    TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
-    if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
-      fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
-                                                      : "a separating curve closes one way only");
-      return;
-    }
-    const int begin = behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : -2;
-    const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : -2;
-    if (begin == -1 || end == -1) return;
-    reverse(behind.pieces);
-    arc.pieces = std::move(behind.pieces);
-    append(arc.pieces, std::move(ahead.pieces));
-    graph_.arcs.push_back(std::move(arc));
-    const SeparatingArc& own = graph_.arcs.back();
-    const Ruling first = own.pieces.front().rulings.front();
-    const Ruling last = own.pieces.back().rulings.back();
-    if (begin >= 0) connect(index, 0, begin, first.point[0], first.point[1]);
-    if (end >= 0) connect(index, 1, end, last.point[1], last.point[0]);
+    store(std::move(arc));
+    return;
   }
-  if (arc.closed) graph_.arcs.push_back(std::move(arc));
+  CommonSupport turned = seed;
+  std::swap(turned.contact[0], turned.contact[1]);
+  std::swap(turned.jet[0], turned.jet[1]);
+  TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
+  if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
+    fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
+                                                    : "a separating curve closes one way only");
+    return;
+  }
+  const int begin =
+      behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : free_end;
+  const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : free_end;
+  if (begin == no_node || end == no_node) return;
+  // A facet has one curve across each side: this one is there already.
+  if (is_taken(begin, behind.pieces) || is_taken(end, ahead.pieces)) return;
+  reverse(behind.pieces);
+  arc.pieces = std::move(behind.pieces);
+  append(arc.pieces, std::move(ahead.pieces));
+  const int index = store(std::move(arc));
+  connect(index, 0, begin);
+  connect(index, 1, end);
+  trace_waiting();
+}
+
+/// Adds an arc; its number.
+int GraphTracer::store(SeparatingArc arc) {
   Box box;
-  for (const ArcPiece& piece : graph_.arcs.back().pieces) {
+  for (const ArcPiece& piece : arc.pieces) {
     for (const Ruling& r : piece.rulings) box.include(r.n);
   }
   boxes_.push_back(box);
-  trace_waiting();
+  graph_.arcs.push_back(std::move(arc));
+  return int(graph_.arcs.size()) - 1;
 }
 
 /// Traces the arcs that leave facets across sides where none was met yet.
@@ -361,25 +413,20 @@ void GraphTracer::trace_waiting() {
                           : "a separating curve returns into its facet");
         continue;
       }
-      const int end = traced.end == TracedArc::End::plane ? node_of(traced.n, traced.contacts) : -2;
-      if (end == -1) continue;
-      const int index = int(graph_.arcs.size());
-      graph_.arcs.emplace_back();
-      graph_.arcs.back().pieces = std::move(traced.pieces);
-      const Ruling last = graph_.arcs.back().pieces.back().rulings.back();
-      graph_.nodes[std::size_t(node)].slots[i] = {index, 0};
-      graph_.arcs.back().facet[0] = node;
-      if (end >= 0) connect(index, 1, end, last.point[1], last.point[0]);
-      Box box;
-      for (const ArcPiece& piece : graph_.arcs.back().pieces) {
-        for (const Ruling& r : piece.rulings) box.include(r.n);
-      }
-      boxes_.push_back(box);
+      const int end =
+          traced.end == TracedArc::End::plane ? node_of(traced.n, traced.contacts) : free_end;
+      if (end == no_node) continue;
+      SeparatingArc arc;
+      arc.pieces = std::move(traced.pieces);
+      const int index = store(std::move(arc));
+      connect(index, 0, node);
+      connect(index, 1, end);
     }
   }
 }
 
-SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
+SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
+                                 const std::vector<CulledCell>& cells) {
   std::vector<Sighting> sightings;
   std::vector<dvec3> points;
   Box box;
@@ -392,10 +439,14 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
   }
   find_poles();
   trace_waiting();
+  for (const CommonSupport& seed : surface_seeds(system_, query_, cells)) {
+    if (graph_.unresolved.size() >= failure_limit) break;
+    if (!is_traced(seed)) trace(seed);
+  }
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
-    if (!f.alive) continue;
+    if (!f.alive || graph_.unresolved.size() >= failure_limit) continue;
     progress_.check();
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = f.vertex[k];
@@ -411,8 +462,9 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples) {
 
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
+                                        const std::vector<CulledCell>& cells,
                                         const Progress& progress) {
-  return GraphTracer(geometry, query, progress).run(samples);
+  return GraphTracer(geometry, query, progress).run(samples, cells);
 }
 
 }  // namespace taut

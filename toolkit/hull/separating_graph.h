@@ -4,6 +4,7 @@
 
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact_system.h"
+#include "taut/hull/culling.h"
 #include "taut/hull/polytope_mesh.h"
 
 namespace taut {
@@ -38,11 +39,14 @@ struct SeparatingGraph {
 /// to its ends, and so are all that leave its facets. Every ruling is checked against the support
 /// function, to within support_tie.
 ///
-/// Complete as far as the samples show: a curve that no two of them are parted by, and that no
-/// facet is connected with, is not found.
+/// The same where a side of a mixed cell leads from a point that supports to one that does not.
+///
+/// Complete as far as samples and cells show: a curve that crosses no side of a cell and no two
+/// samples are parted by, and that no facet is connected with, is not found.
 /// @throws Cancelled
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
+                                        const std::vector<CulledCell>& cells,
                                         const Progress& progress = {});
 
 }  // namespace taut

@@ -38,12 +38,15 @@ struct Sheet {
 
 dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
 
-/// Position around the unit square, counter-clockwise from (0, 0), in [0, 4).
+/// Position around the unit square, counter-clockwise from (0, 0), in [0, 4); that of a corner if it
+/// is there to within same_parameter.
 double position(const dvec2& p) {
   const std::array<double, 4> off = {p.y, 1 - p.x, 1 - p.y, p.x};
   const auto side = std::min_element(off.begin(), off.end()) - off.begin();
   const std::array<double, 4> along = {p.x, p.y, 1 - p.x, 1 - p.y};
-  return std::fmod(double(side) + std::clamp(along[std::size_t(side)], 0.0, 1.0), 4.0);
+  const double at = double(side) + std::clamp(along[std::size_t(side)], 0.0, 1.0);
+  const double corner = std::round(at);
+  return std::fmod(std::abs(at - corner) < same_parameter ? corner : at, 4.0);
 }
 
 constexpr std::array<Side, 4> around = {Side::v0, Side::u1, Side::v1, Side::u0};

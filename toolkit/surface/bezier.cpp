@@ -20,6 +20,26 @@ struct Basis {
 /// recurrence passes through on its way.
 void bernstein(int p, double t, int order, Basis& basis) {
   const double s = 1 - t;
+  if (p == 3) {  // the common case; the recurrence costs several times as much
+    auto& b = basis.value;
+    b[0][0] = s * s * s;
+    b[0][1] = 3 * s * s * t;
+    b[0][2] = 3 * s * t * t;
+    b[0][3] = t * t * t;
+    b[1][0] = -3 * s * s;
+    b[1][1] = 3 * s * (s - 2 * t);
+    b[1][2] = 3 * t * (2 * s - t);
+    b[1][3] = 3 * t * t;
+    b[2][0] = 6 * s;
+    b[2][1] = 6 * t - 12 * s;
+    b[2][2] = 6 * s - 12 * t;
+    b[2][3] = 6 * t;
+    b[3][0] = -6;
+    b[3][1] = 18;
+    b[3][2] = -18;
+    b[3][3] = 6;
+    return;
+  }
   double b[max_degree + 1];
   b[0] = 1;
   const auto store = [&](int degree) {
@@ -46,17 +66,20 @@ void bernstein(int p, double t, int order, Basis& basis) {
 template <int Order>
 using Derivatives = std::array<std::array<dvec4, Order + 1>, Order + 1>;
 
-/// Homogeneous partial derivatives d[k][l] with k + l <= Order.
-template <int Order>
+/// Homogeneous partial derivatives d[k][l] with k + l <= Order; degrees are known when compiling
+/// (>= 0) or not (-1).
+template <int Order, int P = -1, int Q = -1>
 Derivatives<Order> homogeneous_derivatives(const BezierPatch& patch, double u, double v) {
+  const int p = P >= 0 ? P : patch.degree_u;
+  const int q = Q >= 0 ? Q : patch.degree_v;
   Basis bu, bv;
-  bernstein(patch.degree_u, u, Order, bu);
-  bernstein(patch.degree_v, v, Order, bv);
+  bernstein(p, u, Order, bu);
+  bernstein(q, v, Order, bv);
   Derivatives<Order> d{};
   const dvec4* row = patch.points.data();
-  for (int i = 0; i <= patch.degree_u; ++i, row += patch.degree_v + 1) {
+  for (int i = 0; i <= p; ++i, row += q + 1) {
     std::array<dvec4, Order + 1> along_v{};
-    for (int j = 0; j <= patch.degree_v; ++j) {
+    for (int j = 0; j <= q; ++j) {
       for (int l = 0; l <= Order; ++l) along_v[l] += bv.value[l][j] * row[j];
     }
     for (int k = 0; k <= Order; ++k) {
@@ -66,12 +89,15 @@ Derivatives<Order> homogeneous_derivatives(const BezierPatch& patch, double u, d
   return d;
 }
 
+template <int Order>
+using EuclideanDerivatives = std::array<std::array<dvec3, Order + 1>, Order + 1>;
+
 /// Partial derivatives of the quotient X / w by Leibniz' rule: X = S w gives, for each order,
 /// S_kl w = X_kl - sum over the terms in which w is differentiated.
 template <int Order>
-std::array<std::array<dvec3, Order + 1>, Order + 1> quotient(const Derivatives<Order>& d) {
+EuclideanDerivatives<Order> quotient(const Derivatives<Order>& d) {
   static constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
-  std::array<std::array<dvec3, Order + 1>, Order + 1> S;
+  EuclideanDerivatives<Order> S;
   for (int k = 0; k <= Order; ++k) {
     for (int l = 0; k + l <= Order; ++l) {
       dvec3 x(d[k][l]);
@@ -88,8 +114,17 @@ std::array<std::array<dvec3, Order + 1>, Order + 1> quotient(const Derivatives<O
 }
 
 template <int Order>
-auto euclidean_derivatives(const BezierPatch& patch, double u, double v) {
-  return quotient<Order>(homogeneous_derivatives<Order>(patch, u, v));
+EuclideanDerivatives<Order> euclidean_derivatives(const BezierPatch& patch, double u, double v) {
+  const Derivatives<Order> d = patch.degree_u == 3 && patch.degree_v == 3
+                                   ? homogeneous_derivatives<Order, 3, 3>(patch, u, v)
+                                   : homogeneous_derivatives<Order>(patch, u, v);
+  if (!is_polynomial(patch.points)) return quotient<Order>(d);
+  EuclideanDerivatives<Order> S;
+  const double w = patch.points.front().w;
+  for (int k = 0; k <= Order; ++k) {
+    for (int l = 0; k + l <= Order; ++l) S[k][l] = dvec3(d[k][l]) / w;
+  }
+  return S;
 }
 
 /// Control points of the part over [0, t] by de Casteljau, in place.

@@ -1,4 +1,5 @@
-// Evaluation, CBVH build, memory and convergence, and support queries, on the teapot; one thread.
+// Evaluation, CBVH and Gauss map build, memory and convergence, and support queries, on the teapot;
+// one thread.
 
 #include <benchmark/benchmark.h>
 
@@ -6,7 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
+#include "taut/hull/culling.h"
 #include "taut/io/read_model.h"
 
 namespace {
@@ -70,6 +73,38 @@ void build_scene(benchmark::State& state) {
   state.counters["bytes/patch"] = double(bytes) / model.patch_count();
 }
 BENCHMARK(build_scene)->Unit(benchmark::kMillisecond);
+
+/// Argument: the levels.
+void build_gauss_map(benchmark::State& state) {
+  std::size_t bytes = 0;
+  std::size_t nodes = 0;
+  for (auto _ : state) {
+    const GaussMap map(teapot_scene(),
+                       {.levels = int(state.range(0)), .threads = 1, .progress = {}});
+    bytes = map.memory();
+    nodes = map.nodes(0).size();
+  }
+  state.counters["nodes"] = double(nodes);
+  state.counters["bytes/patch"] = double(bytes) / teapot_scene().model().patch_count();
+}
+BENCHMARK(build_gauss_map)->DenseRange(2, 4)->Unit(benchmark::kMillisecond);
+
+/// Argument: the finest level.
+void cull_cells(benchmark::State& state) {
+  const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
+  Culling culling;
+  for (auto _ : state) {
+    culling =
+        cull(teapot_scene(), map, {.levels = int(state.range(0)), .threads = 1, .progress = {}});
+  }
+  const CullingLevel& last = culling.levels.back();
+  state.counters["visited"] = double(culling.visited());
+  state.counters["mixed"] = double(culling.mixed());
+  state.counters["queries"] = double(culling.support_queries);
+  state.counters["removed"] = last.removed_share;
+  state.counters["decided"] = last.decided_share;
+}
+BENCHMARK(cull_cells)->DenseRange(3, 5)->Unit(benchmark::kMillisecond);
 
 /// Argument: the decimal exponent of the Coons tolerance relative to the patch.
 void build_cbvh(benchmark::State& state) {

@@ -1,0 +1,405 @@
+#include "taut/hull/culling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "taut/bounds/patch_nets.h"
+#include "taut/bounds/reach_test.h"
+#include "taut/bounds/scene_content.h"
+#include "taut/bounds/second_form.h"
+#include "taut/bounds/support_query.h"
+#include "taut/core/error.h"
+#include "taut/core/parallel.h"
+
+namespace taut {
+namespace {
+
+constexpr int level_limit = 20;
+
+/// Directions sampled whatever the patches are like.
+constexpr int spread_directions = 48;
+
+/// Patches of a task; each task makes its own queries.
+constexpr std::size_t patches_per_task = 8;
+
+/// By how many of its own sizes a cell is surrounded at most where the whole patch is too curved,
+/// and then half as many, down to one. What is close to the cell must be inside: where the two
+/// principal curvatures differ by a factor of k, a pyramid across them may hold normals that point
+/// k cells away.
+constexpr int widest_surrounding = 8;
+
+/// Distances of the points that stand for a cell, in its sizes.
+constexpr std::array<double, 2> ring_radii = {0.5, 2};
+
+/// Points of a spiral over the sphere, at golden angles.
+std::vector<dvec3> spread_over_sphere(int count) {
+  const double golden_angle = std::acos(-1.0) * (3 - std::sqrt(5.0));
+  std::vector<dvec3> result;
+  for (int k = 0; k < count; ++k) {
+    const double z = 1 - (2 * k + 1.0) / count;
+    const double r = std::sqrt(1 - z * z);
+    result.emplace_back(r * std::cos(golden_angle * k), r * std::sin(golden_angle * k), z);
+  }
+  return result;
+}
+
+/// A sampled point that a cell is compared with.
+struct Beacon {
+  Contact contact;
+  dvec3 local;  ///< in the part's frame
+  bool known = false;
+};
+
+/// What one patch of one instance contributes to the result.
+struct PatchResult {
+  std::vector<Sample> samples;
+  std::vector<dvec3> frame_points;
+  std::vector<CulledCell> cells;
+  std::vector<CullingLevel> levels;
+  long queries = 0;
+};
+
+/// Scratch memory of a task.
+struct Tools {
+  explicit Tools(const Scene& scene) : query(scene), reach(scene) {}
+  SupportQuery query;
+  ReachTest reach;
+  std::vector<std::array<CellNets, 4>> quarters;  // per level
+};
+
+/// Culls the cells of one patch of one instance, depth first.
+class PatchCulling {
+ public:
+  PatchCulling(const Scene& scene, const GaussMap& map, int instance, int root, int levels,
+               Tools& tools)
+      : content_(scene.content()),
+        instance_(instance),
+        placed_(content_.instances[std::size_t(instance)]),
+        nodes_(map.nodes(placed_.part)),
+        element_(content_.parts[std::size_t(placed_.part)]
+                     .elements[std::size_t(nodes_[std::size_t(root)].element)]),
+        finest_(levels),
+        nets_(element_),
+        tools_(tools) {
+    result_.levels.resize(std::size_t(levels) + 1);
+    if (map.developable(placed_.part, root)) {
+      ++at(0).visited;
+      ++at(0).ruled;
+      finish({}, CellState::ruled, {false, false});
+      return;
+    }
+    visit({}, root, nodes_[std::size_t(root)].bounds, nets_.root(), {true, true}, {});
+  }
+
+  PatchResult&& result() { return std::move(result_); }
+
+ private:
+  using Beacons = std::array<Beacon, 2>;  // for the normals and their opposites
+
+  CullingLevel& at(int level) { return result_.levels[std::size_t(level)]; }
+  dvec3 to_frame(const dvec3& n) const { return placed_.rotated ? placed_.rotation * n : n; }
+  dvec3 to_local(const dvec3& x) const {
+    const dvec3 moved = x - placed_.translation;
+    return placed_.rotated ? glm::transpose(placed_.rotation) * moved : moved;
+  }
+
+  void finish(const PatchCell& cell, CellState state, const ContactSigns& signs) {
+    result_.cells.push_back({instance_, element_.index, cell, state, signs});
+  }
+
+  /// `node`: the cell's node in the Gauss map, -1 below its leaves. `signs` are those that its
+  /// parent has left.
+  void visit(const PatchCell& cell, int node, const NormalBounds& bounds, const CellNets& nets,
+             const ContactSigns& signs, Beacons beacons) {
+    CullingLevel& count = at(cell.level);
+    ++count.visited;
+    ContactSigns left = {signs.plus && bounds.signs.plus, signs.minus && bounds.signs.minus};
+    if (!left.any()) {
+      ++count.off_by_curvature;
+      finish(cell, CellState::off, left);
+      return;
+    }
+    if (bounds.pyramid) {
+      const NormalPyramid& pyramid = *bounds.pyramid;
+      const bool may_be_on = bounds.definite && left.plus != left.minus && !touches_another(cell);
+      const double sign = left.plus ? 1 : -1;
+      Beacon& beacon = beacons[left.plus ? 0 : 1];
+      // Where the parent's support point is here, the proof needs no query.
+      const bool near = may_be_on && is_near(beacon, cell);
+      bool on = near && surely_on(pyramid, nets.points, cell, sign);
+      if (on) {
+        sample_middle(cell, sign);
+      } else {
+        if (left.plus) left.plus = !surely_off(pyramid, nets.points, cell, 1, beacons[0]);
+        if (left.minus) left.minus = !surely_off(pyramid, nets.points, cell, -1, beacons[1]);
+        if (!left.any()) {
+          ++count.off_by_samples;
+          finish(cell, CellState::off, left);
+          return;
+        }
+        on = may_be_on && !near && is_near(beacon, cell) &&
+             surely_on(pyramid, nets.points, cell, sign);
+      }
+      if (on) {
+        ++count.on;
+        finish(cell, CellState::on, left);
+        return;
+      }
+    }
+    ++count.kept;
+    if (cell.level == finest_) {
+      finish(cell, CellState::mixed, left);
+      return;
+    }
+    refine(cell, node, nets, left, beacons);
+  }
+
+  void refine(const PatchCell& cell, int node, const CellNets& nets, const ContactSigns& left,
+              const Beacons& beacons) {
+    const auto depth = std::size_t(cell.level);
+    if (tools_.quarters.size() <= depth) tools_.quarters.resize(std::size_t(finest_));
+    std::array<CellNets, 4>& quarters = tools_.quarters[depth];
+    nets_.quarter_points(nets.points, quarters);
+    const std::int32_t first = node < 0 ? -1 : nodes_[std::size_t(node)].first_child;
+    if (first < 0) {
+      // The first level below the map begins with the patch's normals.
+      nets_.quarter_normals(node < 0 ? nets.normals : nets_.normals(cell), quarters);
+    }
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const PatchCell child = cell.child(k);
+      if (first >= 0) {
+        const int next = first + int(k);
+        visit(child, next, nodes_[std::size_t(next)].bounds, quarters[k], left, beacons);
+      } else {
+        visit(child, -1, nets_.bounds(quarters[k], child.level), quarters[k], left, beacons);
+      }
+    }
+  }
+
+  /// Compares with the parent's sample, then with the cell's own, which takes its place.
+  bool surely_off(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
+                  const PatchCell& cell, double sign, Beacon& beacon) {
+    dvec4 highest(-std::numeric_limits<double>::infinity());
+    for (const dvec4& p : points) {
+      dvec4 h(glm::dot(dvec3(p), pyramid.corners[0]), glm::dot(dvec3(p), pyramid.corners[1]),
+              glm::dot(dvec3(p), pyramid.corners[2]), glm::dot(dvec3(p), pyramid.corners[3]));
+      h *= element_.rational ? sign / p.w : sign;
+      highest = glm::max(highest, h);
+    }
+    const auto is_above = [&](const dvec3& x) {
+      for (int k = 0; k < 4; ++k) {
+        const dvec3& n = pyramid.corners[std::size_t(k)];
+        // Rounding of the control points' values, of the sampled point and of its value.
+        const double error = 3 * content_.rounding * glm::length(n);
+        if (!(sign * glm::dot(x, n) > highest[k] + error)) return false;
+      }
+      return true;
+    };
+    if (beacon.known && is_above(beacon.local)) return true;
+    const dvec3 axis = sign * pyramid.axis;
+    const dvec3 n = to_frame(axis);
+    const Support s = tools_.query(n, hint(axis, cell, beacon));
+    ++result_.queries;
+    result_.samples.push_back({n, s.contact});
+    result_.frame_points.push_back(s.point);
+    beacon = {s.contact, to_local(s.point), true};
+    return is_above(beacon.local);
+  }
+
+  /// The cell's middle or the parent's contact, whichever is higher.
+  Contact hint(const dvec3& axis, const PatchCell& cell, const Beacon& beacon) const {
+    const Contact middle{instance_, SourceKind::face, element_.index,
+                         0.5 * (cell.u().lower + cell.u().upper),
+                         0.5 * (cell.v().lower + cell.v().upper)};
+    if (!beacon.known) return middle;
+    const double height = glm::dot(content_.local_point(middle), axis);
+    return height > glm::dot(beacon.local, axis) ? middle : beacon.contact;
+  }
+
+  /// The interval and some of its lengths on either side, within [0, 1].
+  static Interval grown(const Interval& t, int lengths) {
+    const double length = t.upper - t.lower;
+    return {std::max(0.0, t.lower - lengths * length), std::min(1.0, t.upper + lengths * length)};
+  }
+
+  /// A contact is on the cell or next to it.
+  bool is_near(const Beacon& beacon, const PatchCell& cell) const {
+    const Contact& c = beacon.contact;
+    if (!beacon.known || c.instance != instance_ || c.kind != SourceKind::face ||
+        c.element != element_.index) {
+      return false;
+    }
+    const Interval u = grown(cell.u(), 1);
+    const Interval v = grown(cell.v(), 1);
+    return c.u >= u.lower && c.u <= u.upper && c.v >= v.lower && c.v <= v.upper;
+  }
+
+  /// Other patches share a side of the cell, or all of a side is one point: nothing beyond it can
+  /// be proven to stay below.
+  bool touches_another(const PatchCell& cell) const {
+    const std::uint32_t last = (std::uint32_t{1} << cell.level) - 1;
+    const std::array<bool, 4> touches = {cell.i == 0, cell.i == last, cell.j == 0, cell.j == last};
+    for (const Side side : all_sides) {
+      const Border& border = patch().borders[std::size_t(side)];
+      if (touches[std::size_t(side)] &&
+          (border.neighbor >= 0 || border.kind == BorderKind::collapsed)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const Patch& patch() const {
+    return content_.model.parts()[std::size_t(placed_.part)].patches()[std::size_t(element_.index)];
+  }
+
+  /// A cell that is on has its own support points.
+  void sample_middle(const PatchCell& cell, double sign) {
+    const double u = 0.5 * (cell.u().lower + cell.u().upper);
+    const double v = 0.5 * (cell.v().lower + cell.v().upper);
+    const Contact middle{instance_, SourceKind::face, element_.index, u, v};
+    result_.samples.push_back({to_frame(sign * unit_normal(patch().bezier, u, v)), middle});
+    result_.frame_points.push_back(content_.frame_point(middle));
+  }
+
+  bool surely_on(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
+                 const PatchCell& cell, double sign) {
+    std::array<dvec3, 4> corners = pyramid.corners;
+    for (dvec3& n : corners) n *= sign;
+    const auto is_concave = [&](const std::vector<dvec4>& net) {
+      return second_form(element_.shape, element_.rational, net, points, corners,
+                         nets_.point_rounding())
+          .surely_negative();
+    };
+    PatchRegion region{instance_, element_.index, {0, 1}, {0, 1}};
+    bool concave = is_concave(nets_.root().points);
+    for (int k = widest_surrounding; !concave && k > 0; k /= 2) {
+      region.u = grown(cell.u(), k);
+      region.v = grown(cell.v(), k);
+      concave = is_concave(nets_.points(region.u, region.v));
+    }
+    if (!concave) return false;
+    for (dvec3& n : corners) n = to_frame(n);
+    return tools_.reach.surely_below(points_around(cell, region), corners, region, cell.level + 1);
+  }
+
+  /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
+  /// compared with; best is one between the cell and what is to be beaten.
+  std::vector<dvec3> points_around(const PatchCell& cell, const PatchRegion& region) const {
+    const double size = cell.u().upper - cell.u().lower;
+    const double u = 0.5 * (cell.u().lower + cell.u().upper);
+    const double v = 0.5 * (cell.v().lower + cell.v().upper);
+    std::vector<dvec3> points;
+    const auto add = [&](double x, double y) {
+      const Contact c{instance_, SourceKind::face, element_.index,
+                      std::clamp(x, region.u.lower, region.u.upper),
+                      std::clamp(y, region.v.lower, region.v.upper)};
+      points.push_back(content_.frame_point(c));
+    };
+    add(u, v);
+    for (const double radius : ring_radii) {
+      for (int k = 0; k < 9; ++k) {
+        if (k != 4) add(u + (k / 3 - 1) * radius * size, v + (k % 3 - 1) * radius * size);
+      }
+    }
+    return points;
+  }
+
+  const Scene::Content& content_;
+  int instance_;
+  const SceneInstance& placed_;
+  std::span<const GaussNode> nodes_;
+  const SceneElement& element_;
+  int finest_;
+  PatchNets nets_;
+  Tools& tools_;
+  PatchResult result_;
+};
+
+/// A patch of an instance.
+struct Place {
+  int instance;
+  int root;
+};
+
+void append(const PatchResult& from, Culling& to) {
+  to.support_queries += from.queries;
+  to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
+  to.frame_points.insert(to.frame_points.end(), from.frame_points.begin(), from.frame_points.end());
+  to.cells.insert(to.cells.end(), from.cells.begin(), from.cells.end());
+  for (std::size_t l = 0; l < from.levels.size(); ++l) {
+    CullingLevel& sum = to.levels[l];
+    const CullingLevel& more = from.levels[l];
+    sum.visited += more.visited;
+    sum.off_by_samples += more.off_by_samples;
+    sum.off_by_curvature += more.off_by_curvature;
+    sum.on += more.on;
+    sum.ruled += more.ruled;
+    sum.kept += more.kept;
+  }
+}
+
+void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
+  double removed = 0;
+  double decided = 0;
+  double cell = patches > 0 ? 1.0 / double(patches) : 0;
+  for (CullingLevel& level : levels) {
+    removed += cell * double(level.off_by_samples + level.off_by_curvature);
+    decided += cell * double(level.on + level.ruled);
+    level.removed_share = removed;
+    level.decided_share = removed + decided;
+    cell /= 4;
+  }
+}
+
+}  // namespace
+
+long Culling::visited() const {
+  long sum = 0;
+  for (const CullingLevel& level : levels) sum += level.visited;
+  return sum;
+}
+
+long Culling::mixed() const { return levels.empty() ? 0 : levels.back().kept; }
+
+Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& options) {
+  if (options.levels < 0 || options.levels > level_limit) {
+    throw InvalidInput("levels of culling must be 0 .. 20, not " + std::to_string(options.levels));
+  }
+  options.progress.update("cull", 0);
+  Culling result;
+  result.levels.resize(std::size_t(options.levels) + 1);
+  {
+    SupportQuery query(scene);
+    for (const dvec3& n : spread_over_sphere(spread_directions)) {
+      const Support s = query(n);
+      ++result.support_queries;
+      result.samples.push_back({n, s.contact});
+      result.frame_points.push_back(s.point);
+    }
+  }
+  const Scene::Content& content = scene.content();
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < content.instances.size(); ++i) {
+    const int roots = map.root_count(content.instances[i].part);
+    for (int root = 0; root < roots; ++root) places.push_back({int(i), root});
+  }
+  std::vector<PatchResult> results(places.size());
+  parallel_for(
+      places.size(), patches_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
+        Tools tools(scene);
+        for (std::size_t k = begin; k < end; ++k) {
+          options.progress.check();
+          results[k] =
+              PatchCulling(scene, map, places[k].instance, places[k].root, options.levels, tools)
+                  .result();
+        }
+      });
+  for (const PatchResult& patch : results) append(patch, result);
+  add_shares(places.size(), result.levels);
+  options.progress.update("cull", 1);
+  return result;
+}
+
+}  // namespace taut
