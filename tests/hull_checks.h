@@ -130,19 +130,9 @@ struct Known {
   double joined = 0;
 };
 
-/// All that a sampled hull promises. `tolerance` is a share of the diagonal; `rounding` one of the
-/// coordinates' size, for what the mesh may exceed the model by rounding.
-inline taut::Hull expect_sampled(const taut::Scene& scene, double tolerance, const Known& known,
-                                 const std::string& name, int directions = 1000) {
-  SCOPED_TRACE(name + " at " + std::to_string(tolerance));
-  taut::Hull hull;
-  try {
-    hull = taut::sampled_hull(
-        scene, {.tolerance = tolerance * scene.diagonal(), .threads = 1, .progress = {}});
-  } catch (const std::exception& error) {
-    ADD_FAILURE() << error.what();
-    return hull;
-  }
+/// All that a solid hull with a certificate promises. `tolerance` is a share of the diagonal.
+inline void expect_certified(const taut::Scene& scene, const taut::Hull& hull, double tolerance,
+                             const Known& known, int directions = 1000) {
   EXPECT_EQ(hull.kind, taut::HullKind::solid);
   EXPECT_GT(hull.distance_bound, 0);
   EXPECT_LE(hull.distance_bound, tolerance * scene.diagonal());
@@ -156,7 +146,7 @@ inline taut::Hull expect_sampled(const taut::Scene& scene, double tolerance, con
   EXPECT_TRUE(facts.strictly);
   EXPECT_TRUE(facts.no_zero_area);
   EXPECT_TRUE(facts.all_points_used);
-  if (!facts.is_convex_polytope()) return hull;
+  if (!facts.is_convex_polytope()) return;
 
   double size = 0;
   for (const dvec3& p : mesh.points) {
@@ -202,6 +192,21 @@ inline taut::Hull expect_sampled(const taut::Scene& scene, double tolerance, con
     // A(P + d B) = A + 2 M d + 4 pi d^2.
     EXPECT_GE(measured.area, known.area - 12.6 * scene.diagonal() * d - 12.6 * d * d);
   }
+}
+
+/// The same of the sampled hull, which it returns.
+inline taut::Hull expect_sampled(const taut::Scene& scene, double tolerance, const Known& known,
+                                 const std::string& name, int directions = 1000) {
+  SCOPED_TRACE(name + " at " + std::to_string(tolerance));
+  taut::Hull hull;
+  try {
+    hull = taut::sampled_hull(
+        scene, {.tolerance = tolerance * scene.diagonal(), .threads = 1, .progress = {}});
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << error.what();
+    return hull;
+  }
+  expect_certified(scene, hull, tolerance, known, directions);
   return hull;
 }
 

@@ -10,8 +10,8 @@
 namespace taut {
 namespace {
 
-/// Cells split before a test is given up. Those that succeed split 17 at most over all models of the
-/// tests.
+/// Cells split before a test is given up. Those that succeed split 17 at most over all models of
+/// the tests.
 constexpr int split_limit = 64;
 
 }  // namespace
@@ -21,7 +21,7 @@ class ReachTest::Search {
   explicit Search(const Scene::Content& scene) : scene_(scene) {}
 
   bool run(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
-           const PatchRegion& except, int finest) {
+           const PatchRectangle& except, int finest) {
     except_ = except;
     except_element_ = except.instance < 0
                           ? -1
@@ -196,7 +196,7 @@ class ReachTest::Search {
   std::vector<dvec4> limits_;  // of x . n by each of the points
   const ScenePart* part_ = nullptr;
   int instance_ = -1;
-  PatchRegion except_;
+  PatchRectangle except_;
   int except_element_ = -1;
   int finest_ = 0;
   int splits_ = 0;
@@ -208,7 +208,7 @@ ReachTest::ReachTest(const Scene& scene) : search_(std::make_unique<Search>(scen
 ReachTest::~ReachTest() = default;
 
 bool ReachTest::surely_below(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
-                             const PatchRegion& except, int finest) {
+                             const PatchRectangle& except, int finest) {
   return search_->run(points, corners, except, finest);
 }
 

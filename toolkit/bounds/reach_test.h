@@ -9,7 +9,7 @@
 namespace taut {
 
 /// A closed rectangle of a patch of one instance.
-struct PatchRegion {
+struct PatchRectangle {
   int instance = -1;
   int patch = -1;
   Interval u, v;
@@ -32,7 +32,7 @@ class ReachTest {
   /// Cells that would have to be smaller than 2^-finest of their patch are not tried: then the
   /// answer is false. @pre points are not empty
   bool surely_below(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
-                    const PatchRegion& except, int finest);
+                    const PatchRectangle& except, int finest);
 
  private:
   class Search;

@@ -229,7 +229,9 @@ Box moved(const Box& box, const RigidMotion& pose) {
   return result;
 }
 
-SceneFrame frame_of(const Box& box) {
+}  // namespace
+
+SceneFrame scene_frame(const Box& box) {
   const dvec3 half = 0.5 * box.upper - 0.5 * box.lower;
   const double size = std::max({half.x, half.y, half.z});
   int exponent = 0;
@@ -238,8 +240,6 @@ SceneFrame frame_of(const Box& box) {
   // 2^1023 is the largest power of two: below 2^-1023 the frame stays smaller than one.
   return {box.center(), std::ldexp(1.0, std::min(-exponent, 1023))};
 }
-
-}  // namespace
 
 BoxTree::BoxTree(std::span<const Box> boxes) {
   if (!boxes.empty()) BoxTreeBuilder(boxes, *this).build();
@@ -301,7 +301,7 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
   for (Box& box : boxes) {
     if (box.empty()) box = {control.center(), control.center()};
   }
-  c.frame = frame_of(control);
+  c.frame = scene_frame(control);
   for (const Part& part : c.model.parts()) {
     options.progress.check();
     c.parts.push_back(make_part(part, c.frame.scale, options.threads));

@@ -43,6 +43,9 @@ struct SceneFrame {
   double length_to_model(double length) const { return length / scale; }
 };
 
+/// The frame of a scene whose model has this control box (Model::control_box).
+SceneFrame scene_frame(const Box& control_box);
+
 struct SceneOptions {
   int threads = 0;
   Progress progress;

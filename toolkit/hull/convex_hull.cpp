@@ -14,12 +14,12 @@ Hull convex_hull(const Model& model, const HullOptions& options) {
   }
   if (model.polyhedral()) return polyhedral_hull(model, options);
   const Scene scene(model, {options.threads, options.progress});
-  return sampled_hull(scene, options);
+  return precise_hull(scene, options);
 }
 
 Hull convex_hull(const Scene& scene, const HullOptions& options) {
   return scene.model().polyhedral() ? polyhedral_hull(scene.model(), options)
-                                    : sampled_hull(scene, options);
+                                    : precise_hull(scene, options);
 }
 
 double tolerance_for(const HullOptions& options, double diagonal) {

@@ -33,6 +33,7 @@ struct HullStatistics {
   /// Cells of the CBVHs at the finest level of culling, and those that were kept.
   long cells = 0;
   long cells_kept = 0;
+  double seconds_gauss_map = 0;
   double seconds_sample = 0;
   double seconds_cull = 0;
   double seconds_trace = 0;
@@ -68,7 +69,7 @@ class HullNotConverged : public NotConverged {
 };
 
 /// Convex hull of a model: polyhedral_hull() where it is made of points and polygons alone,
-/// sampled_hull() otherwise. A model without geometry has the empty hull.
+/// precise_hull() otherwise. A model without geometry has the empty hull.
 /// @throws as these do
 Hull convex_hull(const Model& model, const HullOptions& options = {});
 /// The same of a scene that is there already.
@@ -90,6 +91,16 @@ Hull convex_hull(const Scene& scene, const HullOptions& options = {});
 /// face.
 /// @pre model.polyhedral() @throws InvalidInput if the tolerance is not valid, Cancelled
 Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
+
+/// Convex hull of a scene with its exact boundary (method `precise`): trimmed patches of the model,
+/// developable scrolls and flat facets in Hull::boundary, and a mesh of it.
+///
+/// The mesh is one as of sampled_hull(), with the same certificate, but its vertices lie on the
+/// boundary's curves too, and its faces are labelled by the boundary's faces. What of the boundary
+/// could not be resolved is listed there; the mesh is true all the same. A scene that is flat has
+/// no boundary: its hull is that of sampled_hull().
+/// @throws as sampled_hull()
+Hull precise_hull(const Scene& scene, const HullOptions& options = {});
 
 /// Convex hull of a scene as a polytope of points sampled on the model (method `sampled`).
 ///

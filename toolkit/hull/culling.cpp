@@ -272,7 +272,7 @@ class PatchCulling {
                          nets_.point_rounding())
           .surely_negative();
     };
-    PatchRegion region{instance_, element_.index, {0, 1}, {0, 1}};
+    PatchRectangle region{instance_, element_.index, {0, 1}, {0, 1}};
     bool concave = is_concave(nets_.root().points);
     for (int k = widest_surrounding; !concave && k > 0; k /= 2) {
       region.u = grown(cell.u(), k);
@@ -286,7 +286,7 @@ class PatchCulling {
 
   /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
   /// compared with; best is one between the cell and what is to be beaten.
-  std::vector<dvec3> points_around(const PatchCell& cell, const PatchRegion& region) const {
+  std::vector<dvec3> points_around(const PatchCell& cell, const PatchRectangle& region) const {
     const double size = cell.u().upper - cell.u().lower;
     const double u = 0.5 * (cell.u().lower + cell.u().upper);
     const double v = 0.5 * (cell.v().lower + cell.v().upper);

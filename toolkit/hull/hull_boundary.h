@@ -124,6 +124,8 @@ struct Unresolved {
 /// facets, joined by curves. Complete if nothing is unresolved; otherwise faces may be missing, and
 /// curves have -1 for those.
 struct HullBoundary {
+  /// The scene's frame, that of scene_frame() also where there is no scene.
+  SceneFrame frame;
   std::vector<SeparatingArc> arcs;
   std::vector<HullFace> faces;
   std::vector<HullCurve> curves;

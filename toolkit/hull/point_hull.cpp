@@ -180,6 +180,14 @@ bool PointHull::insert(const dvec3& p, int facet) {
   return true;
 }
 
+const std::vector<int>& PointHull::visible(const dvec3& p, int facet) {
+  visible_.clear();
+  if (side(facet, p) != Sign::positive) return visible_;
+  collect_visible(p, facet);
+  for (const int f : visible_) facets_[std::size_t(f)].alive = true;
+  return visible_;
+}
+
 void PointHull::add(std::span<const dvec3> points, const Progress& progress) {
   std::size_t first = points_.size();
   points_.insert(points_.end(), points.begin(), points.end());

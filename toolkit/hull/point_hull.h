@@ -41,6 +41,10 @@ class PointHull {
   /// not. @pre dimension() == 3, the facet is alive
   bool insert(const dvec3& point, int facet);
 
+  /// The facets that the point lies strictly above, where it lies so above this one; else none.
+  /// Until the hull is changed or asked again. @pre dimension() == 3, the facet is alive
+  const std::vector<int>& visible(const dvec3& point, int facet);
+
   /// Dimension of the points' affine hull: -1 without points, else 0 to 3. Exact.
   int dimension() const { return dimension_; }
   /// Points, by number, that span the affine hull: the first dimension() + 1.
@@ -54,7 +58,7 @@ class PointHull {
   int facet_count() const { return alive_; }
   /// The facets that the last insert() made, around the new point.
   const std::vector<int>& created() const { return created_; }
-  /// The facets that it took away; their places are free.
+  /// The facets that it took away, unless visible() was called since; their places are free.
   const std::vector<int>& replaced() const { return visible_; }
 
   /// The boundary with coplanar facets joined to convex polygons and with extreme points only, by

@@ -14,6 +14,7 @@
 #include "taut/hull/model_points.h"
 #include "taut/hull/outline.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/polyhedral_boundary.h"
 #include "taut/hull/polytope_mesh.h"
 
 namespace taut {
@@ -23,7 +24,8 @@ namespace {
 class PolyhedralHull {
  public:
   PolyhedralHull(const Model& model, const HullOptions& options)
-      : points_(model),
+      : model_(model),
+        points_(model),
         options_(options),
         width_(points_.product_scale() == 1 ? std::min(coordinate_rounding * points_.reach(),
                                                        spurious_share * points_.diagonal())
@@ -57,6 +59,7 @@ class PolyhedralHull {
     return point(corners_[std::size_t(v.idx())]);
   }
 
+  const Model& model_;
   ModelPoints points_;
   const HullOptions& options_;
   double width_;  ///< what is put down to rounding, scaled as the points are; zero: nothing
@@ -212,6 +215,8 @@ void PolyhedralHull::make_polytope(const PointHull& hull, const std::vector<int>
   finish(std::move(corners));
   if (original != nullptr) join_hull_faces();
   label_faces();
+  result_.boundary =
+      std::make_shared<const HullBoundary>(polyhedral_boundary(model_, result_.mesh));
 }
 
 dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f) const {

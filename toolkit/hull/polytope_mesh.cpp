@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/core/stopwatch.h"
+#include "taut/core/tolerances.h"
+
 namespace taut {
 namespace {
 
@@ -125,43 +128,67 @@ void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
   }
 }
 
-void label_faces(const SurfaceWalk& walk, const std::vector<Sample>& samples,
-                 const std::vector<int>& point_of, const std::vector<bool>& flat, HullMesh& mesh) {
-  const auto point_at = [&](auto v) { return point_of[std::size_t(v.idx())]; };
-  std::vector<bool> bridging(mesh.n_edges());
-  for (const auto e : mesh.edges()) {
-    const auto h = mesh.halfedge_handle(e, 0);
-    bridging[std::size_t(e.idx())] = !walk.runs_along_surface(point_at(mesh.from_vertex_handle(h)),
-                                                              point_at(mesh.to_vertex_handle(h)));
-  }
-  for (const auto f : mesh.faces()) {
+/// Reads kinds of faces off the samples at their corners.
+class GuessedLabels {
+ public:
+  GuessedLabels(const Scene& scene, const SampledPolytope& polytope, const HullMesh& mesh,
+                const std::vector<int>& point_of)
+      : samples_(polytope.samples),
+        mesh_(mesh),
+        point_of_(point_of),
+        walk_(scene, polytope.samples, polytope.hull,
+              *std::max_element(polytope.vertex_bounds.begin(), polytope.vertex_bounds.end())),
+        edges_(mesh.n_edges(), Edge::unknown) {}
+
+  FaceLabel operator()(OpenMesh::FaceHandle f, bool flat) {
     unsigned bridges = 0;
-    for (const auto e : mesh.fe_range(f)) bridges += bridging[std::size_t(e.idx())] ? 1 : 0;
+    for (const auto e : mesh_.fe_range(f)) bridges += bridging(e) ? 1 : 0;
     int common = -2;
     int first = -1;
-    for (const auto v : mesh.fv_range(f)) {
-      const int source = walk.face_source(samples[std::size_t(point_at(v))].contact);
+    for (const auto v : mesh_.fv_range(f)) {
+      const int source = walk_.face_source(samples_[std::size_t(point_at(v))].contact);
       if (first < 0) first = source;
       common = common == -2 || common == source ? source : -1;
     }
-    auto& data = mesh.data(f);
-    data.kind = flat[std::size_t(f.idx())] || bridges == mesh.valence(f) ? FaceKind::facet
-                : bridges == 0                                           ? FaceKind::patch
-                                                                         : FaceKind::scroll;
-    data.source = data.kind == FaceKind::patch ? (common >= 0 ? common : first) : common;
+    FaceLabel label;
+    label.kind = flat || bridges == mesh_.valence(f) ? FaceKind::facet
+                 : bridges == 0                      ? FaceKind::patch
+                                                     : FaceKind::scroll;
+    label.source = label.kind == FaceKind::patch && common < 0 ? first : common;
+    return label;
   }
-}
 
-/// Numbers the hull faces: connected mesh faces of one kind, patches of one source also; every
-/// facet is one of its own. Marks the edges between them.
-void number_hull_faces(HullMesh& mesh) {
+ private:
+  enum class Edge : unsigned char { unknown, along, bridging };
+
+  int point_at(OpenMesh::VertexHandle v) const { return point_of_[std::size_t(v.idx())]; }
+  bool bridging(OpenMesh::EdgeHandle e) {
+    Edge& edge = edges_[std::size_t(e.idx())];
+    if (edge == Edge::unknown) {
+      const auto h = mesh_.halfedge_handle(e, 0);
+      const bool along = walk_.runs_along_surface(point_at(mesh_.from_vertex_handle(h)),
+                                                  point_at(mesh_.to_vertex_handle(h)));
+      edge = along ? Edge::along : Edge::bridging;
+    }
+    return edge == Edge::bridging;
+  }
+
+  const std::vector<Sample>& samples_;
+  const HullMesh& mesh_;
+  const std::vector<int>& point_of_;
+  SurfaceWalk walk_;
+  std::vector<Edge> edges_;
+};
+
+/// Numbers the hull faces that are not known, from `count` on: connected mesh faces of one kind,
+/// patches of one source also; every facet is one of its own. Marks the edges between them.
+void number_hull_faces(HullMesh& mesh, int count) {
   const auto joined = [&](auto a, auto b) {
     const auto& x = mesh.data(a);
     const auto& y = mesh.data(b);
     return x.kind == y.kind && x.kind != FaceKind::facet &&
            (x.kind == FaceKind::scroll || x.source == y.source);
   };
-  int count = 0;
   std::vector<OpenMesh::FaceHandle> stack;
   for (const auto start : mesh.faces()) {
     if (mesh.data(start).hull_face >= 0) continue;
@@ -205,19 +232,42 @@ HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons poly
   return make_hull_mesh(vertices, polygons.loops);
 }
 
-HullMesh polytope_mesh(const Scene& scene, const PointHull& hull,
-                       const std::vector<Sample>& samples, const std::vector<double>& gaps,
-                       double flat_gap, const std::vector<double>& vertex_bounds) {
-  const PointHull::Polygons polygons = hull.merged_polygons();
-  std::vector<bool> flat;
-  for (const int f : polygons.facets) flat.push_back(gaps[std::size_t(f)] <= flat_gap);
+HullMesh polytope_mesh(const Scene& scene, const SampledPolytope& polytope,
+                       const KnownLabels& known) {
+  const PointHull::Polygons polygons = polytope.hull.merged_polygons();
   std::vector<int> point_of;  // per mesh vertex
-  HullMesh mesh = bare_mesh(hull, scene.frame().scale, polygons, point_of);
-  label_vertices(scene, samples, vertex_bounds, point_of, mesh);
-  const double bound = *std::max_element(vertex_bounds.begin(), vertex_bounds.end());
-  label_faces(SurfaceWalk(scene, samples, hull, bound), samples, point_of, flat, mesh);
-  number_hull_faces(mesh);
+  HullMesh mesh = bare_mesh(polytope.hull, scene.frame().scale, polygons, point_of);
+  label_vertices(scene, polytope.samples, polytope.vertex_bounds, point_of, mesh);
+  GuessedLabels guess(scene, polytope, mesh, point_of);
+  for (const auto f : mesh.faces()) {
+    const std::vector<int>& corners = polygons.loops[std::size_t(f.idx())];
+    std::optional<FaceLabel> label;
+    if (known.label) label = known.label(corners);
+    if (!label) {
+      const int facet = polygons.facets[std::size_t(f.idx())];
+      label = guess(f, polytope.gaps[std::size_t(facet)] <= flat_width);
+    }
+    auto& data = mesh.data(f);
+    data.kind = label->kind;
+    data.source = label->source;
+    data.hull_face = label->hull_face;
+  }
+  number_hull_faces(mesh, known.count);
   return mesh;
+}
+
+Hull polytope_hull(const Scene& scene, const HullOptions& options, const SampledPolytope& polytope,
+                   const KnownLabels& known) {
+  const Stopwatch time;
+  options.progress.update("mesh", 0);
+  Hull hull;
+  hull.kind = HullKind::solid;
+  hull.mesh = polytope_mesh(scene, polytope, known);
+  hull.distance_bound = polytope.distance_bound;
+  hull.statistics = polytope.statistics;
+  hull.statistics.seconds_mesh = time.seconds();
+  if (polytope.failure != nullptr) throw HullNotConverged(polytope.failure, std::move(hull));
+  return hull;
 }
 
 }  // namespace taut

@@ -1,3 +1,5 @@
+#include "taut/hull/precise_hull.h"
+
 #include <utility>
 
 #include "taut/core/stopwatch.h"
@@ -24,11 +26,12 @@ class Lap {
 
 }  // namespace
 
-HullBoundary hull_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                           HullStatistics& statistics) {
+HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
+                            HullStatistics& statistics) {
   Lap lap;
   options.progress.update("cull", 0);
-  const Culling culling = cull(scene, map, {.threads = options.threads, .progress = options.progress});
+  const Culling culling =
+      cull(scene, map, {.threads = options.threads, .progress = options.progress});
   statistics.cells = culling.visited();
   statistics.cells_kept = culling.mixed();
   statistics.seconds_cull += lap.seconds();
@@ -59,7 +62,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   const GaussMap map(scene, {.threads = options.threads, .progress = options.progress});
   statistics.seconds_gauss_map = lap.seconds();
   auto boundary =
-      std::make_shared<const HullBoundary>(hull_boundary(scene, map, options, statistics));
+      std::make_shared<const HullBoundary>(exact_boundary(scene, map, options, statistics));
   const auto add_to = [&](Hull& hull) {
     HullStatistics& s = hull.statistics;
     s.support_queries += statistics.support_queries + query.queries();

@@ -8,14 +8,6 @@
 namespace taut {
 namespace {
 
-/// Below which distances in the scene's frame mean nothing (tolerances.h).
-double width_of(const Scene& scene) {
-  const dvec3 reach = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
-  const double noise = flat_coordinate_width * (reach.x + reach.y + reach.z);
-  if (scene.diagonal() <= noise) return std::numeric_limits<double>::infinity();
-  return std::max(flat_width, std::min(noise * scene.frame().scale, flat_width_limit));
-}
-
 void add(const Scene& scene, SupportQuery& query, const std::vector<dvec3>& directions,
          double width, SampledStart& start) {
   for (const dvec3& n : directions) {
@@ -34,8 +26,15 @@ void add(const Scene& scene, SupportQuery& query, const std::vector<dvec3>& dire
 
 }  // namespace
 
+double meaningful_width(const Scene& scene) {
+  const dvec3 reach = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
+  const double noise = flat_coordinate_width * (reach.x + reach.y + reach.z);
+  if (scene.diagonal() <= noise) return std::numeric_limits<double>::infinity();
+  return std::max(flat_width, std::min(noise * scene.frame().scale, flat_width_limit));
+}
+
 SampledStart sampled_start(const Scene& scene, SupportQuery& query) {
-  const double width = width_of(scene);
+  const double width = meaningful_width(scene);
   SampledStart start;
   add(scene, query, directions_across({}), width, start);
   start.span = affine_span(start.frame_points, width);

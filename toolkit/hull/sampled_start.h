@@ -6,7 +6,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/affine_span.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sampled_polytope.h"
 
 namespace taut {
 
@@ -18,6 +18,9 @@ struct SampledStart {
   /// What the scene spans, by these; what is thinner than tolerances.h tells is flat.
   AffineSpan span;
 };
+
+/// Below which distances in the scene's frame mean nothing (tolerances.h).
+double meaningful_width(const Scene& scene);
 
 /// The support points of 26 directions: axes, and diagonals of faces and of space; and while they
 /// lie in a plane or on a line, those of the directions across it.

@@ -11,6 +11,7 @@
 #include "input.h"
 #include "output.h"
 #include "standard_input.h"
+#include "taut/hull/boundary_measures.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measures.h"
 #include "taut/io/formats.h"
@@ -84,10 +85,6 @@ struct Outcome {
   std::optional<HullNotConverged> failure;
 };
 
-Hull precise_hull(const Scene& scene, const HullOptions& options) {
-  return sampled_hull(scene, options);
-}
-
 Outcome compute(Input& input, const std::string& method, const HullOptions& options) {
   try {
     Hull hull = input.model().polyhedral() ? polyhedral_hull(input.model(), options)
@@ -108,6 +105,14 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
     exact.counts = {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
                     boundary.count(FaceKind::facet), int(boundary.curves.size()),
                     int(boundary.unresolved.size())};
+    if (input.model().polyhedral()) {
+      exact.measures = measure(polygons(hull.mesh));
+    } else if (boundary.unresolved.empty()) {
+      const BoundaryMeasures measures =
+          measure(input.scene(), ContactGeometry(input.scene()), boundary);
+      exact.measures = measures;
+      exact.mean_width = measures.mean_width;
+    }
   } else if (input.model().polyhedral() && method == "precise") {
     exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
     exact.measures = measure(polygons(hull.mesh));
@@ -132,7 +137,7 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   if (statistics.cells > 0) report.culling = {statistics.cells, statistics.cells_kept};
   report.queries = {statistics.support_queries, statistics.newton_iterations};
   report.seconds.read = input.seconds_read();
-  report.seconds.build = input.seconds_build();
+  report.seconds.build = input.seconds_build() + statistics.seconds_gauss_map;
   report.seconds.sample = statistics.seconds_sample;
   report.seconds.cull = statistics.seconds_cull;
   report.seconds.trace = statistics.seconds_trace;

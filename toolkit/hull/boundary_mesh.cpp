@@ -1,0 +1,116 @@
+#include "taut/hull/boundary_mesh.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "taut/core/stopwatch.h"
+#include "taut/hull/boundary_samples.h"
+#include "taut/hull/contact_faces.h"
+#include "taut/hull/kept_chords.h"
+#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sampled_start.h"
+
+namespace taut {
+namespace {
+
+/// Share of the tolerance within which samples on curves are one.
+constexpr double width_share = 1.0 / 32;
+
+/// Finds the hull face in which a face of the mesh lies.
+class BoundaryLabels {
+ public:
+  BoundaryLabels(const HullBoundary& boundary, std::vector<TouchedFaces> touched)
+      : boundary_(boundary), touched_(std::move(touched)) {}
+
+  std::optional<FaceLabel> operator()(std::span<const int> corners) const {
+    std::vector<Candidate> candidates;
+    for (const int corner : corners) {
+      for (const TouchedFace& f : touched_[std::size_t(corner)]) {
+        const auto same = [&](const Candidate& c) { return c.face == f.face; };
+        auto c = std::find_if(candidates.begin(), candidates.end(), same);
+        if (c == candidates.end()) c = candidates.insert(c, {f.face, 0, 0});
+        ++c->corners;
+        c->sides |= f.sides;
+      }
+    }
+    if (candidates.empty()) return std::nullopt;
+    const auto count = int(corners.size());
+    const Candidate& best = *std::max_element(
+        candidates.begin(), candidates.end(),
+        [&](const Candidate& a, const Candidate& b) { return rank(a, count) < rank(b, count); });
+    const bool complete = boundary_.unresolved.empty();
+    if (!complete && best.corners < count) return std::nullopt;
+    const HullFace& face = boundary_.faces[std::size_t(best.face)];
+    return FaceLabel{face.kind, face.source, best.face};
+  }
+
+ private:
+  struct Candidate {
+    int face;
+    int corners;
+    unsigned sides;
+  };
+
+  /// Corners all along one side of a scroll lie in the patch beside it; if one of several corners
+  /// is farther inside the patch beyond, they span the scroll.
+  std::tuple<int, int, int> rank(const Candidate& c, int count) const {
+    constexpr unsigned both_sides = 3;
+    const FaceKind kind = boundary_.faces[std::size_t(c.face)].kind;
+    int preference = 1;
+    if (kind == FaceKind::facet) preference = 3;
+    if (kind == FaceKind::scroll) {
+      preference = c.sides == both_sides || c.corners < count ? 2 : 0;
+    }
+    return {c.corners, preference, -c.face};
+  }
+
+  const HullBoundary& boundary_;
+  std::vector<TouchedFaces> touched_;  // per sample
+};
+
+}  // namespace
+
+Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
+                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options) {
+  const Stopwatch time;
+  const double tolerance = tolerance_for(options, scene.diagonal());
+  const ContactFaces faces(geometry, *boundary);
+  const double width =
+      std::max(width_share * tolerance, scene.frame().length_to_model(meaningful_width(scene)));
+  SupportQuery query(scene);
+  BoundarySamples start = boundary_samples(geometry, *boundary, faces, {tolerance, width}, query);
+  std::vector<dvec3> in_frame;
+  for (const dvec3& p : start.points) in_frame.push_back(scene.frame().to_frame(p));
+  if (in_frame.empty() || affine_span(in_frame, meaningful_width(scene)).dimension < 3) {
+    const SampledStart apart = sampled_start(scene, query);
+    for (std::size_t k = 0; k < apart.samples.size(); ++k) {
+      start.samples.push_back(apart.samples[k]);
+      start.points.push_back(apart.points[k]);
+      start.faces.push_back(faces.touched(apart.samples[k].contact));
+    }
+  }
+  KeptChords chords(geometry, *boundary, faces, start.chords, width);
+  SampledPolytope polytope =
+      sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);
+  polytope.statistics.support_queries += query.queries();
+  polytope.statistics.newton_iterations += query.newton_iterations();
+  for (std::size_t k = start.faces.size(); k < polytope.samples.size(); ++k) {
+    Sample& sample = polytope.samples[k];
+    sample.contact = geometry.canonical(sample.contact);
+    start.faces.push_back(faces.touched(sample.contact));
+    const auto on_curve = chords.inserted().find(int(k));
+    if (on_curve == chords.inserted().end()) continue;
+    for (const TouchedFace& f : on_curve->second) touch(start.faces.back(), f);
+  }
+  const BoundaryLabels labels(*boundary, std::move(start.faces));
+  polytope.statistics.seconds_sample = 0;
+  Hull hull = polytope_hull(scene, options, polytope, {labels, int(boundary->faces.size())});
+  hull.boundary = std::move(boundary);
+  hull.statistics.seconds_mesh = time.seconds();
+  return hull;
+}
+
+}  // namespace taut

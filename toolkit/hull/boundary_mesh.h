@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "taut/hull/contact_geometry.h"
+#include "taut/hull/convex_hull.h"
+
+namespace taut {
+
+/// The solid hull with this boundary, and the boundary's mesh within the tolerance: the convex hull
+/// of points on the boundary's curves and of support points, with its certificate.
+///
+/// Rulings are edges of the mesh. Its faces are labelled by the boundary: one belongs to the hull
+/// face in whose closure all its corners lie, among several to a facet, else to a scroll that it
+/// crosses, else to a patch; where there is none, to that in which most corners lie. Where the
+/// boundary is not complete, a face without any is labelled as by sampled_hull(), its hull face
+/// numbered after those of the boundary.
+/// @pre the boundary is the scene's, in its frame @throws as sampled_hull()
+Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
+                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options = {});
+
+}  // namespace taut

@@ -1,0 +1,448 @@
+#include "taut/hull/boundary_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "taut/hull/contact_system.h"
+
+namespace taut {
+namespace {
+
+/// A place on a sequence of points: in the interval behind one of them.
+struct Place {
+  std::size_t interval = 0;
+  double s = 0;
+};
+
+/// Divides a sequence of places so that the sagittas of all parts are alike and no larger than
+/// they may be. A chord's sagitta grows as its length squared, so it is the integral of the square
+/// root that is divided.
+class EvenDivision {
+ public:
+  /// Adds the next interval; `sagitta_root` is the square root of its sagitta.
+  void add(double sagitta_root) { sums_.push_back(sums_.back() + sagitta_root); }
+
+  std::vector<Place> places(double sagitta, int least_parts) const {
+    const double parts =
+        std::clamp(std::ceil(sums_.back() / std::sqrt(sagitta)), double(least_parts), most_parts);
+    std::vector<Place> result = {{0, 0}};
+    for (int k = 1; k < int(parts); ++k) {
+      const double at = sums_.back() * (k / parts);
+      const auto next = std::upper_bound(sums_.begin() + 1, sums_.end() - 1, at);
+      const double from = *(next - 1);
+      const double snap = snap_share * sums_.back() / parts;
+      double s = *next > from ? (at - from) / (*next - from) : 0;
+      if (at - from < snap) s = 0;
+      if (*next - at < snap) s = 1;
+      result.push_back({std::size_t(next - sums_.begin()) - 1, s});
+    }
+    result.push_back({sums_.size() - 2, 1});
+    return result;
+  }
+
+ private:
+  static constexpr double most_parts = 1e6;
+  /// Nearer than this share of a part to a place that is there, that one serves as well.
+  static constexpr double snap_share = 0.1;
+  std::vector<double> sums_ = {0};
+};
+
+double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
+  const dvec3 edge = b - a;
+  const double square = glm::dot(edge, edge);
+  const double t = square > 0 ? std::clamp(glm::dot(x - a, edge) / square, 0.0, 1.0) : 0;
+  return glm::distance(x, a + t * edge);
+}
+
+double sagitta(const Ruling& a, const Ruling& middle, const Ruling& b) {
+  return std::max(distance_to_segment(middle.point[0], a.point[0], b.point[0]),
+                  distance_to_segment(middle.point[1], a.point[1], b.point[1]));
+}
+
+double chord(const Ruling& a, const Ruling& b) {
+  return glm::distance(a.n, b.n) + glm::distance(a.point[0], b.point[0]) +
+         glm::distance(a.point[1], b.point[1]);
+}
+
+/// The square roots of the intervals' sagittas, from those of pairs of them; one interval alone
+/// by its middle.
+template <class T, class Middle>
+void add_intervals(const std::vector<T>& points, Middle middle, EvenDivision& division) {
+  const std::size_t count = points.size();
+  if (count == 2) {
+    division.add(std::sqrt(sagitta(points[0], middle(), points[1])));
+    return;
+  }
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k + 1 < count; ++k) lengths.push_back(chord(points[k], points[k + 1]));
+  std::vector<double> density(count, 0);
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    const double length = lengths[k - 1] + lengths[k];
+    if (!(length > 0)) continue;
+    density[k] = std::sqrt(sagitta(points[k - 1], points[k], points[k + 1])) / length;
+  }
+  density.front() = density[1];
+  density.back() = density[count - 2];
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    division.add(0.5 * (density[k] + density[k + 1]) * lengths[k]);
+  }
+}
+
+/// Calls visit with evenly spaced places on intervals of these lengths, the first after half a
+/// space: the interval and the share of it.
+template <class Visit>
+void visit_evenly(const std::vector<double>& lengths, double space, Visit visit) {
+  double to_next = 0.5 * space;
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    while (to_next < lengths[k]) {
+      visit(k, to_next / lengths[k]);
+      to_next += space;
+    }
+    to_next -= lengths[k];
+  }
+}
+
+/// Shares of the permitted gap (tried; more makes fewer points on curves, and more beside them):
+/// for sagittas of curves, and for the triangles beside them.
+constexpr double sagitta_share = 0.6;
+constexpr double gap_share = 0.8;
+
+/// Nearer to others than this share of its distance from its curve, a point beside the curve is
+/// not wanted: it might hide a chord (design: mesh).
+constexpr double clear_share = 0.6;
+
+/// Turns of the normal beyond which a step from a curve is no small one.
+constexpr double largest_step = 0.5;
+
+/// A Bezier border bends smoothly, its sagitta more so.
+constexpr int border_intervals = 32;
+
+class BoundarySampler {
+ public:
+  BoundarySampler(const ContactGeometry& geometry, const HullBoundary& boundary,
+                  const ContactFaces& faces, const SampleSpacing& spacing, SupportQuery& query)
+      : geometry_(geometry),
+        frame_(geometry.scene().frame()),
+        boundary_(boundary),
+        faces_(faces),
+        system_(geometry),
+        query_(query),
+        sagitta_(sagitta_share * spacing.gap * frame_.scale),
+        side_(std::sqrt(6 * gap_share * spacing.gap * frame_.scale)),
+        width_(spacing.width) {}
+
+  BoundarySamples run();
+
+ private:
+  void add(const dvec3& n, const Contact& contact, TouchedFaces touched);
+  void add_facet(int face);
+  void add_arc(int arc);
+  void add_run(int arc, int first, int count, int least_parts);
+  void add_ruling(const ArcPlace& place);
+  bool same_faces(int arc, std::size_t piece, std::size_t other) const;
+  bool samples_border(const PatchRegion& region, int face, const TrimStretch& stretch) const;
+  void add_border(const PatchRegion& region, const TrimStretch& stretch);
+  std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch) const;
+  Ruling border_place(const PatchRegion& region, Side side, double t) const;
+  void add_rows(int arc, int piece);
+  void add_border_row(const PatchRegion& region, const TrimStretch& stretch);
+  void add_beside(const ContactJet& jet, const dvec3& n, const dvec3& across, const Contact& hint);
+  BoundarySamples without_near_ones() const;
+
+  const ContactGeometry& geometry_;
+  SceneFrame frame_;
+  const HullBoundary& boundary_;
+  const ContactFaces& faces_;
+  ContactSystem system_;
+  SupportQuery& query_;
+  double sagitta_;  // in the scene's frame
+  double side_;     // of triangles inside patches: the root of its second fundamental form
+  double width_;
+  BoundarySamples all_;
+  std::vector<double> clear_;  // per sample: none before may be as near; in model units
+};
+
+void BoundarySampler::add(const dvec3& n, const Contact& contact, TouchedFaces touched) {
+  const Contact c = geometry_.canonical(contact);
+  if (c.kind != SourceKind::face) {
+    for (const TouchedFace& f : faces_.touched(c)) touch(touched, f);
+  }
+  all_.samples.push_back({n, c});
+  all_.points.push_back(frame_.to_model(geometry_.point(c)));
+  all_.faces.push_back(std::move(touched));
+  clear_.push_back(width_);
+}
+
+void BoundarySampler::add_facet(int face) {
+  const HullFace& f = boundary_.faces[std::size_t(face)];
+  for (const Contact& c : f.contacts) add(f.n, c, {{face, 0}});
+}
+
+void BoundarySampler::add_ruling(const ArcPlace& place) {
+  for (int i = 0; i < 2; ++i) {
+    add(place.ruling.n, place.ruling.contact[std::size_t(i)],
+        faces_.beside(place.arc, place.piece, i));
+  }
+}
+
+bool BoundarySampler::same_faces(int arc, std::size_t piece, std::size_t other) const {
+  const auto p = int(piece);
+  const auto q = int(other);
+  const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(arc)].pieces;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact& a = pieces[piece].rulings.front().contact[i];
+    const Contact& b = pieces[other].rulings.front().contact[i];
+    if (a.kind != b.kind || faces_.patch(arc, p, int(i)) != faces_.patch(arc, q, int(i))) {
+      return false;
+    }
+  }
+  return faces_.scroll(arc, p) == faces_.scroll(arc, q);
+}
+
+/// Divides the arc wherever the faces that it touches change.
+void BoundarySampler::add_arc(int arc) {
+  const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(arc)].pieces;
+  const bool closed = boundary_.arcs[std::size_t(arc)].closed;
+  std::size_t first = 0;
+  for (std::size_t next = 1; next <= pieces.size(); ++next) {
+    if (next < pieces.size() && same_faces(arc, first, next)) continue;
+    // A triangle at least where it would be nothing else.
+    const bool whole = closed && first == 0 && next == pieces.size();
+    add_run(arc, int(first), int(next - first), whole ? 3 : 1);
+    first = next;
+  }
+}
+
+void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
+  const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(arc)].pieces;
+  EvenDivision division;
+  std::vector<std::pair<int, std::size_t>> from;  // per interval: piece and ruling
+  for (int p = first; p < first + count; ++p) {
+    const std::vector<Ruling>& rulings = pieces[std::size_t(p)].rulings;
+    add_intervals(
+        rulings, [&] { return ruling_between(system_, rulings[0], rulings[1], 0.5); }, division);
+    for (std::size_t k = 0; k + 1 < rulings.size(); ++k) from.emplace_back(p, k);
+  }
+  const auto begin = int(all_.samples.size());
+  std::vector<ArcPlace> along;
+  for (const Place& place : division.places(sagitta_, least_parts)) {
+    const auto [piece, k] = from[place.interval];
+    const std::vector<Ruling>& rulings = pieces[std::size_t(piece)].rulings;
+    along.push_back({arc, piece, ruling_between(system_, rulings[k], rulings[k + 1], place.s)});
+    add_ruling(along.back());
+  }
+  for (std::size_t k = 0; k + 1 < along.size(); ++k) {
+    for (int i = 0; i < 2; ++i) {
+      const int a = begin + 2 * int(k) + i;
+      all_.chords.push_back({a, a + 2, i, along[k], along[k + 1]});
+    }
+  }
+}
+
+/// Whether the border is part of a curve that no rulings are sampled along, and not passed from
+/// its other side.
+bool BoundarySampler::samples_border(const PatchRegion& region, int face,
+                                     const TrimStretch& stretch) const {
+  if (stretch.arc >= 0 || stretch.curve < 0) return false;
+  const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
+  int patches = 0;
+  for (const int f : curve.faces) {
+    if (f < 0) continue;
+    const FaceKind kind = boundary_.faces[std::size_t(f)].kind;
+    if (kind == FaceKind::scroll) return false;
+    patches += kind == FaceKind::patch ? 1 : 0;
+  }
+  if (patches < 2) return true;
+  if (curve.faces[0] != curve.faces[1]) return face == curve.faces[0];
+  const Contact c = {region.instance, SourceKind::face, region.patch, 0, 0};
+  const Border& border =
+      geometry_.part(c).patches()[std::size_t(region.patch)].borders[std::size_t(stretch.side)];
+  return border.neighbor < 0 ||
+         std::pair(region.patch, stretch.side) <= std::pair(border.neighbor, border.neighbor_side);
+}
+
+/// As a ruling of length zero.
+Ruling BoundarySampler::border_place(const PatchRegion& region, Side side, double t) const {
+  const bool along_v = side == Side::u0 || side == Side::u1;
+  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  const Contact c = {region.instance, SourceKind::face, region.patch, along_v ? fixed : t,
+                     along_v ? t : fixed};
+  const BezierPatch& patch = geometry_.part(c).patches()[std::size_t(region.patch)].bezier;
+  const dvec3 n =
+      double(region.sign) * geometry_.to_frame(c.instance, unit_normal(patch, c.u, c.v));
+  const dvec3 x = geometry_.point(c);
+  return {n, {c, c}, {x, x}};
+}
+
+/// Enough to tell how a stretch bends.
+std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
+                                                   const TrimStretch& stretch) const {
+  std::vector<Ruling> places;
+  for (int k = 0; k <= border_intervals; ++k) {
+    const double t = Interval{stretch.from, stretch.to}.at(double(k) / border_intervals);
+    places.push_back(border_place(region, stretch.side, t));
+  }
+  return places;
+}
+
+void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& stretch) {
+  const std::vector<Ruling> places = border_places(region, stretch);
+  EvenDivision division;
+  add_intervals(
+      places, [&] { return places[0]; }, division);
+  const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
+  for (const Place& place : division.places(sagitta_, 1)) {
+    const double s = (double(place.interval) + place.s) / border_intervals;
+    const double at = Interval{stretch.from, stretch.to}.at(s);
+    const Ruling r = border_place(region, stretch.side, at);
+    TouchedFaces touched;
+    for (const int f : curve.faces) touch(touched, {f, 0});
+    add(r.n, r.contact[0], std::move(touched));
+  }
+}
+
+void BoundarySampler::add_border_row(const PatchRegion& region, const TrimStretch& stretch) {
+  const std::vector<Ruling> places = border_places(region, stretch);
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    const double form =
+        glm::dot(places[k + 1].n - places[k].n, places[k + 1].point[0] - places[k].point[0]);
+    lengths.push_back(std::sqrt(std::max(form, 0.0)));
+  }
+  visit_evenly(lengths, side_, [&](std::size_t k, double s) {
+    const double at = (double(k) + s) / border_intervals;
+    const double t = Interval{stretch.from, stretch.to}.at(at);
+    const Ruling r = border_place(region, stretch.side, t);
+    // With the region to the left in (u, v), it is so from outside if the normal is Su x Sv.
+    const dvec3 along = unit(places[k + 1].point[0] - places[k].point[0]);
+    const dvec3 across = double(region.sign) * unit(glm::cross(r.n, along));
+    add_beside(geometry_.jet(r.contact[0]), r.n, across, r.contact[0]);
+  });
+}
+
+/// In the order of a direction in which few points of a model lie side by side.
+BoundarySamples BoundarySampler::without_near_ones() const {
+  const dvec3 across = unit(dvec3(0.7548776662466927, 0.5698402909980532, 0.4301597090019468));
+  const std::size_t count = all_.points.size();
+  std::vector<double> height;
+  for (const dvec3& p : all_.points) height.push_back(glm::dot(across, p - frame_.center));
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return height[a] != height[b] ? height[a] < height[b] : a < b;
+  });
+  std::vector<std::size_t> place(count);
+  for (std::size_t k = 0; k < count; ++k) place[order[k]] = k;
+  BoundarySamples result;
+  std::vector<int> number(count, -1);  // in the result
+  std::vector<int> kept_as(count, -1);
+  for (std::size_t i = 0; i < count; ++i) {
+    int near = -1;
+    const auto look = [&](std::size_t other) {
+      if (std::abs(height[other] - height[i]) > clear_[i]) return false;
+      if (number[other] >= 0 && other < i &&
+          glm::distance(all_.points[other], all_.points[i]) <= clear_[i]) {
+        near = number[other];
+      }
+      return near < 0;
+    };
+    for (std::size_t k = place[i]; k > 0 && look(order[k - 1]); --k) continue;
+    for (std::size_t k = place[i] + 1; near < 0 && k < count && look(order[k]); ++k) continue;
+    if (near >= 0 && clear_[i] > width_) continue;
+    if (near >= 0) {
+      for (const TouchedFace& f : all_.faces[i]) touch(result.faces[std::size_t(near)], f);
+      kept_as[i] = near;
+      continue;
+    }
+    number[i] = int(result.samples.size());
+    kept_as[i] = number[i];
+    result.samples.push_back(all_.samples[i]);
+    result.points.push_back(all_.points[i]);
+    result.faces.push_back(all_.faces[i]);
+  }
+  for (CurveChord chord : all_.chords) {
+    chord.a = kept_as[std::size_t(chord.a)];
+    chord.b = kept_as[std::size_t(chord.b)];
+    if (chord.a != chord.b) result.chords.push_back(chord);
+  }
+  return result;
+}
+
+/// Adds the support point of the direction that lies across from a place on a patch's border or
+/// trim, so far that the point moves by the height of an equilateral triangle. The contact moves by
+/// -B^-1 r for r = (Su . across, Sv . across), and -r . B^-1 r is that step's form.
+void BoundarySampler::add_beside(const ContactJet& jet, const dvec3& n, const dvec3& across,
+                                 const Contact& hint) {
+  const double a = -glm::dot(jet.dxx, n);
+  const double b = -glm::dot(jet.dxy, n);
+  const double c = -glm::dot(jet.dyy, n);
+  const double det = a * c - b * b;
+  const dvec2 r(glm::dot(jet.dx[0], across), glm::dot(jet.dx[1], across));
+  const double form = (c * r.x * r.x - 2 * b * r.x * r.y + a * r.y * r.y) / det;
+  if (!(a > 0 && det > 0 && form > 0)) return;
+  const double step = std::sqrt(0.75 / form) * side_;
+  if (!(step < largest_step)) return;
+  const dvec3 beside = unit(n + step * across);
+  const Support s = query_(beside, hint);
+  const Contact contact = geometry_.canonical(s.contact);
+  all_.samples.push_back({beside, contact});
+  all_.points.push_back(frame_.to_model(s.point));
+  all_.faces.push_back(faces_.touched(contact));
+  clear_.push_back(clear_share * frame_.length_to_model(glm::distance(s.point, jet.x)));
+}
+
+void BoundarySampler::add_rows(int arc, int piece) {
+  const std::vector<Ruling>& rulings =
+      boundary_.arcs[std::size_t(arc)].pieces[std::size_t(piece)].rulings;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (rulings.front().contact[i].kind != SourceKind::face) continue;
+    std::vector<double> lengths;
+    for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+      const double form =
+          glm::dot(rulings[k + 1].n - rulings[k].n, rulings[k + 1].point[i] - rulings[k].point[i]);
+      lengths.push_back(std::sqrt(std::max(form, 0.0)));
+    }
+    visit_evenly(lengths, side_, [&](std::size_t k, double s) {
+      const Ruling r = ruling_between(system_, rulings[k], rulings[k + 1], s);
+      const dvec3 across = unit(r.point[i] - r.point[1 - i]);
+      add_beside(geometry_.jet(r.contact[i]), r.n, across, r.contact[i]);
+    });
+  }
+}
+
+BoundarySamples BoundarySampler::run() {
+  for (int f = 0; f < int(boundary_.faces.size()); ++f) add_facet(f);
+  for (int a = 0; a < int(boundary_.arcs.size()); ++a) add_arc(a);
+  const auto for_each_border = [&](auto visit) {
+    for (int f = 0; f < int(boundary_.faces.size()); ++f) {
+      for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
+        for (const std::vector<TrimStretch>& loop : region.loops) {
+          for (const TrimStretch& stretch : loop) visit(f, region, stretch);
+        }
+      }
+    }
+  };
+  for_each_border([&](int f, const PatchRegion& region, const TrimStretch& stretch) {
+    if (samples_border(region, f, stretch)) add_border(region, stretch);
+  });
+  for (int a = 0; a < int(boundary_.arcs.size()); ++a) {
+    const int pieces = int(boundary_.arcs[std::size_t(a)].pieces.size());
+    for (int p = 0; p < pieces; ++p) add_rows(a, p);
+  }
+  for_each_border([&](int, const PatchRegion& region, const TrimStretch& stretch) {
+    if (stretch.arc < 0 && stretch.curve >= 0) add_border_row(region, stretch);
+  });
+  return without_near_ones();
+}
+
+}  // namespace
+
+BoundarySamples boundary_samples(const ContactGeometry& geometry, const HullBoundary& boundary,
+                                 const ContactFaces& faces, const SampleSpacing& spacing,
+                                 SupportQuery& query) {
+  return BoundarySampler(geometry, boundary, faces, spacing, query).run();
+}
+
+}  // namespace taut

@@ -1,0 +1,247 @@
+#include "taut/hull/contact_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace taut {
+namespace {
+
+bool along_v(Side side) { return side == Side::u0 || side == Side::u1; }
+
+/// The place on a side where its free parameter is t.
+dvec2 on_side(Side side, double t) {
+  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  return along_v(side) ? dvec2(fixed, t) : dvec2(t, fixed);
+}
+
+bool lies_on(const dvec2& uv, Side side) {
+  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  return (along_v(side) ? uv.x : uv.y) == fixed;
+}
+
+double distance_to_segment(const dvec2& x, const dvec2& a, const dvec2& b) {
+  const dvec2 edge = b - a;
+  const double square = glm::dot(edge, edge);
+  const double t = square > 0 ? std::clamp(glm::dot(x - a, edge) / square, 0.0, 1.0) : 0;
+  return glm::distance(x, a + t * edge);
+}
+
+/// Distance from the outline, negative outside: where an odd number of sides crosses the ray
+/// towards growing v, it is inside.
+double depth(const std::vector<std::vector<dvec2>>& outline, const dvec2& x) {
+  bool inside = false;
+  double distance = std::numeric_limits<double>::infinity();
+  for (const std::vector<dvec2>& loop : outline) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const dvec2& a = loop[k];
+      const dvec2& b = loop[(k + 1) % loop.size()];
+      distance = std::min(distance, distance_to_segment(x, a, b));
+      if ((a.x > x.x) == (b.x > x.x)) continue;
+      const double v = a.y + (x.x - a.x) / (b.x - a.x) * (b.y - a.y);
+      if (v > x.y) inside = !inside;
+    }
+  }
+  return inside ? distance : -distance;
+}
+
+}  // namespace
+
+void touch(TouchedFaces& faces, const TouchedFace& face) {
+  if (face.face < 0) return;
+  const auto place =
+      std::lower_bound(faces.begin(), faces.end(), face.face,
+                       [](const TouchedFace& a, int number) { return a.face < number; });
+  if (place != faces.end() && place->face == face.face) {
+    place->sides |= face.sides;
+  } else {
+    faces.insert(place, face);
+  }
+}
+
+ContactFaces::ContactFaces(const ContactGeometry& geometry, const HullBoundary& boundary)
+    : geometry_(geometry), boundary_(boundary) {
+  add_arcs();
+  add_regions();
+  add_facets();
+  std::stable_sort(regions_.begin(), regions_.end(), [](const Region& a, const Region& b) {
+    return std::tie(a.instance, a.patch) < std::tie(b.instance, b.patch);
+  });
+  std::stable_sort(stretches_.begin(), stretches_.end(), [](const Stretch& a, const Stretch& b) {
+    return std::tie(a.instance, a.piece) < std::tie(b.instance, b.piece);
+  });
+  std::stable_sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) {
+    return std::tie(a.instance, a.vertex) < std::tie(b.instance, b.vertex);
+  });
+}
+
+void ContactFaces::add_corner(const Contact& contact, const TouchedFace& face) {
+  if (face.face < 0 || contact.instance < 0) return;
+  const Contact c = geometry_.canonical(contact);
+  if (c.kind == SourceKind::vertex) corners_.push_back({c.instance, c.element, face});
+}
+
+void ContactFaces::add_arcs() {
+  for (const SeparatingArc& arc : boundary_.arcs) {
+    scrolls_.emplace_back(arc.pieces.size(), -1);
+    trims_.emplace_back(arc.pieces.size(), std::array<int, 2>{-1, -1});
+  }
+  for (int f = 0; f < int(boundary_.faces.size()); ++f) {
+    const ArcRange& range = boundary_.faces[std::size_t(f)].scroll;
+    if (range.arc < 0) continue;
+    const SeparatingArc& arc = boundary_.arcs[std::size_t(range.arc)];
+    for (int k = 0; k < range.count; ++k) {
+      const std::size_t piece = std::size_t(range.first + k) % arc.pieces.size();
+      scrolls_[std::size_t(range.arc)][piece] = f;
+      const std::vector<Ruling>& rulings = arc.pieces[piece].rulings;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const TouchedFace own = {f, 1U << i};
+        add_corner(rulings.front().contact[i], own);
+        add_corner(rulings.back().contact[i], own);
+        const Contact& c = rulings.front().contact[i];
+        if (c.kind != SourceKind::edge) continue;
+        const auto [low, high] = std::minmax_element(
+            rulings.begin(), rulings.end(),
+            [i](const Ruling& a, const Ruling& b) { return a.contact[i].u < b.contact[i].u; });
+        stretches_.push_back({c.instance, c.element, low->contact[i].u, high->contact[i].u, own});
+      }
+    }
+  }
+}
+
+void ContactFaces::add_facets() {
+  for (int f = 0; f < int(boundary_.faces.size()); ++f) {
+    for (const Contact& c : boundary_.faces[std::size_t(f)].contacts) add_corner(c, {f, 0});
+  }
+}
+
+void ContactFaces::add_border(const PatchRegion& region, int face, const TrimStretch& stretch) {
+  const auto contact = [&](double t) {
+    const dvec2 uv = on_side(stretch.side, t);
+    return Contact{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+  };
+  std::vector<int> faces = {face};
+  if (stretch.curve >= 0) {
+    for (const int f : boundary_.curves[std::size_t(stretch.curve)].faces) faces.push_back(f);
+  }
+  const Patch& patch = geometry_.part(contact(0)).patches()[std::size_t(region.patch)];
+  const Border& border = patch.borders[std::size_t(stretch.side)];
+  for (const int f : faces) {
+    if (f < 0) continue;
+    add_corner(contact(stretch.from), {f, 0});
+    add_corner(contact(stretch.to), {f, 0});
+    if (border.kind != BorderKind::edge || border.piece < 0) continue;
+    const auto [low, high] = std::minmax(stretch.from, stretch.to);
+    const bool reversed = border.piece_reversed;
+    stretches_.push_back({region.instance,
+                          border.piece,
+                          reversed ? 1 - high : low,
+                          reversed ? 1 - low : high,
+                          {f, 0}});
+  }
+}
+
+void ContactFaces::add_to_outline(const PatchRegion& region, const TrimStretch& stretch,
+                                  std::vector<dvec2>& outline) const {
+  if (stretch.arc < 0) {
+    outline.push_back(on_side(stretch.side, stretch.from));
+    outline.push_back(on_side(stretch.side, stretch.to));
+    return;
+  }
+  const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
+  const std::vector<Ruling>& rulings = arc.pieces[std::size_t(stretch.piece)].rulings;
+  for (std::size_t k = 0; k < rulings.size(); ++k) {
+    const Ruling& r = rulings[stretch.reversed ? rulings.size() - 1 - k : k];
+    const Contact& c = r.contact[std::size_t(stretch.contact)];
+    if (c.kind == SourceKind::face && c.element == region.patch) outline.emplace_back(c.u, c.v);
+  }
+}
+
+void ContactFaces::add_regions() {
+  for (int f = 0; f < int(boundary_.faces.size()); ++f) {
+    for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
+      Region own = {region.instance, region.patch, f, {}};
+      for (const std::vector<TrimStretch>& loop : region.loops) {
+        own.outline.emplace_back();
+        for (const TrimStretch& stretch : loop) {
+          add_to_outline(region, stretch, own.outline.back());
+          if (stretch.arc < 0) {
+            add_border(region, f, stretch);
+          } else {
+            trims_[std::size_t(stretch.arc)][std::size_t(stretch.piece)]
+                  [std::size_t(stretch.contact)] = f;
+          }
+        }
+      }
+      regions_.push_back(std::move(own));
+    }
+  }
+}
+
+TouchedFaces ContactFaces::beside(int arc, int piece, int contact) const {
+  TouchedFaces faces;
+  touch(faces, {scroll(arc, piece), 1U << unsigned(contact)});
+  touch(faces, {patch(arc, piece, contact), 0});
+  return faces;
+}
+
+void ContactFaces::touch_regions(int instance, int patch, const dvec2& uv, bool inside_only,
+                                 TouchedFaces& faces) const {
+  const auto place = std::pair(instance, patch);
+  const auto before = [](const Region& r) { return std::pair(r.instance, r.patch); };
+  auto region = std::lower_bound(regions_.begin(), regions_.end(), place,
+                                 [&](const Region& r, const auto& p) { return before(r) < p; });
+  int best = -1;
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (; region != regions_.end() && before(*region) == place; ++region) {
+    const auto next = region + 1;
+    const bool alone = best < 0 && (next == regions_.end() || before(*next) != place);
+    const double d = alone && !inside_only ? 0 : depth(region->outline, uv);
+    if (!(d > deepest)) continue;
+    deepest = d;
+    best = region->face;
+  }
+  if (best >= 0 && (deepest >= 0 || !inside_only)) touch(faces, {best, 0});
+}
+
+TouchedFaces ContactFaces::on_patch(const Contact& c) const {
+  TouchedFaces faces;
+  const std::vector<Patch>& patches = geometry_.part(c).patches();
+  const dvec2 uv(c.u, c.v);
+  for (const Side side : all_sides) {
+    const Border& border = patches[std::size_t(c.element)].borders[std::size_t(side)];
+    if (!lies_on(uv, side) || border.kind != BorderKind::smooth || border.neighbor < 0) continue;
+    const double t = along_v(side) ? c.v : c.u;
+    touch_regions(c.instance, border.neighbor,
+                  on_side(border.neighbor_side, border.reversed ? 1 - t : t), true, faces);
+  }
+  touch_regions(c.instance, c.element, uv, !faces.empty(), faces);
+  return faces;
+}
+
+TouchedFaces ContactFaces::touched(const Contact& contact) const {
+  if (contact.instance < 0) return {};
+  const Contact c = geometry_.canonical(contact);
+  if (c.kind == SourceKind::face) return on_patch(c);
+  TouchedFaces faces;
+  const auto place = std::pair(c.instance, c.element);
+  if (c.kind == SourceKind::edge) {
+    auto s = std::lower_bound(
+        stretches_.begin(), stretches_.end(), place,
+        [](const Stretch& a, const auto& p) { return std::pair(a.instance, a.piece) < p; });
+    for (; s != stretches_.end() && std::pair(s->instance, s->piece) == place; ++s) {
+      if (s->from <= c.u && c.u <= s->to) touch(faces, s->face);
+    }
+  } else {
+    auto s = std::lower_bound(
+        corners_.begin(), corners_.end(), place,
+        [](const Corner& a, const auto& p) { return std::pair(a.instance, a.vertex) < p; });
+    for (; s != corners_.end() && std::pair(s->instance, s->vertex) == place; ++s) {
+      touch(faces, s->face);
+    }
+  }
+  return faces;
+}
+
+}  // namespace taut

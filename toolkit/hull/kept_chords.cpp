@@ -1,0 +1,70 @@
+#include "taut/hull/kept_chords.h"
+
+#include <algorithm>
+
+namespace taut {
+
+KeptChords::KeptChords(const ContactGeometry& geometry, const HullBoundary& boundary,
+                       const ContactFaces& faces, const std::vector<CurveChord>& chords,
+                       double least)
+    : geometry_(geometry),
+      boundary_(boundary),
+      faces_(faces),
+      system_(geometry),
+      least_(least * geometry.scene().frame().scale) {
+  for (const CurveChord& chord : chords) add(chord);
+}
+
+void KeptChords::add(const CurveChord& chord) {
+  chords_.emplace(std::minmax(chord.a, chord.b), chord);
+}
+
+/// Across pieces, where one of them ends, unless that is one of the chord's ends already.
+ArcPlace KeptChords::middle_of(const CurveChord& chord) const {
+  const ArcPlace& from = chord.from;
+  const ArcPlace& to = chord.to;
+  const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(from.arc)].pieces;
+  const auto near = [&](const Ruling& a, const Ruling& b) {
+    const auto i = std::size_t(chord.contact);
+    return glm::distance(a.point[i], b.point[i]) <= least_;
+  };
+  const auto bisected = [&](int piece, const Ruling& a, const Ruling& b) {
+    return ArcPlace{from.arc, piece, ruling_between(system_, a, b, 0.5)};
+  };
+  for (int p = from.piece; p < to.piece; ++p) {
+    const Ruling& end = pieces[std::size_t(p)].rulings.back();
+    if (near(end, from.ruling)) continue;
+    if (!near(end, to.ruling)) return {from.arc, p, end};
+    const bool begins_here = p == from.piece;
+    return bisected(p, begins_here ? from.ruling : pieces[std::size_t(p)].rulings.front(), end);
+  }
+  const bool begins_here = from.piece == to.piece;
+  return bisected(to.piece,
+                  begins_here ? from.ruling : pieces[std::size_t(to.piece)].rulings.front(),
+                  to.ruling);
+}
+
+std::optional<KeptEdges::Middle> KeptChords::middle(int a, int b) const {
+  const auto found = chords_.find(std::minmax(a, b));
+  if (found == chords_.end()) return std::nullopt;
+  const CurveChord& chord = found->second;
+  const auto i = std::size_t(chord.contact);
+  if (glm::distance(chord.from.ruling.point[i], chord.to.ruling.point[i]) <= least_) {
+    return std::nullopt;
+  }
+  const Ruling r = middle_of(chord).ruling;
+  const Contact c = geometry_.canonical(r.contact[i]);
+  return Middle{{r.n, c}, geometry_.scene().frame().to_model(geometry_.point(c))};
+}
+
+void KeptChords::bisect(int a, int b, int middle) {
+  const auto found = chords_.find(std::minmax(a, b));
+  const CurveChord chord = found->second;
+  chords_.erase(found);
+  const ArcPlace at = middle_of(chord);
+  add({chord.a, middle, chord.contact, chord.from, at});
+  add({middle, chord.b, chord.contact, at, chord.to});
+  inserted_.emplace(middle, faces_.beside(at.arc, at.piece, chord.contact));
+}
+
+}  // namespace taut

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "taut/bounds/scene.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/point_hull.h"
+
+namespace taut {
+
+/// A point sampled on the hull: the direction that it supports, and where it lies on the model.
+struct Sample {
+  dvec3 n;
+  Contact contact;
+};
+
+/// Edges of a polytope that are to stay, like chords of curves, whole or bisected.
+class KeptEdges {
+ public:
+  struct Middle {
+    Sample sample;
+    dvec3 point;  ///< in model coordinates
+  };
+
+  virtual ~KeptEdges() = default;
+  /// A point of the hull between two points, by number, if these are the ends of such an edge.
+  virtual std::optional<Middle> middle(int a, int b) const = 0;
+  /// It was inserted, with this number.
+  virtual void bisect(int a, int b, int middle) = 0;
+};
+
+/// The convex hull of support points of a scene, with the certificate of its distance from the
+/// scene's hull (certificate.h).
+struct SampledPolytope {
+  /// Its points are model coordinates times the scene's scale, a power of two, so that its
+  /// decisions hold for the coordinates as stored and never leave the range of doubles.
+  PointHull hull;
+  std::vector<Sample> samples;  ///< per point of the hull
+  /// Per facet place, in the scene's frame: how far the model reaches above the facet's corners.
+  std::vector<double> gaps;
+  /// Per point, in model units: what the gaps about it bound the distance by.
+  std::vector<double> vertex_bounds;
+  /// Proven bound of the distance from the scene's hull, in model units, rounding included.
+  double distance_bound = 0;
+  /// Why the tolerance is not reached, if so.
+  const char* failure = nullptr;
+  HullStatistics statistics;
+};
+
+/// Grows the hull of samples by support points, until its distance from the scene's hull is
+/// certified to be within the tolerance (in model units). The samples keep their numbers. Before a
+/// point hides an edge that is to stay, the edge's middle is inserted.
+/// @pre the points, per sample in model coordinates, span space @throws Cancelled
+SampledPolytope sampled_polytope(const Scene& scene, const HullOptions& options, double tolerance,
+                                 std::vector<Sample> samples, const std::vector<dvec3>& points,
+                                 KeptEdges* kept = nullptr);
+
+}  // namespace taut
