@@ -23,6 +23,9 @@ constexpr std::size_t patches_per_direction = 8;
 constexpr int coarsest_directions = 1;
 constexpr int finest_directions = 5;
 
+/// A pyramid that is this many cells of the spread samples wide needs no query of its own.
+constexpr double dense_samples = 4;
+
 /// Patches of a task; each task makes its own queries.
 constexpr std::size_t patches_per_task = 8;
 
@@ -78,6 +81,12 @@ class SpreadSamples {
   const std::vector<dvec3>& points() const { return points_; }
   /// Index of the sample whose cell holds the direction.
   std::size_t nearest(const dvec3& n) const { return DirectionCell::of(n, level_).index(); }
+  /// The pyramid is so wide that its axis has a sample that is as good as its own.
+  bool is_dense_in(const NormalPyramid& pyramid) const {
+    const double width = std::min(glm::distance(pyramid.corners[0], pyramid.corners[2]),
+                                  glm::distance(pyramid.corners[1], pyramid.corners[3]));
+    return width > dense_samples * std::ldexp(2.0, -level_);
+  }
 
  private:
   static constexpr std::size_t directions_per_task = 64;
@@ -240,6 +249,10 @@ class PatchCulling {
     const std::size_t near = spread_.nearest(n);
     const Beacon nearest{spread_.samples()[near].contact, to_local(spread_.points()[near]), true};
     if (is_above(nearest.local)) return true;
+    if (spread_.is_dense_in(pyramid)) {
+      beacon = nearest;
+      return false;
+    }
     const Support s = tools_.query(n, hint(axis, cell, {beacon, nearest}));
     ++result_.queries;
     result_.samples.push_back({n, s.contact});
