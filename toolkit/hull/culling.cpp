@@ -122,6 +122,7 @@ class PatchCulling {
         spread_(spread),
         instance_(instance),
         placed_(content_.instances[std::size_t(instance)]),
+        back_(glm::inverse(placed_.rotation)),
         nodes_(map.nodes(placed_.part)),
         element_(content_.parts[std::size_t(placed_.part)]
                      .elements[std::size_t(nodes_[std::size_t(root)].element)]),
@@ -144,10 +145,12 @@ class PatchCulling {
   using Beacons = std::array<Beacon, 2>;  // for the normals and their opposites
 
   CullingLevel& at(int level) { return result_.levels[std::size_t(level)]; }
-  dvec3 to_frame(const dvec3& n) const { return placed_.rotated ? placed_.rotation * n : n; }
+  /// Normals and points go by the inverse and its transpose: rotations are orthogonal only within
+  /// rotation_tolerance.
+  dvec3 to_frame(const dvec3& n) const { return placed_.rotated ? glm::transpose(back_) * n : n; }
   dvec3 to_local(const dvec3& x) const {
     const dvec3 moved = x - placed_.translation;
-    return placed_.rotated ? glm::transpose(placed_.rotation) * moved : moved;
+    return placed_.rotated ? back_ * moved : moved;
   }
 
   void finish(const PatchCell& cell, CellState state, const ContactSigns& signs) {
@@ -245,7 +248,7 @@ class PatchCulling {
     };
     if (beacon.known && is_above(beacon.local)) return true;
     const dvec3 axis = sign * pyramid.axis;
-    const dvec3 n = to_frame(axis);
+    const dvec3 n = unit(to_frame(axis));
     const std::size_t near = spread_.nearest(n);
     const Beacon nearest{spread_.samples()[near].contact, to_local(spread_.points()[near]), true};
     if (is_above(nearest.local)) return true;
@@ -317,7 +320,7 @@ class PatchCulling {
     const double u = 0.5 * (cell.u().lower + cell.u().upper);
     const double v = 0.5 * (cell.v().lower + cell.v().upper);
     const Contact middle{instance_, SourceKind::face, element_.index, u, v};
-    result_.samples.push_back({to_frame(sign * unit_normal(patch().bezier, u, v)), middle});
+    result_.samples.push_back({unit(to_frame(sign * unit_normal(patch().bezier, u, v))), middle});
     result_.frame_points.push_back(content_.frame_point(middle));
   }
 
@@ -368,6 +371,7 @@ class PatchCulling {
   const SpreadSamples& spread_;
   int instance_;
   const SceneInstance& placed_;
+  dmat3 back_;
   std::span<const GaussNode> nodes_;
   const SceneElement& element_;
   int finest_;
