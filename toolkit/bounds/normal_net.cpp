@@ -97,7 +97,7 @@ NormalNet polynomial_net(const BezierPatch& patch, const std::vector<dvec3>& x) 
   net.rounding_bound = 2 * 1.75 * (p * (q + 1) + 12) * rounding_unit * longest_u * longest_v;
   // A control point that was turned or moved is off by a few units of its size.
   double size = 0;
-  for (const dvec3& point : x) size = std::max(size, glm::length(point));
+  for (const dvec3& c : x) size = std::max(size, glm::length(c));
   net.rounding_bound += 2 * stored_rounding * size * (longest_u + longest_v);
   return net;
 }
