@@ -257,6 +257,25 @@ TEST(Cull, InstancesCullEachOther) {
   EXPECT_GE(culling.removed_share(), 0.4);
 }
 
+/// Enough patches that the spread samples are dense and stand for queries.
+TEST(Cull, ManyInstances) {
+  Random random(10);
+  Model model = make_model(teapot());
+  model.clear_instances();
+  for (int k = 0; k < 120; ++k) {
+    model.add_instance(0, {random_rotation(random), 12.0 * random_point(random)});
+  }
+  const Scene scene(model);
+  const Culling culling = culled(scene, 4);
+  expect_consistent(scene, culling, "many");
+  const Verdict truth = check(scene, culling, 10000);
+  expect_true(truth, "many");
+  EXPECT_GE(truth.inside, 3000);
+  EXPECT_GE(culling.removed_share(), 0.98);
+  EXPECT_LE(culling.support_queries, culling.visited() / 4);
+  expect_same(culling, culled(scene, 4, 3));
+}
+
 TEST(Cull, TellsSamplesOfAllKinds) {
   const Shape shape = sphere() + Shape{{}, {circle({0, 0, 2}, {1, 0, 0}, {0, 1, 0})}, {{0, 5, 0}}};
   const Scene scene = make_scene(shape);

@@ -8,6 +8,10 @@
 namespace taut {
 namespace {
 
+/// Of a control point that was turned, moved or multiplied by its weight, as a share of its size:
+/// three products and sums.
+constexpr double stored_rounding = 4 * rounding_unit;
+
 std::vector<double> binomials(int n) {
   std::vector<double> result = {1};
   for (int k = 1; k <= n; ++k) result.push_back(std::round(result.back() * (n - k + 1) / k));
@@ -91,6 +95,10 @@ NormalNet polynomial_net(const BezierPatch& patch, const std::vector<dvec3>& x) 
   // each difference, two of each binomial factor and three of the cross product's components, by
   // a factor of sqrt(3) for their length; twice that for good measure.
   net.rounding_bound = 2 * 1.75 * (p * (q + 1) + 12) * rounding_unit * longest_u * longest_v;
+  // A control point that was turned or moved is off by a few units of its size.
+  double size = 0;
+  for (const dvec3& c : x) size = std::max(size, glm::length(c));
+  net.rounding_bound += 2 * stored_rounding * size * (longest_u + longest_v);
   return net;
 }
 
@@ -147,9 +155,12 @@ NormalNet rational_net(const BezierPatch& patch, const std::vector<dvec4>& x) {
     weight = std::max(weight, point.w);
   }
   // Each is a mean of triple products, whose three terms are at most weight reach^2: the roundings
-  // of two sums of up to p q terms, of the products and of the binomial factors, and one of the
-  // control points, which were moved; twice that for good measure.
+  // of two sums of up to p q terms, of the products and of the binomial factors; twice that for
+  // good measure.
   net.rounding_bound = 2 * 1.75 * 3 * (2 * p * q + 24) * rounding_unit * weight * reach * reach;
+  double size = 0;
+  for (const dvec4& point : patch.points) size = std::max(size, glm::length(dvec3(point)));
+  net.rounding_bound += 6 * stored_rounding * size * weight * reach;
   return net;
 }
 

@@ -13,7 +13,8 @@ namespace taut {
 struct NormalNet {
   NetShape shape;
   std::vector<dvec3> vectors;  ///< v within u
-  /// No vector is farther than this from the exact one.
+  /// No vector is farther than this from the exact one, also where control points are off by the
+  /// rounding of a motion.
   double rounding_bound = 0;
 };
 

@@ -17,8 +17,14 @@ namespace {
 
 constexpr int level_limit = 20;
 
-/// Directions sampled whatever the patches are like.
-constexpr int spread_directions = 48;
+/// The sphere is sampled at one direction for some patches, between 24 and 6144 in all: the more
+/// patches there are, the more of them lie under the samples and need no queries of their own.
+constexpr std::size_t patches_per_direction = 8;
+constexpr int coarsest_directions = 1;
+constexpr int finest_directions = 5;
+
+/// A pyramid that is this many cells of the spread samples wide needs no query of its own.
+constexpr double dense_samples = 4;
 
 /// Patches of a task; each task makes its own queries.
 constexpr std::size_t patches_per_task = 8;
@@ -32,23 +38,62 @@ constexpr int widest_surrounding = 8;
 /// Distances of the points that stand for a cell, in its sizes.
 constexpr std::array<double, 2> ring_radii = {0.5, 2};
 
-/// Points of a spiral over the sphere, at golden angles.
-std::vector<dvec3> spread_over_sphere(int count) {
-  const double golden_angle = std::acos(-1.0) * (3 - std::sqrt(5.0));
-  std::vector<dvec3> result;
-  for (int k = 0; k < count; ++k) {
-    const double z = 1 - (2 * k + 1.0) / count;
-    const double r = std::sqrt(1 - z * z);
-    result.emplace_back(r * std::cos(golden_angle * k), r * std::sin(golden_angle * k), z);
-  }
-  return result;
-}
-
 /// A sampled point that a cell is compared with.
 struct Beacon {
   Contact contact;
   dvec3 local;  ///< in the part's frame
   bool known = false;
+};
+
+/// Support points of directions spread over the sphere, one for each of its cells.
+class SpreadSamples {
+ public:
+  SpreadSamples(const Scene& scene, std::size_t patches, const CullingOptions& options)
+      : level_(coarsest_directions) {
+    while (level_ < finest_directions &&
+           (std::size_t(6) << (2 * (level_ + 1))) * patches_per_direction <= patches) {
+      ++level_;
+    }
+    const std::uint32_t side = std::uint32_t{1} << level_;
+    samples_.resize(6 * std::size_t(side) * side);
+    points_.resize(samples_.size());
+    std::vector<DirectionCell> cells;
+    for (int face = 0; face < 6; ++face) {
+      for (std::uint32_t i = 0; i < side; ++i) {
+        for (std::uint32_t j = 0; j < side; ++j) cells.push_back({face, level_, i, j});
+      }
+    }
+    parallel_for(cells.size(), directions_per_task, options.threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   options.progress.check();
+                   SupportQuery query(scene);
+                   for (std::size_t k = begin; k < end; ++k) {
+                     const auto c = cells[k].corners();
+                     const dvec3 n = unit(c[0] + c[1] + c[2] + c[3]);
+                     const Support s = query(n);
+                     samples_[cells[k].index()] = {n, s.contact};
+                     points_[cells[k].index()] = s.point;
+                   }
+                 });
+  }
+
+  const std::vector<Sample>& samples() const { return samples_; }
+  const std::vector<dvec3>& points() const { return points_; }
+  /// Index of the sample whose cell holds the direction.
+  std::size_t nearest(const dvec3& n) const { return DirectionCell::of(n, level_).index(); }
+  /// The pyramid is so wide that its axis has a sample that is as good as its own.
+  bool is_dense_in(const NormalPyramid& pyramid) const {
+    const double width = std::min(glm::distance(pyramid.corners[0], pyramid.corners[2]),
+                                  glm::distance(pyramid.corners[1], pyramid.corners[3]));
+    return width > dense_samples * std::ldexp(2.0, -level_);
+  }
+
+ private:
+  static constexpr std::size_t directions_per_task = 64;
+
+  int level_;
+  std::vector<Sample> samples_;
+  std::vector<dvec3> points_;
 };
 
 /// What one patch of one instance contributes to the result.
@@ -71,11 +116,13 @@ struct Tools {
 /// Culls the cells of one patch of one instance, depth first.
 class PatchCulling {
  public:
-  PatchCulling(const Scene& scene, const GaussMap& map, int instance, int root, int levels,
-               Tools& tools)
+  PatchCulling(const Scene& scene, const GaussMap& map, const SpreadSamples& spread, int instance,
+               int root, int levels, Tools& tools)
       : content_(scene.content()),
+        spread_(spread),
         instance_(instance),
         placed_(content_.instances[std::size_t(instance)]),
+        back_(glm::inverse(placed_.rotation)),
         nodes_(map.nodes(placed_.part)),
         element_(content_.parts[std::size_t(placed_.part)]
                      .elements[std::size_t(nodes_[std::size_t(root)].element)]),
@@ -98,10 +145,12 @@ class PatchCulling {
   using Beacons = std::array<Beacon, 2>;  // for the normals and their opposites
 
   CullingLevel& at(int level) { return result_.levels[std::size_t(level)]; }
-  dvec3 to_frame(const dvec3& n) const { return placed_.rotated ? placed_.rotation * n : n; }
+  /// Normals and points go by the inverse and its transpose: rotations are orthogonal only within
+  /// rotation_tolerance.
+  dvec3 to_frame(const dvec3& n) const { return placed_.rotated ? glm::transpose(back_) * n : n; }
   dvec3 to_local(const dvec3& x) const {
     const dvec3 moved = x - placed_.translation;
-    return placed_.rotated ? glm::transpose(placed_.rotation) * moved : moved;
+    return placed_.rotated ? back_ * moved : moved;
   }
 
   void finish(const PatchCell& cell, CellState state, const ContactSigns& signs) {
@@ -177,7 +226,8 @@ class PatchCulling {
     }
   }
 
-  /// Compares with the parent's sample, then with the cell's own, which takes its place.
+  /// Compares with the parent's sample, with the nearest of the spread ones, then with the cell's
+  /// own, which takes the parent's place.
   bool surely_off(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
                   const PatchCell& cell, double sign, Beacon& beacon) {
     dvec4 highest(-std::numeric_limits<double>::infinity());
@@ -198,8 +248,15 @@ class PatchCulling {
     };
     if (beacon.known && is_above(beacon.local)) return true;
     const dvec3 axis = sign * pyramid.axis;
-    const dvec3 n = to_frame(axis);
-    const Support s = tools_.query(n, hint(axis, cell, beacon));
+    const dvec3 n = unit(to_frame(axis));
+    const std::size_t near = spread_.nearest(n);
+    const Beacon nearest{spread_.samples()[near].contact, to_local(spread_.points()[near]), true};
+    if (is_above(nearest.local)) return true;
+    if (spread_.is_dense_in(pyramid)) {
+      beacon = nearest;
+      return false;
+    }
+    const Support s = tools_.query(n, hint(axis, cell, {beacon, nearest}));
     ++result_.queries;
     result_.samples.push_back({n, s.contact});
     result_.frame_points.push_back(s.point);
@@ -207,14 +264,18 @@ class PatchCulling {
     return is_above(beacon.local);
   }
 
-  /// The cell's middle or the parent's contact, whichever is higher.
-  Contact hint(const dvec3& axis, const PatchCell& cell, const Beacon& beacon) const {
-    const Contact middle{instance_, SourceKind::face, element_.index,
-                         0.5 * (cell.u().lower + cell.u().upper),
-                         0.5 * (cell.v().lower + cell.v().upper)};
-    if (!beacon.known) return middle;
-    const double height = glm::dot(content_.local_point(middle), axis);
-    return height > glm::dot(beacon.local, axis) ? middle : beacon.contact;
+  /// The cell's middle or one of the contacts known, whichever is highest.
+  Contact hint(const dvec3& axis, const PatchCell& cell,
+               const std::array<Beacon, 2>& beacons) const {
+    Contact best{instance_, SourceKind::face, element_.index,
+                 0.5 * (cell.u().lower + cell.u().upper), 0.5 * (cell.v().lower + cell.v().upper)};
+    double highest = glm::dot(content_.local_point(best), axis);
+    for (const Beacon& beacon : beacons) {
+      if (!beacon.known || glm::dot(beacon.local, axis) <= highest) continue;
+      best = beacon.contact;
+      highest = glm::dot(beacon.local, axis);
+    }
+    return best;
   }
 
   /// The interval and some of its lengths on either side, within [0, 1].
@@ -259,7 +320,7 @@ class PatchCulling {
     const double u = 0.5 * (cell.u().lower + cell.u().upper);
     const double v = 0.5 * (cell.v().lower + cell.v().upper);
     const Contact middle{instance_, SourceKind::face, element_.index, u, v};
-    result_.samples.push_back({to_frame(sign * unit_normal(patch().bezier, u, v)), middle});
+    result_.samples.push_back({unit(to_frame(sign * unit_normal(patch().bezier, u, v))), middle});
     result_.frame_points.push_back(content_.frame_point(middle));
   }
 
@@ -307,8 +368,10 @@ class PatchCulling {
   }
 
   const Scene::Content& content_;
+  const SpreadSamples& spread_;
   int instance_;
   const SceneInstance& placed_;
+  dmat3 back_;
   std::span<const GaussNode> nodes_;
   const SceneElement& element_;
   int finest_;
@@ -370,32 +433,27 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   options.progress.update("cull", 0);
   Culling result;
   result.levels.resize(std::size_t(options.levels) + 1);
-  {
-    SupportQuery query(scene);
-    for (const dvec3& n : spread_over_sphere(spread_directions)) {
-      const Support s = query(n);
-      ++result.support_queries;
-      result.samples.push_back({n, s.contact});
-      result.frame_points.push_back(s.point);
-    }
-  }
   const Scene::Content& content = scene.content();
   std::vector<Place> places;
   for (std::size_t i = 0; i < content.instances.size(); ++i) {
     const int roots = map.root_count(content.instances[i].part);
     for (int root = 0; root < roots; ++root) places.push_back({int(i), root});
   }
+  const SpreadSamples spread(scene, places.size(), options);
+  result.samples = spread.samples();
+  result.frame_points = spread.points();
+  result.support_queries = long(spread.samples().size());
   std::vector<PatchResult> results(places.size());
-  parallel_for(
-      places.size(), patches_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
-        Tools tools(scene);
-        for (std::size_t k = begin; k < end; ++k) {
-          options.progress.check();
-          results[k] =
-              PatchCulling(scene, map, places[k].instance, places[k].root, options.levels, tools)
-                  .result();
-        }
-      });
+  parallel_for(places.size(), patches_per_task, options.threads,
+               [&](std::size_t begin, std::size_t end) {
+                 Tools tools(scene);
+                 for (std::size_t k = begin; k < end; ++k) {
+                   options.progress.check();
+                   results[k] = PatchCulling(scene, map, spread, places[k].instance, places[k].root,
+                                             options.levels, tools)
+                                    .result();
+                 }
+               });
   for (const PatchResult& patch : results) append(patch, result);
   add_shares(places.size(), result.levels);
   options.progress.update("cull", 1);

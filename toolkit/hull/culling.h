@@ -66,8 +66,9 @@ struct Culling {
 ///
 /// A cell is off for one of its two normals n if the highest of its control points is lower than
 /// one sampled point of the model in all directions of its normal pyramid: then no tangent plane of
-/// it supports the model. The samples are the support points of the pyramid's axis and its
-/// parent's. A cell is off, too, where curvature alone forbids it.
+/// it supports the model. The samples are the support points of the pyramid's axis, of its
+/// parent's, and of the nearest of the spread directions. A cell is off, too, where curvature alone
+/// forbids it.
 ///
 /// A cell X is on if, for the normals n in its pyramid, the second derivatives of S . n are
 /// negative definite over a rectangle R around X (the whole patch where possible), and a point p

@@ -106,6 +106,27 @@ void cull_cells(benchmark::State& state) {
 }
 BENCHMARK(cull_cells)->DenseRange(3, 5)->Unit(benchmark::kMillisecond);
 
+/// Argument: the number of teapots, in random poses.
+void cull_instances(benchmark::State& state) {
+  Model model = teapot();
+  model.clear_instances();
+  const auto axes = random_directions(3 * std::size_t(state.range(0)), 3);
+  for (std::size_t k = 0; k < axes.size(); k += 3) {
+    const dvec3 a = axes[k];
+    const dvec3 b = unit(glm::cross(a, axes[k + 1]));
+    model.add_instance(0, {dmat3(a, b, glm::cross(a, b)), 30.0 * axes[k + 2]});
+  }
+  const Scene scene(model, {.threads = 1, .progress = {}});
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  Culling culling;
+  for (auto _ : state) culling = cull(scene, map, {.threads = 1, .progress = {}});
+  state.counters["visited"] = double(culling.visited());
+  state.counters["mixed"] = double(culling.mixed());
+  state.counters["queries"] = double(culling.support_queries);
+  state.counters["removed"] = culling.removed_share();
+}
+BENCHMARK(cull_instances)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
+
 /// Argument: the decimal exponent of the Coons tolerance relative to the patch.
 void build_cbvh(benchmark::State& state) {
   const BezierPatch patch = teapot().parts()[0].patches()[0].bezier;
