@@ -359,6 +359,7 @@ class BoundaryCheck {
       }
     }
     const bool on_hull = gap < supports;
+    if (winding != 0 && !near && !strictly_convex(jet, n)) ++facts_.flat;
     if (near || (!on_hull && gap < undecided) || (on_hull && !strictly_convex(jet, n))) {
       ++facts_.undecided;
     } else if (winding != (on_hull ? 1 : 0)) {
@@ -433,8 +434,9 @@ std::ostream& operator<<(std::ostream& out, const BoundaryFacts& f) {
       << ", tie " << f.tie << ", support " << f.support << " at ";
   vector(f.worst_support) << "; missed " << f.misses << " of " << f.directions << " as ";
   vector(f.missed) << ", overshoot " << f.overshoot << "; mismatches " << f.mismatches << " of "
-                   << f.points << " (" << f.undecided << " undecided) as patch "
-                   << f.mismatch.element << " (" << f.mismatch.u << ", " << f.mismatch.v << ")";
+                   << f.points << " (" << f.undecided << " undecided, " << f.flat
+                   << " flat) as patch " << f.mismatch.element << " (" << f.mismatch.u << ", "
+                   << f.mismatch.v << ")";
   return out;
 }
 

@@ -46,6 +46,7 @@ struct BoundaryFacts {
   int undecided = 0;   ///< of these: too near to an outline, or to supporting, to tell
   int mismatches = 0;  ///< points that support strictly outside of all regions or not inside of one
   taut::Contact mismatch;
+  int flat = 0;  ///< points of regions at which the surface does not bend strictly away
   /// @}
 
   /// Nothing is wrong, to within these shares of the scene's size.
@@ -53,7 +54,7 @@ struct BoundaryFacts {
     return open_curves == 0 && misplaced == 0 && bare_scrolls == 0 && loop_gap <= gap &&
            region_gap <= gap && euler == 2 && point <= residual && stationary <= residual &&
            tie <= residual && support <= residual && misses == 0 && overshoot <= residual &&
-           mismatches == 0;
+           mismatches == 0 && flat == 0;
   }
 };
 

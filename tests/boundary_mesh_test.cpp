@@ -360,6 +360,14 @@ TEST(BoundaryChecks, WholeEllipsoidIsSound) {
   EXPECT_TRUE(facts.sound()) << facts;
 }
 
+TEST(BoundaryChecks, FindFlatPatches) {
+  const Scene scene = make_scene(solid_cylinder(1, 2));
+  const ContactGeometry geometry(scene);
+  Hull hull;
+  hull.boundary = whole_surface(geometry, scene.frame().to_frame({0, 0, 1}), 4);
+  EXPECT_GT(boundary_facts(scene, hull, 300).flat, 0);
+}
+
 TEST(BoundaryChecks, FindWhatIsWrong) {
   const Scene scene = make_scene(two_spheres(1, 0.5, 2));
   const TwoSpheres spheres(scene, 1, 0.5, 2);
