@@ -100,7 +100,8 @@ class ContactSystem {
 /// The ruling of a piece of a separating curve between two neighbouring rulings, exact to rounding:
 /// at s it is the one in the plane, across the chord from `from` to `to` in the space of
 /// (n, point 0, point 1), that divides the chord in the ratio s. Smooth in s; s = 0 and 1 give the
-/// two themselves, and a little outside of [0, 1] it goes on. Where they merge into a free end (a ruling of length zero) it is interpolated.
+/// two themselves, and a little outside of [0, 1] it goes on. Where they merge into a free end (a
+/// ruling of length zero) it is interpolated.
 /// @pre the two have the same elements
 Ruling ruling_between(const ContactSystem& system, const Ruling& from, const Ruling& to, double s);
 

@@ -71,6 +71,7 @@ class Stitcher {
  public:
   Stitcher(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph)
       : geometry_(geometry), query_(query), graph_(std::move(graph)) {
+    boundary_.frame = geometry.scene().frame();
     boundary_.unresolved = graph_.unresolved;
   }
 
@@ -427,8 +428,13 @@ void Stitcher::make_joins() {
     const TrimRegion& r = regions_[std::size_t(stretches_[k].region)];
     const TrimRegion& other = regions_[std::size_t(stretches_[std::size_t(twin_[k])].region)];
     if (left >= right || source_of(r) == source_of(other)) continue;
-    elements.push_back(
-        {left, right, -1, border_polyline(r, stretch(stretches_[k])), int(k), twin_[k]});
+    CurveElement e;
+    e.left = left;
+    e.right = right;
+    e.points = border_polyline(r, stretch(stretches_[k]));
+    e.stretch_left = int(k);
+    e.stretch_right = twin_[k];
+    elements.push_back(std::move(e));
   }
   chain(HullCurveKind::join, std::move(elements));
 }

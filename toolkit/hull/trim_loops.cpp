@@ -38,8 +38,8 @@ struct Sheet {
 
 dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
 
-/// Position around the unit square, counter-clockwise from (0, 0), in [0, 4); that of a corner if it
-/// is there to within same_parameter.
+/// Position around the unit square, counter-clockwise from (0, 0), in [0, 4); that of a corner if
+/// it is there to within same_parameter.
 double position(const dvec2& p) {
   const std::array<double, 4> off = {p.y, 1 - p.x, 1 - p.y, p.x};
   const auto side = std::min_element(off.begin(), off.end()) - off.begin();
