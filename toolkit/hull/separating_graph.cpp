@@ -18,6 +18,8 @@ constexpr double same_branch = 1e-6;
 constexpr double narrow = 1e-9;
 /// Share of its motion by which a contact may miss the first order of it.
 constexpr double first_order = 0.3;
+/// Cosine below which two directions are too far apart for a great arc between them.
+constexpr double nearly_opposite = -0.9;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 constexpr int secant_limit = 60;
@@ -160,6 +162,12 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     } else {
       fail(a.n, "two contacts that are not joined are not parted either");
     }
+    return;
+  }
+  if (glm::dot(a.n, b.n) < nearly_opposite) {  // no great arc to speak of
+    const Sighting aside = seen(tangent_frame(a.n)[0], a.contact);
+    part(a, aside, depth + 1);
+    part(aside, b, depth + 1);
     return;
   }
   const std::optional<CommonSupport> seed = parting(a, b);
