@@ -158,7 +158,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
 
 /// Finds and traces the curves that the great arc between two sightings crosses.
 void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
-  if (joined(a, b)) return;
+  if (graph_.unresolved.size() >= failure_limit || joined(a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
     // Two samples on the curve itself.
     CommonSupport tie;
