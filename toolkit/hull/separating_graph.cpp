@@ -394,7 +394,8 @@ void GraphTracer::trace(const CommonSupport& seed) {
     // It begins in the middle of a piece.
     if (arc.pieces.size() > 1 &&
         same_elements(arc.pieces.back().rulings.back(), arc.pieces.front().rulings.front())) {
-      std::vector<ArcPiece> first(1, std::move(arc.pieces.front()));
+      std::vector<ArcPiece> first;
+      first.push_back(std::move(arc.pieces.front()));
       arc.pieces.erase(arc.pieces.begin());
       append(arc.pieces, std::move(first));
     }
