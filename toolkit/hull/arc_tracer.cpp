@@ -556,6 +556,11 @@ Trace::Pace Trace::advance() {
                                      glm::dot(turned->x[1], tangent_.x[1])
                                : 0;
   if (cosine < turn_limit || distance_to(*next) > (1 + correction_limit) * step_) {
+    // The nearer the contacts are to merging, the worse the system is conditioned.
+    const bool approach = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) < 0;
+    if (approach && glm::length(at_.d()) < 2 * merge_distance && merge()) {
+      return ended(TracedArc::End::merged);
+    }
     return shorter("a separating curve cannot be followed");
   }
   if (const auto [contact, side] = pole_crossed(*next); contact >= 0) {
