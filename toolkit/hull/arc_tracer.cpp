@@ -34,6 +34,8 @@ constexpr int step_limit = 4000;
 constexpr double least_angle = 1e-3;
 /// Cosine by which the limit of the direction may miss its extrapolation.
 constexpr double least_cosine = 0.99;
+/// Steps below this share of the distance between two contacts are stuck.
+constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.
 constexpr double least_distance = 1e-5;
 /// Changes of elements without progress after which the curve is lost.
@@ -557,8 +559,9 @@ Trace::Pace Trace::advance() {
                                : 0;
   if (cosine < turn_limit || distance_to(*next) > (1 + correction_limit) * step_) {
     // The nearer the contacts are to merging, the worse the system is conditioned.
+    const double apart = glm::length(at_.d());
     const bool approach = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) < 0;
-    if (approach && glm::length(at_.d()) < 2 * merge_distance && merge()) {
+    if (approach && apart < 2 * merge_distance && step_ < stuck_share * apart && merge()) {
       return ended(TracedArc::End::merged);
     }
     return shorter("a separating curve cannot be followed");
