@@ -34,6 +34,10 @@ constexpr int step_limit = 4000;
 constexpr double least_angle = 1e-3;
 /// Cosine by which the limit of the direction may miss its extrapolation.
 constexpr double least_cosine = 0.99;
+/// Rate of the distance of two contacts of one surface or curve that merge, at most. It tends to
+/// the square root of two, to less (0.6 and more were seen) where third derivatives are not
+/// continuous.
+constexpr double slowest_merging = -0.3;
 /// Steps below this share of the distance between two contacts are stuck.
 constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.
@@ -423,6 +427,8 @@ bool Trace::merge() {
   const double linear = rho / rate;
   const double squared = 0.5 * rho / rate;
   const bool smooth = continues(geometry_, last.contact[0], last.contact[1]);
+  // On one surface or curve they run into each other, rather than pass by.
+  if (smooth && rate > slowest_merging) return false;
   Ruling end = last;
   end.n = last.n - (smooth ? squared : linear) * tangent_.n;
   const bool one_element = same_element(last.contact[0], last.contact[1]);
