@@ -98,16 +98,6 @@ TEST(Stitch, Curves) {
   const Stitched both(oloid());
   EXPECT_EQ(both.counts(), (Counts{0, 1, 0, 0, 2, 0, 0}));
   both.expect_sound();
-  // In general position: two circles, one closed scroll or more.
-  const Stitched rings({{},
-                        {circle({0, 0, 0}, {1, 0, 0.1}, {0, 1, 0.2}),
-                         circle({0.3, 0.1, 1.5}, {0.2, 0.8, 0}, {0.5, 0, 0.6})},
-                        {}});
-  for (const HullFace& face : rings.boundary->faces) {
-    if (face.kind != FaceKind::scroll) continue;
-    EXPECT_FALSE(face.scroll_curves[0].empty());
-    EXPECT_FALSE(face.scroll_curves[1].empty());
-  }
 }
 
 /// Borders of open patches that are on the hull in part.
