@@ -29,17 +29,6 @@ CreaseTracks::CreaseTracks(const ContactGeometry& geometry, const SeparatingGrap
   for (int r = 0; r < int(regions.size()); ++r) {
     add_region(geometry, regions[std::size_t(r)], r);
   }
-  std::sort(creases_.begin(), creases_.end(), [](const Crease& a, const Crease& b) {
-    return std::pair(a.instance, a.piece) < std::pair(b.instance, b.piece);
-  });
-}
-
-CreaseTracks::Crease& CreaseTracks::crease(int instance, int piece) {
-  for (Crease& c : creases_) {
-    if (c.instance == instance && c.piece == piece) return c;
-  }
-  creases_.push_back({instance, piece, {}});
-  return creases_.back();
 }
 
 /// The parameter along the edge grows or falls along an arc, and turns where a ruling is tangent to
@@ -55,7 +44,7 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
         const dvec3 d = r.point[0] - r.point[1];
         return turn(geometry.jet(r.contact[i]), r.n, i == 0 ? d : -d);
       };
-      Crease& own = crease(first.instance, first.element);
+      Crease& own = creases_[{first.instance, first.element}];
       const auto add = [&](double from, double to, double sense) {
         if (std::abs(to - from) < same_parameter) return;
         own.intervals.push_back(
@@ -107,9 +96,8 @@ void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion&
       const double from = over(s.from);
       const double to = over(s.to);
       // The region lies to the left of its outline.
-      crease(region.instance, border.piece)
-          .intervals.push_back(
-              {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k}});
+      creases_[{region.instance, border.piece}].intervals.push_back(
+          {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k}});
     }
   }
 }
@@ -130,12 +118,12 @@ std::vector<double> CreaseTracks::Crease::ends() const {
 
 std::vector<CreaseTracks::Stretch> CreaseTracks::overlay() const {
   std::vector<Stretch> result;
-  for (const Crease& c : creases_) {
-    const std::vector<double> ends = c.ends();
+  for (const auto& [place, crease] : creases_) {
+    const std::vector<double> ends = crease.ends();
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-      Stretch s{c.instance, c.piece, ends[k], ends[k + 1], {}, {}};
+      Stretch s{place.first, place.second, ends[k], ends[k + 1], {}, {}};
       const double middle = 0.5 * (s.from + s.to);
-      for (const Interval& i : c.intervals) {
+      for (const Interval& i : crease.intervals) {
         if (i.from < middle && middle < i.to) (i.low ? s.low : s.high) = i.track;
       }
       if (!s.low.empty() || !s.high.empty()) result.push_back(s);
@@ -147,13 +135,12 @@ std::vector<CreaseTracks::Stretch> CreaseTracks::overlay() const {
 std::vector<double> CreaseTracks::breaks(int instance, int piece, bool reversed, double from,
                                          double to) const {
   std::vector<double> result;
-  for (const Crease& c : creases_) {
-    if (c.instance != instance || c.piece != piece) continue;
-    for (const double end : c.ends()) {
-      const double t = reversed ? 1 - end : end;
-      if (t > std::min(from, to) + same_parameter && t < std::max(from, to) - same_parameter) {
-        result.push_back(t);
-      }
+  const auto found = creases_.find({instance, piece});
+  if (found == creases_.end()) return result;
+  for (const double end : found->second.ends()) {
+    const double t = reversed ? 1 - end : end;
+    if (t > std::min(from, to) + same_parameter && t < std::max(from, to) - same_parameter) {
+      result.push_back(t);
     }
   }
   std::sort(result.begin(), result.end());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "taut/hull/separating_graph.h"
@@ -49,15 +50,13 @@ class CreaseTracks {
     Track track;
   };
   struct Crease {
-    int instance, piece;
     std::vector<Interval> intervals;
     std::vector<double> ends() const;
   };
-  Crease& crease(int instance, int piece);
   void add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index);
   void add_region(const ContactGeometry& geometry, const TrimRegion& region, int index);
 
-  std::vector<Crease> creases_;  // by instance and piece
+  std::map<std::pair<int, int>, Crease> creases_;  // by instance and piece
 };
 
 }  // namespace taut

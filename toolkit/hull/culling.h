@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "taut/bounds/gauss_map.h"
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sample.h"
 
 namespace taut {
 

@@ -45,7 +45,7 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
   statistics.seconds_trace += lap.seconds();
 
   options.progress.update("stitch", 0);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph));
+  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
   statistics.seconds_stitch += lap.seconds();
   statistics.support_queries += culling.support_queries + query.queries();
   statistics.newton_iterations += query.newton_iterations();

@@ -6,14 +6,9 @@
 #include "taut/bounds/scene.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/sample.h"
 
 namespace taut {
-
-/// A point sampled on the hull: the direction that it supports, and where it lies on the model.
-struct Sample {
-  dvec3 n;
-  Contact contact;
-};
 
 /// Edges of a polytope that are to stay, like chords of curves, whole or bisected.
 class KeptEdges {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
@@ -17,7 +18,9 @@ constexpr double same_branch = 1e-6;
 /// Directions so near to each other are not parted any further.
 constexpr double narrow = 1e-9;
 /// Share of its motion by which a contact may miss the first order of it.
-constexpr double first_order = 0.3;
+constexpr double first_order = 0.2;
+/// Cosine below which two directions are too far apart for a great arc between them.
+constexpr double nearly_opposite = -0.9;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 constexpr int secant_limit = 60;
@@ -52,6 +55,7 @@ class GraphTracer {
   bool is_near(const Sighting& from, const Sighting& to) const;
   bool joined(const Sighting& a, const Sighting& b) const;
   std::optional<CommonSupport> parting(const Sighting& a, const Sighting& b) const;
+  bool is_crossed(const SupportChange& change) const;
   bool is_traced(const CommonSupport& seed) const;
   void trace(const CommonSupport& seed);
   void trace_waiting();
@@ -71,7 +75,11 @@ class GraphTracer {
   SupportQuery& query_;
   const Progress& progress_;
   SeparatingGraph graph_;
-  std::vector<Box> boxes_;  // of the arcs' directions
+  struct PieceContact {
+    int arc, piece, contact;
+  };
+  std::map<std::pair<int, int>, std::vector<PieceContact>> traces_;  // by instance and patch
+  std::vector<Box> boxes_;                                           // of the arcs' directions
   std::vector<Landmark> landmarks_;
   std::vector<int> waiting_;  // nodes whose slots may be open
 };
@@ -81,24 +89,26 @@ GraphTracer::Sighting GraphTracer::seen(const dvec3& n, const Contact& hint) {
   return {n, geometry_.canonical(s.contact), s.point};
 }
 
-/// Whether the contact's motion, to first order, is that to the other in the same patch: then they
-/// are joined without a climb.
+/// Whether the contact's motion is, to first order, that to the other: then they are joined without
+/// a climb.
 bool GraphTracer::is_near(const Sighting& from, const Sighting& to) const {
-  if (from.contact.kind != SourceKind::face || !same_element(from.contact, to.contact)) {
-    return false;
-  }
   const ContactJet j = geometry_.jet(from.contact);
   const dvec3 dn = to.n - from.n;
   const double uu = glm::dot(j.dxx, from.n);
-  const double uv = glm::dot(j.dxy, from.n);
-  const double vv = glm::dot(j.dyy, from.n);
-  const double det = uu * vv - uv * uv;
-  if (!(det > 0) || !(uu < 0)) return false;
-  const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
-  const dvec2 rate = dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
-  const dvec2 moved(to.contact.u - from.contact.u, to.contact.v - from.contact.v);
-  const auto length = [&](const dvec2& p) { return glm::length(p.x * j.dx[0] + p.y * j.dx[1]); };
-  return length(rate - moved) < first_order * length(moved);
+  dvec3 motion(0.0);
+  if (j.dimension == 1) {
+    if (!(uu < 0)) return false;
+    motion = -glm::dot(j.dx[0], dn) / uu * j.dx[0];
+  } else if (j.dimension == 2) {
+    const double uv = glm::dot(j.dxy, from.n);
+    const double vv = glm::dot(j.dyy, from.n);
+    const double det = uu * vv - uv * uv;
+    if (!(det > 0) || !(uu < 0)) return false;
+    const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
+    motion = (uv * slope.y - vv * slope.x) / det * j.dx[0] +
+             (uv * slope.x - uu * slope.y) / det * j.dx[1];
+  }
+  return glm::distance(to.x - from.x, motion) < first_order * glm::distance(to.x, from.x);
 }
 
 /// Whether a climb leads from the one contact to the other.
@@ -148,7 +158,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
 
 /// Finds and traces the curves that the great arc between two sightings crosses.
 void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
-  if (joined(a, b)) return;
+  if (graph_.unresolved.size() >= failure_limit || joined(a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
     // Two samples on the curve itself.
     CommonSupport tie;
@@ -162,15 +172,48 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     }
     return;
   }
+  if (glm::dot(a.n, b.n) < nearly_opposite) {  // no great arc to speak of
+    const Sighting aside = seen(tangent_frame(a.n)[0], a.contact);
+    part(a, aside, depth + 1);
+    part(aside, b, depth + 1);
+    return;
+  }
   const std::optional<CommonSupport> seed = parting(a, b);
+  if (seed && is_traced(*seed)) return;
   const dvec3 n = seed ? seed->n : glm::normalize(a.n + b.n);
   const Sighting middle = seen(n, a.contact);
   if (seed && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + support_tie) {
-    if (!is_traced(*seed)) trace(*seed);
+    trace(*seed);
     return;
   }
   part(a, middle, depth + 1);
   part(middle, b, depth + 1);
+}
+
+/// Whether the contacts of curves that were traced cross the side an odd number of times.
+bool GraphTracer::is_crossed(const SupportChange& change) const {
+  const auto found = traces_.find({change.on.instance, change.on.element});
+  if (found == traces_.end()) return false;
+  const bool along_v = change.on.u == change.off.u;
+  const double fixed = along_v ? change.on.u : change.on.v;
+  const auto [low, high] =
+      along_v ? std::minmax(change.on.v, change.off.v) : std::minmax(change.on.u, change.off.u);
+  bool odd = false;
+  for (const auto& [arc, piece, contact] : found->second) {
+    const std::vector<Ruling>& rulings =
+        graph_.arcs[std::size_t(arc)].pieces[std::size_t(piece)].rulings;
+    for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+      const Contact& a = rulings[k].contact[std::size_t(contact)];
+      const Contact& b = rulings[k + 1].contact[std::size_t(contact)];
+      const double from = (along_v ? a.u : a.v) - fixed;
+      const double to = (along_v ? b.u : b.v) - fixed;
+      if ((from > 0) == (to > 0)) continue;
+      const double share = from / (from - to);
+      const double at = along_v ? a.v + share * (b.v - a.v) : a.u + share * (b.u - a.u);
+      if (at > low && at < high) odd = !odd;
+    }
+  }
+  return odd;
 }
 
 bool GraphTracer::is_traced(const CommonSupport& seed) const {
@@ -389,8 +432,15 @@ int GraphTracer::store(SeparatingArc arc) {
     for (const Ruling& r : piece.rulings) box.include(r.n);
   }
   boxes_.push_back(box);
+  const int index = int(graph_.arcs.size());
+  for (int k = 0; k < int(arc.pieces.size()); ++k) {
+    for (int i = 0; i < 2; ++i) {
+      const Contact& c = arc.pieces[std::size_t(k)].rulings.front().contact[std::size_t(i)];
+      if (c.kind == SourceKind::face) traces_[{c.instance, c.element}].push_back({index, k, i});
+    }
+  }
   graph_.arcs.push_back(std::move(arc));
-  return int(graph_.arcs.size()) - 1;
+  return index;
 }
 
 /// Traces the arcs that leave facets across sides where none was met yet.
@@ -439,9 +489,11 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   }
   find_poles();
   trace_waiting();
-  for (const CommonSupport& seed : surface_seeds(system_, query_, cells)) {
+  for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
     if (graph_.unresolved.size() >= failure_limit) break;
-    if (!is_traced(seed)) trace(seed);
+    if (is_crossed(change)) continue;
+    const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
+    if (seed && !is_traced(*seed)) trace(*seed);
   }
   PointHull hull(box);
   hull.add(points);

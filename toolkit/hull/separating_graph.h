@@ -5,7 +5,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact_system.h"
 #include "taut/hull/culling.h"
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sample.h"
 
 namespace taut {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -75,7 +76,7 @@ class Stitcher {
     boundary_.unresolved = graph_.unresolved;
   }
 
-  HullBoundary run();
+  HullBoundary run(const std::vector<CulledCell>& cells);
 
  private:
   /// A stretch of a region's outline.
@@ -85,6 +86,9 @@ class Stitcher {
   };
   TrimStretch& stretch(const StretchAt& at) {
     return regions_[std::size_t(at.region)].loops[at.loop][at.index];
+  }
+  int number_of(const StretchAt& at) const {
+    return first_of_loop_.at({at.region, at.loop}) + int(at.index);
   }
   const Border& border(const TrimRegion& region, Side side) const {
     return patch(region).borders[std::size_t(side)];
@@ -115,7 +119,9 @@ class Stitcher {
   void make_scroll_curves();
   void make_loops();
   void check();
-  void chain(HullCurveKind kind, std::vector<CurveElement> elements);
+  void chain(HullCurveKind kind, const std::vector<CurveElement>& elements);
+  void add_chain(HullCurveKind kind, const std::vector<CurveElement>& elements,
+                 const std::deque<std::size_t>& run, bool closed);
   int add_curve(HullCurveKind kind, int left, int right, int source, std::vector<dvec3> points,
                 bool closed);
   int face_of(int region) { return face_of_region_[std::size_t(region)]; }
@@ -127,6 +133,7 @@ class Stitcher {
   HullBoundary boundary_;
   std::vector<TrimRegion> regions_;
   std::vector<StretchAt> stretches_;
+  std::map<std::pair<int, std::size_t>, int> first_of_loop_;  // by region and loop: a stretch
   std::vector<int> twin_;  // per stretch on a smooth border: that of the other side
   std::map<std::tuple<int, int, int>, std::vector<int>> trace_;  // arc, piece, contact: stretches
   std::vector<int> face_of_region_;
@@ -178,6 +185,7 @@ void Stitcher::index_stretches() {
       for (std::size_t k = 0; k < loops[l].size(); ++k) {
         const TrimStretch& s = loops[l][k];
         if (s.arc >= 0) trace_[{s.arc, s.piece, s.contact}].push_back(int(stretches_.size()));
+        if (k == 0) first_of_loop_[{r, l}] = int(stretches_.size());
         stretches_.push_back({r, l, k});
       }
     }
@@ -367,54 +375,60 @@ void Stitcher::make_bitangents() {
   }
 }
 
-/// Chains elements with the same faces, head to tail.
-void Stitcher::chain(HullCurveKind kind, std::vector<CurveElement> elements) {
+/// Chains elements with the same faces and source, head to tail.
+void Stitcher::chain(HullCurveKind kind, const std::vector<CurveElement>& elements) {
+  std::map<std::tuple<int, int, int>, std::vector<std::size_t>> alike;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    alike[{elements[k].left, elements[k].right, elements[k].source}].push_back(k);
+  }
   std::vector<bool> used(elements.size(), false);
-  const auto follows = [&](const CurveElement& a, const CurveElement& b) {
-    return a.left == b.left && a.right == b.right && a.source == b.source &&
-           glm::distance(a.points.back(), b.points.front()) < same_point;
+  const auto follows = [&](std::size_t a, std::size_t b) {
+    return glm::distance(elements[a].points.back(), elements[b].points.front()) < same_point;
   };
-  const auto find = [&](auto matches) {
-    for (std::size_t k = 0; k < elements.size(); ++k) {
-      if (!used[k] && matches(elements[k])) return k;
-    }
-    return elements.size();
-  };
-  for (std::size_t start = 0; start < elements.size(); ++start) {
-    if (used[start]) continue;
-    std::vector<std::size_t> run = {start};
-    used[start] = true;
-    bool closed = follows(elements[start], elements[start]);
-    while (!closed) {
-      const CurveElement& last = elements[run.back()];
-      const std::size_t next = find([&](const CurveElement& e) { return follows(last, e); });
-      if (next == elements.size()) break;
-      run.push_back(next);
-      used[next] = true;
-      closed = follows(elements[next], elements[start]);
-    }
-    while (!closed) {
-      const CurveElement& first = elements[run.front()];
-      const std::size_t before = find([&](const CurveElement& e) { return follows(e, first); });
-      if (before == elements.size()) break;
-      run.insert(run.begin(), before);
-      used[before] = true;
-    }
-    std::vector<dvec3> points;
-    for (const std::size_t k : run) {
-      const auto& own = elements[k].points;
-      points.insert(points.end(), own.begin() + (points.empty() ? 0 : 1), own.end());
-    }
-    if (closed) points.back() = points.front();
-    const CurveElement& e = elements[start];
-    const int curve = add_curve(kind, e.left, e.right, e.source, std::move(points), closed);
-    for (const std::size_t k : run) {
-      for (const int s : {elements[k].stretch_left, elements[k].stretch_right}) {
-        if (s >= 0) stretch(stretches_[std::size_t(s)]).curve = curve;
+  for (const auto& [key, group] : alike) {
+    const auto unused = [&](auto matches) {
+      return std::find_if(group.begin(), group.end(),
+                          [&](std::size_t k) { return !used[k] && matches(k); });
+    };
+    for (const std::size_t start : group) {
+      if (used[start]) continue;
+      std::deque<std::size_t> run = {start};
+      used[start] = true;
+      bool closed = follows(start, start);
+      while (!closed) {
+        const auto next = unused([&](std::size_t k) { return follows(run.back(), k); });
+        if (next == group.end()) break;
+        run.push_back(*next);
+        used[*next] = true;
+        closed = follows(*next, start);
       }
-      for (const ScrollContact& c : elements[k].contacts) {
-        along_scroll_[{c.arc, c.piece, c.contact}].emplace_back(c.order, curve);
+      while (!closed) {
+        const auto before = unused([&](std::size_t k) { return follows(k, run.front()); });
+        if (before == group.end()) break;
+        run.push_front(*before);
+        used[*before] = true;
       }
+      add_chain(kind, elements, run, closed);
+    }
+  }
+}
+
+void Stitcher::add_chain(HullCurveKind kind, const std::vector<CurveElement>& elements,
+                         const std::deque<std::size_t>& run, bool closed) {
+  std::vector<dvec3> points;
+  for (const std::size_t k : run) {
+    const auto& own = elements[k].points;
+    points.insert(points.end(), own.begin() + (points.empty() ? 0 : 1), own.end());
+  }
+  if (closed) points.back() = points.front();
+  const CurveElement& e = elements[run.front()];
+  const int curve = add_curve(kind, e.left, e.right, e.source, std::move(points), closed);
+  for (const std::size_t k : run) {
+    for (const int s : {elements[k].stretch_left, elements[k].stretch_right}) {
+      if (s >= 0) stretch(stretches_[std::size_t(s)]).curve = curve;
+    }
+    for (const ScrollContact& c : elements[k].contacts) {
+      along_scroll_[{c.arc, c.piece, c.contact}].emplace_back(c.order, curve);
     }
   }
 }
@@ -436,7 +450,7 @@ void Stitcher::make_joins() {
     e.stretch_right = twin_[k];
     elements.push_back(std::move(e));
   }
-  chain(HullCurveKind::join, std::move(elements));
+  chain(HullCurveKind::join, elements);
 }
 
 /// Splits the stretches on edges where what lies beyond the edge changes.
@@ -479,12 +493,7 @@ void Stitcher::make_creases() {
       return t.arc >= 0 ? scroll_of_[std::size_t(t.arc)][std::size_t(t.piece)] : face_of(t.region);
     };
     const auto stretch_at = [&](const CreaseTracks::Track& t) {
-      if (t.arc >= 0) return -1;
-      for (std::size_t k = 0; k < stretches_.size(); ++k) {
-        const StretchAt& at = stretches_[k];
-        if (at.region == t.region && at.loop == t.loop && at.index == t.index) return int(k);
-      }
-      return -1;
+      return t.arc >= 0 ? -1 : number_of({t.region, t.loop, t.index});
     };
     CurveElement e;
     e.left = face(c.low);
@@ -507,7 +516,7 @@ void Stitcher::make_creases() {
     }
     elements.push_back(std::move(e));
   }
-  chain(HullCurveKind::edge, std::move(elements));
+  chain(HullCurveKind::edge, elements);
 }
 
 /// The ends of scrolls: segments between a scroll and a facet, another scroll beyond a segment
@@ -586,14 +595,10 @@ void Stitcher::make_scroll_curves() {
 
 /// The outlines of patches as curves; seams within a source face are passed over.
 void Stitcher::make_loops() {
-  std::map<std::tuple<int, std::size_t, std::size_t>, int> number;
-  for (std::size_t k = 0; k < stretches_.size(); ++k) {
-    number[{stretches_[k].region, stretches_[k].loop, stretches_[k].index}] = int(k);
-  }
   const auto next = [&](int k) {
     const StretchAt& at = stretches_[std::size_t(k)];
     const auto& loop = regions_[std::size_t(at.region)].loops[at.loop];
-    return number[{at.region, at.loop, (at.index + 1) % loop.size()}];
+    return number_of({at.region, at.loop, (at.index + 1) % loop.size()});
   };
   const auto curve_of = [&](int k) { return stretch(stretches_[std::size_t(k)]).curve; };
   std::vector<bool> done(stretches_.size(), false);
@@ -668,8 +673,8 @@ void Stitcher::check() {
   }
 }
 
-HullBoundary Stitcher::run() {
-  regions_ = trim_regions(geometry_, query_, graph_, boundary_.unresolved);
+HullBoundary Stitcher::run(const std::vector<CulledCell>& cells) {
+  regions_ = trim_regions(geometry_, query_, graph_, cells, boundary_.unresolved);
   split_at_creases();
   index_stretches();
   match_joins();
@@ -706,8 +711,9 @@ HullBoundary Stitcher::run() {
 
 }  // namespace
 
-HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph) {
-  return Stitcher(geometry, query, std::move(graph)).run();
+HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
+                    const std::vector<CulledCell>& cells) {
+  return Stitcher(geometry, query, std::move(graph)).run(cells);
 }
 
 }  // namespace taut

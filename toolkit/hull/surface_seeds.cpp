@@ -1,6 +1,8 @@
 #include "taut/hull/surface_seeds.h"
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "taut/hull/arc_tracer.h"
@@ -10,139 +12,119 @@
 namespace taut {
 namespace {
 
-/// Halvings that lead near enough to the curve for Newton's method, at first and where it fails.
-constexpr int first_halvings = 3;
+/// Halvings of a side after which a curve that Newton's method does not find is given up.
 constexpr int halving_limit = 36;
 
-class SeedFinder {
- public:
-  SeedFinder(const ContactSystem& system, SupportQuery& query)
-      : system_(system), geometry_(system.geometry()), query_(query) {}
-
-  std::vector<CommonSupport> run(const std::vector<CulledCell>& cells) {
-    for (const CulledCell& c : cells) {
-      if (c.state != CellState::mixed) continue;
-      const Interval u = c.cell.u();
-      const Interval v = c.cell.v();
-      const std::array<dvec2, 4> corners = {dvec2(u.lower, v.lower), dvec2(u.upper, v.lower),
-                                            dvec2(u.upper, v.upper), dvec2(u.lower, v.upper)};
-      for (const int sign : {1, -1}) {
-        if (!(sign > 0 ? c.signs.plus : c.signs.minus)) continue;
-        for (std::size_t k = 0; k < 4; ++k) {
-          cross({c.instance, c.patch, sign}, corners[k], corners[(k + 1) % 4]);
-        }
-      }
-    }
-    return std::move(seeds_);
-  }
-
- private:
-  struct Sheet {
-    int instance, patch, sign;
-  };
-  struct Sighting {
-    bool supports = false;
-    dvec3 n = dvec3(0.0);
-    Contact contact;  ///< that supports in n
-  };
-  using Place = std::tuple<int, int, int, double, double>;
-
-  static Contact contact(const Sheet& s, const dvec2& at) {
-    return {s.instance, SourceKind::face, s.patch, at.x, at.y};
-  }
-  Sighting looked(const Sheet& s, const dvec2& at);
-  const Sighting& seen(const Sheet& s, const dvec2& at);
-  void cross(const Sheet& s, const dvec2& a, const dvec2& b);
-
-  const ContactSystem& system_;
-  const ContactGeometry& geometry_;
-  SupportQuery& query_;
-  std::map<Place, Sighting> sightings_;
-  std::map<std::pair<Place, Place>, bool> crossed_;
-  std::vector<CommonSupport> seeds_;
+struct Sighting {
+  bool supports = false;
+  dvec3 n = dvec3(0.0);  ///< zero where the patch has no normal
+  Contact winner;
 };
 
-SeedFinder::Sighting SeedFinder::looked(const Sheet& s, const dvec2& at) {
-  const Contact c = contact(s, at);
-  const dvec3 n = double(s.sign) * unit_normal(geometry_, c);
+/// Whether the patch's point supports the model in the direction of its normal, or what does.
+Sighting looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c, int sign) {
+  const dvec3 n = double(sign) * unit_normal(geometry, c);
   if (n == dvec3(0.0)) return {};
-  const Support top = query_(n, c);
-  const bool supports = top.h <= glm::dot(geometry_.point(c), n) + support_tie;
-  return {supports, n, supports ? c : geometry_.canonical(top.contact)};
+  const Support top = query(n, c);
+  if (top.h <= glm::dot(geometry.point(c), n) + support_tie) return {true, n, c};
+  return {false, n, geometry.canonical(top.contact)};
 }
 
-const SeedFinder::Sighting& SeedFinder::seen(const Sheet& s, const dvec2& at) {
-  const auto [found, is_new] =
-      sightings_.try_emplace({s.instance, s.patch, s.sign, at.x, at.y}, Sighting());
-  if (is_new) found->second = looked(s, at);
-  return found->second;
+bool in_range(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v <= 1; }
+
+}  // namespace
+
+std::vector<SupportChange> support_changes(const ContactGeometry& geometry, SupportQuery& query,
+                                           const std::vector<CulledCell>& cells) {
+  using Place = std::tuple<int, int, int, double, double>;
+  std::map<Place, Sighting> sightings;
+  std::set<std::pair<Place, Place>> sides;
+  std::vector<SupportChange> changes;
+  for (const CulledCell& cell : cells) {
+    if (cell.state != CellState::mixed) continue;
+    const Interval u = cell.cell.u();
+    const Interval v = cell.cell.v();
+    const std::array<dvec2, 4> corners = {dvec2(u.lower, v.lower), dvec2(u.upper, v.lower),
+                                          dvec2(u.upper, v.upper), dvec2(u.lower, v.upper)};
+    for (const int sign : {1, -1}) {
+      if (!(sign > 0 ? cell.signs.plus : cell.signs.minus)) continue;
+      std::array<Contact, 4> contacts;
+      std::array<Place, 4> places;
+      std::array<const Sighting*, 4> seen{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const dvec2& at = corners[k];
+        contacts[k] = {cell.instance, SourceKind::face, cell.patch, at.x, at.y};
+        places[k] = {cell.instance, cell.patch, sign, at.x, at.y};
+        const auto [found, is_new] = sightings.try_emplace(places[k]);
+        if (is_new) found->second = looked(geometry, query, contacts[k], sign);
+        seen[k] = &found->second;
+      }
+      for (std::size_t a = 0; a < 4; ++a) {
+        const std::size_t b = (a + 1) % 4;
+        if (seen[a]->supports == seen[b]->supports || seen[a]->n == dvec3(0.0) ||
+            seen[b]->n == dvec3(0.0) || !sides.insert(std::minmax(places[a], places[b])).second) {
+          continue;
+        }
+        const std::size_t on = seen[a]->supports ? a : b;
+        const std::size_t off = seen[a]->supports ? b : a;
+        changes.push_back({contacts[on], contacts[off], sign, seen[off]->n, seen[off]->winner});
+      }
+    }
+  }
+  return changes;
 }
 
-/// Finds a seed between two places of which one supports.
-void SeedFinder::cross(const Sheet& s, const dvec2& a, const dvec2& b) {
-  const Sighting at_a = seen(s, a);
-  const Sighting at_b = seen(s, b);
-  if (at_a.supports == at_b.supports || at_a.n == dvec3(0.0) || at_b.n == dvec3(0.0)) return;
-  const Place pa{s.instance, s.patch, s.sign, a.x, a.y};
-  const Place pb{s.instance, s.patch, s.sign, b.x, b.y};
-  if (!crossed_.try_emplace(std::minmax(pa, pb), true).second) return;
-  dvec2 on = at_a.supports ? a : b;
-  dvec2 off = at_a.supports ? b : a;
-  Sighting beyond = at_a.supports ? at_b : at_a;
-  const int fixed = a.x == b.x ? 0 : 1;  // the parameter that is the same along the side
+std::optional<CommonSupport> separating_seed(const ContactSystem& system, SupportQuery& query,
+                                             const SupportChange& change) {
+  const ContactGeometry& geometry = system.geometry();
+  Contact on = change.on;
+  SupportChange beyond = change;
+  // The parameter that is the same along the side, and the other.
+  const auto fixed = change.on.u == change.off.u ? &Contact::u : &Contact::v;
+  const auto free = change.on.u == change.off.u ? &Contact::v : &Contact::u;
+  const auto [low, high] = std::minmax(change.on.*free, change.off.*free);
   for (int k = 0; k < halving_limit; ++k) {
-    const dvec2 middle = 0.5 * (on + off);
-    const Sighting there = looked(s, middle);
-    if (there.n == dvec3(0.0)) return;
+    Contact middle = on;
+    middle.*free = 0.5 * (on.*free + beyond.off.*free);
+    const Sighting there = looked(geometry, query, middle, change.sign);
+    if (there.n == dvec3(0.0)) return std::nullopt;
     if (there.supports) {
       on = middle;
     } else {
-      off = middle;
-      beyond = there;
+      beyond.off = middle;
+      beyond.n = there.n;
+      beyond.winner = there.winner;
     }
-    if (k < first_halvings) continue;
     CommonSupport seed;
     seed.n = beyond.n;
-    seed.add(geometry_, contact(s, off));
-    seed.add(geometry_, beyond.contact);
-    if (glm::length(seed.d()) < merge_distance) return;  // about a free end
+    seed.add(geometry, beyond.off);
+    seed.add(geometry, beyond.winner);
+    if (glm::length(seed.d()) < merge_distance) return std::nullopt;
     const auto solved = [&] {
-      return system_.solve(seed, [&](const CommonSupport& now) {
+      return system.solve(seed, [&](const CommonSupport& now) {
         LinearEquation e;
-        e.residual = (fixed == 0 ? now.contact[0].u : now.contact[0].v) - on[fixed];
-        e.parameter[0][fixed] = 1;
+        e.residual = now.contact[0].*fixed - on.*fixed;
+        (fixed == &Contact::u ? e.parameter[0].x : e.parameter[0].y) = 1;
         return e;
       });
     };
     if (!solved()) continue;
     // The other contact may have moved into a neighbouring element.
-    const std::optional<Contact> other = climbed(geometry_, seed.contact[1], seed.n);
+    const std::optional<Contact> other = climbed(geometry, seed.contact[1], seed.n);
     if (!other) continue;
-    if (!same_element(*other, seed.contact[1]) || other->u != seed.contact[1].u ||
-        other->v != seed.contact[1].v) {
+    if (!same_element(*other, seed.contact[1]) || !in_range(seed.contact[1])) {
       seed.contact[1] = *other;
-      seed.evaluate(geometry_);
+      seed.evaluate(geometry);
       if (!solved()) continue;
     }
-    const double along = fixed == 0 ? seed.contact[0].v : seed.contact[0].u;
-    const auto [low, high] = std::minmax(a[1 - fixed], b[1 - fixed]);
-    if (along < low || along > high) continue;
-    const Contact& found = seed.contact[1];
-    if (found.u < 0 || found.u > 1 || found.v < 0 || found.v > 1) continue;
-    if (glm::length(seed.d()) < merge_distance ||
-        query_(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + support_tie) {
+    if (seed.contact[0].*free < low || seed.contact[0].*free > high || !in_range(seed.contact[1]) ||
+        glm::length(seed.d()) < merge_distance ||
+        query(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + support_tie) {
       continue;
     }
-    seeds_.push_back(seed);
-    return;
+    return seed;
   }
-}
-
-}  // namespace
-
-std::vector<CommonSupport> surface_seeds(const ContactSystem& system, SupportQuery& query,
-                                         const std::vector<CulledCell>& cells) {
-  return SeedFinder(system, query).run(cells);
+  return std::nullopt;
 }
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "taut/bounds/support_query.h"
@@ -8,10 +9,23 @@
 
 namespace taut {
 
-/// Points on the separating curves that cross the sides of the mixed cells: between two corners,
-/// one of which supports the model in the direction of its normal and the other does not, some
-/// contact elsewhere takes over.
-std::vector<CommonSupport> surface_seeds(const ContactSystem& system, SupportQuery& query,
-                                         const std::vector<CulledCell>& cells);
+/// The side of a cell from a corner that supports the model, in the direction of its normal, to one
+/// that does not: a separating curve crosses it.
+struct SupportChange {
+  Contact on;
+  Contact off;     ///< of the same patch, with u or v the same
+  int sign = 1;    ///< the outward normal is sign * (Su x Sv)
+  dvec3 n;         ///< normal at `off`
+  Contact winner;  ///< supports in n
+};
+
+/// All of them at the mixed cells' sides, none twice.
+std::vector<SupportChange> support_changes(const ContactGeometry& geometry, SupportQuery& query,
+                                           const std::vector<CulledCell>& cells);
+
+/// A point on the separating curve, where the side crosses it. None if it is about to end there
+/// (merge_distance), or cannot be found.
+std::optional<CommonSupport> separating_seed(const ContactSystem& system, SupportQuery& query,
+                                             const SupportChange& change);
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "taut/hull/facet_contacts.h"
@@ -12,6 +13,9 @@ namespace {
 
 /// Parameters that agree to this are the same place of a border.
 constexpr double same_parameter = 1e-9;
+
+/// Gauss curvature, in the scene's frame, below which a surface is flat or developable.
+constexpr double flat_curvature = 1e-10;
 
 /// The trace of a contact along a piece of a half-arc, in the walk's direction.
 struct Stroke {
@@ -89,13 +93,13 @@ class Trimmer {
           std::vector<Unresolved>& unresolved)
       : geometry_(geometry), query_(query), graph_(graph), unresolved_(unresolved) {}
 
-  std::vector<TrimRegion> run() {
+  std::vector<TrimRegion> run(const std::vector<CulledCell>& cells) {
     for (int a = 0; a < int(graph_.arcs.size()); ++a) {
       for (int contact = 0; contact < 2; ++contact) add_strokes({a, contact});
     }
     link();
     for (Sheet& sheet : sheets_) trim(sheet);
-    add_whole_patches();
+    add_whole_patches(cells);
     return std::move(regions_);
   }
 
@@ -110,8 +114,7 @@ class Trimmer {
   void add_border(const Sheet& sheet, double from, double to, Loop& loop) const;
   void add_regions(const Sheet& sheet, std::vector<Loop> loops);
   std::vector<dvec2> polyline(const Loop& loop) const;
-  bool supports(int instance, int patch, int sign, const dvec2& at);
-  void add_whole_patches();
+  void add_whole_patches(const std::vector<CulledCell>& cells);
   void fail(const dvec3& n, const char* reason) { unresolved_.push_back({n, reason}); }
 
   const ContactGeometry& geometry_;
@@ -374,28 +377,29 @@ void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
   }
 }
 
-/// Whether the patch's point supports the model in the direction of its normal.
-bool Trimmer::supports(int instance, int patch, int sign, const dvec2& at) {
-  const Contact c{instance, SourceKind::face, patch, at.x, at.y};
-  const ContactJet j = geometry_.jet(c);
-  const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-  if (n == dvec3(0.0)) return false;
-  return query_(n, c).h <= glm::dot(j.x, n) + support_tie;
-}
-
 /// Patches that no separating curve enters lie on the hull as a whole or not at all.
-void Trimmer::add_whole_patches() {
-  const Model& model = geometry_.scene().model();
-  for (int i = 0; i < int(model.instances().size()); ++i) {
-    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
-    for (int p = 0; p < int(part.patches().size()); ++p) {
-      for (const int sign : {1, -1}) {
-        if (sheet_index_.contains({i, p, sign})) continue;
-        if (!supports(i, p, sign, {0.5, 0.5})) continue;
-        regions_.push_back({i, p, sign, {all_around(sign)}});
-        break;
-      }
+void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
+  std::set<std::tuple<int, int, int>> candidates;
+  for (const CulledCell& c : cells) {
+    if (c.state == CellState::off) continue;
+    for (const int sign : {1, -1}) {
+      const bool possible =
+          c.state == CellState::ruled || (sign > 0 ? c.signs.plus : c.signs.minus);
+      if (possible) candidates.emplace(c.instance, c.patch, sign);
     }
+  }
+  for (const auto& [instance, patch, sign] : candidates) {
+    if (sheet_index_.contains({instance, patch, sign})) continue;
+    const Contact c{instance, SourceKind::face, patch, 0.5, 0.5};
+    const ContactJet j = geometry_.jet(c);
+    const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
+    if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + support_tie) continue;
+    const double uv = glm::dot(j.dxy, n);
+    const double det = glm::dot(j.dxx, n) * glm::dot(j.dyy, n) - uv * uv;
+    const double size = glm::length(j.dx[0]) * glm::length(j.dx[1]);
+    if (!(det > flat_curvature * size * size))
+      fail(n, "a flat or developable face lies on the hull");
+    regions_.push_back({instance, patch, sign, {all_around(sign)}});
   }
 }
 
@@ -419,8 +423,9 @@ HalfArc next_half_arc(const SeparatingGraph& graph, const HalfArc& half) {
 
 std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, SupportQuery& query,
                                      const SeparatingGraph& graph,
+                                     const std::vector<CulledCell>& cells,
                                      std::vector<Unresolved>& unresolved) {
-  return Trimmer(geometry, query, graph, unresolved).run();
+  return Trimmer(geometry, query, graph, unresolved).run(cells);
 }
 
 }  // namespace taut

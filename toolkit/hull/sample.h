@@ -1,0 +1,13 @@
+#pragma once
+
+#include "taut/bounds/scene.h"
+
+namespace taut {
+
+/// A point sampled on the hull: the direction that it supports, and where it lies on the model.
+struct Sample {
+  dvec3 n;
+  Contact contact;
+};
+
+}  // namespace taut
