@@ -53,6 +53,8 @@ class Trace {
   TracedArc run(const Progress& progress);
 
  private:
+  enum class Pace { on, ended };
+
   /// A corrected step of this length along the tangent.
   std::optional<CommonSupport> stepped(double length) const;
   CommonSupport predicted(double length) const;
@@ -81,15 +83,28 @@ class Trace {
   bool leave_pole();
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
-  TracedArc closed();
+  void close();
   bool merge();
+  std::optional<Pace> near_merging();
+  Pace surpassed(const CommonSupport& next, const Contact& winner);
+  Pace exchange(const Event& event);
+  Pace advance();
   bool settle();
   void begin_piece();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
-  TracedArc lost(const char* reason) {
-    arc_.end = TracedArc::End::lost;
+
+  Pace ended(TracedArc::End end) {
+    arc_.end = end;
+    return Pace::ended;
+  }
+  Pace lost(const char* reason) {
     arc_.reason = reason;
-    return std::move(arc_);
+    return ended(TracedArc::End::lost);
+  }
+  /// Halves the step, unless that is of no use any more.
+  Pace shorter(const char* reason) {
+    step_ *= 0.5;
+    return step_ < shortest_step ? lost(reason) : Pace::on;
   }
 
   const ContactSystem& system_;
@@ -103,6 +118,8 @@ class Trace {
   CommonSupport at_;
   CurveTangent tangent_;
   std::array<std::vector<ContactExit>, 2> exits_;
+  double step_ = first_step;
+  int idle_ = 0;
   TracedArc arc_;
 };
 
@@ -331,7 +348,6 @@ bool Trace::arrives(const Landmark& landmark, double length) {
     return false;
   }
   push(end);
-  arc_.end = TracedArc::End::plane;
   arc_.n = landmark.n;
   arc_.contacts = landmark.facet.contacts;
   return true;
@@ -352,13 +368,11 @@ bool Trace::is_closing(const CommonSupport& next, double length) const {
 }
 
 /// Ends the arc at home, and drops what led there from the start.
-TracedArc Trace::closed() {
+void Trace::close() {
   push(*home_);
   auto& first = arc_.pieces[home_piece_].rulings;
   first.erase(first.begin(), first.begin() + std::ptrdiff_t(home_ruling_));
   arc_.pieces.erase(arc_.pieces.begin(), arc_.pieces.begin() + std::ptrdiff_t(home_piece_));
-  arc_.end = TracedArc::End::closed;
-  return std::move(arc_);
 }
 
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
@@ -462,100 +476,108 @@ void Trace::begin_piece() {
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
 }
 
+/// Where the step would take the two contacts into each other: shortens it, until they are so near
+/// that they merge.
+std::optional<Trace::Pace> Trace::near_merging() {
+  const double apart = glm::length(at_.d());
+  const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / apart;
+  if (rate >= 0 || apart >= -2 * rate * step_) return std::nullopt;
+  if (apart >= merge_distance) {
+    step_ = -0.5 * apart / rate;
+    return std::nullopt;
+  }
+  return merge() ? ended(TracedArc::End::merged)
+                 : lost("two contacts approach each other and do not merge");
+}
+
+/// A contact surpasses the two at `next`: ends the arc in the plane of the three.
+Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
+  const std::optional<CommonSupport> plane = common_plane(system_, query_, next, winner);
+  const double there = plane ? length_to(*plane) : 0;
+  if (!plane || there < -plane_slack || there > length_to(next) + plane_slack) {
+    return shorter("no common plane with a contact that surpasses two");
+  }
+  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
+  if (there <= 0 && rulings.size() > 1) rulings.pop_back();
+  push(*plane);
+  arc_.n = plane->n;
+  arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
+  return ended(TracedArc::End::plane);
+}
+
+/// On to the next element, at the exit where the contact stands.
+Trace::Pace Trace::exchange(const Event& event) {
+  const auto i = std::size_t(event.contact);
+  const std::optional<Contact> over = beyond(geometry_, at_.contact[i], event.exit);
+  if (!over) return lost("a separating curve has no next element");
+  at_.contact[i] = *over;
+  at_.evaluate(geometry_);
+  if (!settle()) return lost("a separating curve has no tangent");
+  begin_piece();
+  step_ = std::max(0.5 * step_, shortest_step);
+  return Pace::on;
+}
+
+Trace::Pace Trace::advance() {
+  if (const std::optional<Pace> pace = near_merging()) return *pace;
+  for (const Landmark& landmark : landmarks_) {
+    if (arrives(landmark, step_)) return ended(TracedArc::End::plane);
+  }
+  std::optional<CommonSupport> next = stepped(step_);
+  const std::optional<CurveTangent> turned =
+      next ? system_.tangent(*next, &tangent_) : std::nullopt;
+  const double cosine = turned ? glm::dot(turned->n, tangent_.n) +
+                                     glm::dot(turned->x[0], tangent_.x[0]) +
+                                     glm::dot(turned->x[1], tangent_.x[1])
+                               : 0;
+  if (cosine < turn_limit || distance_to(*next) > (1 + correction_limit) * step_) {
+    return shorter("a separating curve cannot be followed");
+  }
+  if (const auto [contact, side] = pole_crossed(*next); contact >= 0) {
+    return pass_pole(contact, side, step_)
+               ? Pace::on
+               : shorter("a separating curve cannot be followed past a pole");
+  }
+  const std::optional<Event> event = first_event(*next, step_);
+  if (event) next = event->support;
+  if (is_closing(*next, step_)) {
+    close();
+    return ended(TracedArc::End::closed);
+  }
+  const Support top = query_(next->n, next->contact[0]);
+  if (top.h > glm::dot(next->jet[0].x, next->n) + support_tie) {
+    return surpassed(*next, top.contact);
+  }
+  const bool moved = length_to(*next) > margin_slack;
+  idle_ = moved ? 0 : idle_ + 1;
+  if (idle_ > idle_limit) return lost("a separating curve stays on a border");
+  at_ = *next;
+  if (moved) push(at_);
+  if (event) return exchange(*event);
+  if (moved && !home_) {
+    home_ = at_;
+    home_piece_ = arc_.pieces.size() - 1;
+    home_ruling_ = arc_.pieces.back().rulings.size() - 1;
+  }
+  tangent_ = *turned;
+  step_ = std::min(longest_step, cosine > turn_small ? growth * step_ : step_);
+  return Pace::on;
+}
+
 TracedArc Trace::run(const Progress& progress) {
   if (pole_side(geometry_, at_.contact[0]) || pole_side(geometry_, at_.contact[1])) {
-    if (!leave_pole()) return lost("a separating curve cannot be followed from a pole");
-  } else {
-    if (!settle()) return lost("a separating curve has no tangent");
+    if (!leave_pole()) lost("a separating curve cannot be followed from a pole");
+  } else if (settle()) {
     begin_piece();
+  } else {
+    lost("a separating curve has no tangent");
   }
-  double step = first_step;
-  int idle = 0;
-  for (int k = 0; k < step_limit; ++k) {
+  Pace pace = arc_.pieces.empty() ? Pace::ended : Pace::on;
+  for (int k = 0; pace != Pace::ended; ++k) {
     if (k % 64 == 0) progress.check();
-    const double apart = glm::length(at_.d());
-    const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / apart;
-    if (rate < 0 && apart < -2 * rate * step) {
-      if (apart < merge_distance) {
-        if (!merge()) return lost("two contacts approach each other and do not merge");
-        arc_.end = TracedArc::End::merged;
-        return std::move(arc_);
-      }
-      step = -0.5 * apart / rate;
-    }
-    for (const Landmark& landmark : landmarks_) {
-      if (arrives(landmark, step)) return std::move(arc_);
-    }
-    std::optional<CommonSupport> next = stepped(step);
-    std::optional<CurveTangent> turned;
-    if (next) turned = system_.tangent(*next, &tangent_);
-    double cosine = 0;
-    if (turned) {
-      cosine = glm::dot(turned->n, tangent_.n) + glm::dot(turned->x[0], tangent_.x[0]) +
-               glm::dot(turned->x[1], tangent_.x[1]);
-      const bool corrected_far = distance_to(*next) > (1 + correction_limit) * step;
-      if (cosine < turn_limit || corrected_far) turned.reset();
-    }
-    if (!turned) {
-      step *= 0.5;
-      if (step < shortest_step) return lost("a separating curve cannot be followed");
-      continue;
-    }
-    if (const auto [contact, side] = pole_crossed(*next); contact >= 0) {
-      if (!pass_pole(contact, side, step)) {
-        step *= 0.5;
-        if (step < shortest_step) return lost("a separating curve cannot be followed past a pole");
-      }
-      continue;
-    }
-    const std::optional<Event> event = first_event(*next, step);
-    if (event) next = event->support;
-    const bool closing = is_closing(*next, step);
-    const Support top = query_(next->n, next->contact[0]);
-    if (!closing && top.h > glm::dot(next->jet[0].x, next->n) + support_tie) {
-      std::optional<CommonSupport> plane = common_plane(system_, query_, *next, top.contact);
-      const double there = plane ? length_to(*plane) : 0;
-      if (plane && (there < -plane_slack || there > length_to(*next) + plane_slack)) plane.reset();
-      if (!plane) {
-        step *= 0.5;
-        if (step < shortest_step) return lost("no common plane with a contact that surpasses two");
-        continue;
-      }
-      if (there <= 0 && arc_.pieces.back().rulings.size() > 1)
-        arc_.pieces.back().rulings.pop_back();
-      push(*plane);
-      arc_.end = TracedArc::End::plane;
-      arc_.n = plane->n;
-      arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
-      return std::move(arc_);
-    }
-    if (closing) return closed();
-    const double moved = length_to(*next);
-    idle = moved > margin_slack ? 0 : idle + 1;
-    if (idle > idle_limit) return lost("a separating curve stays on a border");
-    at_ = *next;
-    if (moved > margin_slack) push(at_);
-    if (!home_ && !event && moved > margin_slack) {
-      home_ = at_;
-      home_piece_ = arc_.pieces.size() - 1;
-      home_ruling_ = arc_.pieces.back().rulings.size() - 1;
-    }
-    if (event) {
-      const auto i = std::size_t(event->contact);
-      const std::optional<Contact> over = beyond(geometry_, at_.contact[i], event->exit);
-      if (!over) return lost("a separating curve passes through a pole");
-      at_.contact[i] = *over;
-      at_.evaluate(geometry_);
-      if (!settle()) return lost("a separating curve has no tangent");
-      begin_piece();
-      step = std::max(0.5 * step, shortest_step);
-    } else {
-      tangent_ = *turned;
-      if (cosine > turn_small) step *= growth;
-      step = std::min(longest_step, step);
-    }
+    pace = k < step_limit ? advance() : lost("a separating curve has no end");
   }
-  return lost("a separating curve has no end");
+  return std::move(arc_);
 }
 
 }  // namespace

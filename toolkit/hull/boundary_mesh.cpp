@@ -74,7 +74,8 @@ class BoundaryLabels {
 }  // namespace
 
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
-                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options) {
+                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options,
+                   std::vector<Sample>* strays) {
   const Stopwatch time;
   const double tolerance = tolerance_for(options, scene.diagonal());
   const ContactFaces faces(geometry, *boundary);
@@ -102,7 +103,10 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
     sample.contact = geometry.canonical(sample.contact);
     start.faces.push_back(faces.touched(sample.contact));
     const auto on_curve = chords.inserted().find(int(k));
-    if (on_curve == chords.inserted().end()) continue;
+    if (on_curve == chords.inserted().end()) {
+      if (strays != nullptr && faces.surely_astray(sample.contact)) strays->push_back(sample);
+      continue;
+    }
     for (const TouchedFace& f : on_curve->second) touch(start.faces.back(), f);
   }
   const BoundaryLabels labels(*boundary, std::move(start.faces));

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "taut/hull/contact_geometry.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/sample.h"
 
 namespace taut {
 
@@ -15,8 +17,11 @@ namespace taut {
 /// crosses, else to a patch; where there is none, to that in which most corners lie. Where the
 /// boundary is not complete, a face without any is labelled as by sampled_hull(), its hull face
 /// numbered after those of the boundary.
+///
+/// Support points that lie on no face of the boundary are added to `strays`: what it lacks.
 /// @pre the boundary is the scene's, in its frame @throws as sampled_hull()
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
-                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options = {});
+                   std::shared_ptr<const HullBoundary> boundary, const HullOptions& options = {},
+                   std::vector<Sample>* strays = nullptr);
 
 }  // namespace taut

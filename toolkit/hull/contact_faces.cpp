@@ -8,6 +8,9 @@
 namespace taut {
 namespace {
 
+/// How far outlines, as polygons through rulings, may run from the curves, in parameters.
+constexpr double outline_slack = 0.05;
+
 bool along_v(Side side) { return side == Side::u0 || side == Side::u1; }
 
 /// The place on a side where its free parameter is t.
@@ -242,6 +245,43 @@ TouchedFaces ContactFaces::touched(const Contact& contact) const {
     }
   }
   return faces;
+}
+
+/// How deep inside a region of the patch the place is, negative outside of all.
+double ContactFaces::deepest(int instance, int patch, const dvec2& uv) const {
+  const auto place = std::pair(instance, patch);
+  auto region = std::lower_bound(
+      regions_.begin(), regions_.end(), place,
+      [](const Region& r, const auto& p) { return std::pair(r.instance, r.patch) < p; });
+  double result = -std::numeric_limits<double>::infinity();
+  for (; region != regions_.end() && std::pair(region->instance, region->patch) == place;
+       ++region) {
+    result = std::max(result, depth(region->outline, uv));
+  }
+  return result;
+}
+
+bool ContactFaces::surely_astray(const Contact& contact) const {
+  const Contact c = geometry_.canonical(contact);
+  if (c.kind != SourceKind::face) {
+    if (!touched(c).empty()) return false;
+    // The ends of stretches are only as exact as curves are.
+    return std::none_of(stretches_.begin(), stretches_.end(), [&](const Stretch& s) {
+      return c.kind == SourceKind::edge && s.instance == c.instance && s.piece == c.element &&
+             s.from - outline_slack <= c.u && c.u <= s.to + outline_slack;
+    });
+  }
+  const dvec2 uv(c.u, c.v);
+  double depth = deepest(c.instance, c.element, uv);
+  for (const Side side : all_sides) {
+    const Border& border =
+        geometry_.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+    if (!lies_on(uv, side) || border.kind != BorderKind::smooth || border.neighbor < 0) continue;
+    const double t = along_v(side) ? c.v : c.u;
+    depth = std::max(depth, deepest(c.instance, border.neighbor,
+                                    on_side(border.neighbor_side, border.reversed ? 1 - t : t)));
+  }
+  return depth < -outline_slack;
 }
 
 }  // namespace taut

@@ -42,6 +42,10 @@ class ContactFaces {
   /// nothing is known. Of curves inside patches the contact does not tell.
   TouchedFaces touched(const Contact& contact) const;
 
+  /// The contact is surely on no face: farther from all outlines of its patch than their chords
+  /// leave open, on a stretch of an edge or at a vertex that no face touches.
+  bool surely_astray(const Contact& contact) const;
+
  private:
   struct Region {
     int instance, patch;
@@ -69,6 +73,7 @@ class ContactFaces {
   void touch_regions(int instance, int patch, const dvec2& uv, bool inside_only,
                      TouchedFaces& faces) const;
   TouchedFaces on_patch(const Contact& c) const;
+  double deepest(int instance, int patch, const dvec2& uv) const;
 
   const ContactGeometry& geometry_;
   const HullBoundary& boundary_;

@@ -1,5 +1,6 @@
 #include "taut/hull/convex_hull.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -20,6 +21,20 @@ Hull convex_hull(const Model& model, const HullOptions& options) {
 Hull convex_hull(const Scene& scene, const HullOptions& options) {
   return scene.model().polyhedral() ? polyhedral_hull(scene.model(), options)
                                     : precise_hull(scene, options);
+}
+
+HullStatistics& HullStatistics::operator+=(const HullStatistics& other) {
+  support_queries += other.support_queries;
+  newton_iterations += other.newton_iterations;
+  cells = std::max(cells, other.cells);
+  cells_kept = std::max(cells_kept, other.cells_kept);
+  seconds_gauss_map += other.seconds_gauss_map;
+  seconds_sample += other.seconds_sample;
+  seconds_cull += other.seconds_cull;
+  seconds_trace += other.seconds_trace;
+  seconds_stitch += other.seconds_stitch;
+  seconds_mesh += other.seconds_mesh;
+  return *this;
 }
 
 double tolerance_for(const HullOptions& options, double diagonal) {

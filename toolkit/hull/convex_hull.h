@@ -39,6 +39,9 @@ struct HullStatistics {
   double seconds_trace = 0;
   double seconds_stitch = 0;
   double seconds_mesh = 0;
+
+  /// Adds all counts and times; cells are those of either.
+  HullStatistics& operator+=(const HullStatistics& other);
 };
 
 /// What a convex hull is. The value is its dimension.

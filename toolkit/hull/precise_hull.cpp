@@ -11,6 +11,9 @@
 namespace taut {
 namespace {
 
+/// How often the boundary is sought again with support points that the mesh met on no face of it.
+constexpr int stray_rounds = 2;
+
 /// The seconds since the last call, or the construction.
 class Lap {
  public:
@@ -27,16 +30,16 @@ class Lap {
 }  // namespace
 
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                            HullStatistics& statistics) {
+                            HullStatistics& statistics, const std::vector<Sample>& more) {
   Lap lap;
   options.progress.update("cull", 0);
-  const Culling culling =
-      cull(scene, map, {.threads = options.threads, .progress = options.progress});
+  Culling culling = cull(scene, map, {.threads = options.threads, .progress = options.progress});
   statistics.cells = culling.visited();
   statistics.cells_kept = culling.mixed();
   statistics.seconds_cull += lap.seconds();
 
   options.progress.update("trace", 0);
+  culling.samples.insert(culling.samples.end(), more.begin(), more.end());
   const ContactGeometry geometry(scene);
   SupportQuery query(scene);
   SeparatingGraph graph =
@@ -58,30 +61,35 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
 
   HullStatistics statistics;
+  statistics.support_queries = query.queries();
+  statistics.newton_iterations = query.newton_iterations();
   Lap lap;
   const GaussMap map(scene, {.threads = options.threads, .progress = options.progress});
   statistics.seconds_gauss_map = lap.seconds();
-  auto boundary =
-      std::make_shared<const HullBoundary>(exact_boundary(scene, map, options, statistics));
-  const auto add_to = [&](Hull& hull) {
-    HullStatistics& s = hull.statistics;
-    s.support_queries += statistics.support_queries + query.queries();
-    s.newton_iterations += statistics.newton_iterations + query.newton_iterations();
-    s.cells = statistics.cells;
-    s.cells_kept = statistics.cells_kept;
-    s.seconds_gauss_map = statistics.seconds_gauss_map;
-    s.seconds_cull = statistics.seconds_cull;
-    s.seconds_trace = statistics.seconds_trace;
-    s.seconds_stitch = statistics.seconds_stitch;
-  };
-  try {
-    Hull hull = boundary_mesh(scene, ContactGeometry(scene), std::move(boundary), options);
-    add_to(hull);
-    return hull;
-  } catch (const HullNotConverged& failure) {
-    Hull best = *failure.best;
-    add_to(best);
-    throw HullNotConverged(failure.what(), std::move(best));
+  const ContactGeometry geometry(scene);
+  std::vector<Sample> found;
+  for (int round = 0;; ++round) {
+    auto boundary =
+        std::make_shared<HullBoundary>(exact_boundary(scene, map, options, statistics, found));
+    std::vector<Sample> strays;
+    try {
+      Hull hull = boundary_mesh(scene, geometry, boundary, options, &strays);
+      if (!strays.empty() && round < stray_rounds) {
+        // The mesh has met faces that were not known: once more, with what it met.
+        found.insert(found.end(), strays.begin(), strays.end());
+        statistics += hull.statistics;
+        continue;
+      }
+      for (const Sample& s : strays) {
+        boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
+      }
+      hull.statistics += statistics;
+      return hull;
+    } catch (const HullNotConverged& failure) {
+      Hull best = *failure.best;
+      best.statistics += statistics;
+      throw HullNotConverged(failure.what(), std::move(best));
+    }
   }
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "taut/bounds/gauss_map.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/sample.h"
 
 namespace taut {
 
@@ -14,6 +17,6 @@ namespace taut {
 /// @pre the map is the scene's; the scene spans space (tolerances.h says what is flat)
 /// @throws Cancelled
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                            HullStatistics& statistics);
+                            HullStatistics& statistics, const std::vector<Sample>& more = {});
 
 }  // namespace taut
