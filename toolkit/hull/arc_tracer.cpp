@@ -30,6 +30,12 @@ constexpr double pole_step = 1e-3;
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
 constexpr double border_slack = 1e-9;
 constexpr int step_limit = 4000;
+/// Sine of the angle below which two edges that merge are one.
+constexpr double least_angle = 1e-3;
+/// Cosine by which the limit of the direction may miss its extrapolation.
+constexpr double least_cosine = 0.99;
+/// Contacts nearer than this that do not merge are lost.
+constexpr double least_distance = 1e-5;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
@@ -375,9 +381,38 @@ void Trace::close() {
   arc_.pieces.erase(arc_.pieces.begin(), arc_.pieces.begin() + std::ptrdiff_t(home_piece_));
 }
 
+/// The direction in which two contacts merge at a common point: a face's normal; across the
+/// tangents of two edges; of an edge and its end, across the edge's osculating plane. `near` tells
+/// the sense, and the direction where these are none.
+dvec3 limit_normal(const std::array<ContactJet, 2>& jet, const dvec3& near) {
+  const ContactJet& a = jet[0].dimension >= jet[1].dimension ? jet[0] : jet[1];
+  const ContactJet& b = jet[0].dimension >= jet[1].dimension ? jet[1] : jet[0];
+  dvec3 normal(0.0);
+  if (a.dimension == 2) {
+    normal = glm::cross(a.dx[0], a.dx[1]);
+  } else if (b.dimension == 1) {
+    normal = glm::cross(unit(a.dx[0]), unit(b.dx[0]));
+    // Of one edge: as at its end.
+    if (glm::length(normal) < least_angle) normal = dvec3(0.0);
+  } else {
+    normal = glm::cross(a.dx[0], a.dxx);
+  }
+  normal = unit(normal);
+  if (std::abs(glm::dot(normal, near)) < least_cosine) {
+    normal = near;
+    for (const ContactJet& j : jet) {
+      if (j.dimension != 1) continue;
+      const dvec3 along = unit(j.dx[0]);
+      normal -= glm::dot(normal, along) * along;
+    }
+    normal = unit(normal);
+  }
+  return glm::dot(normal, near) < 0 ? -normal : normal;
+}
+
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
-/// parameters are smooth there; n and, where both are in one element, the parameters' mean are
-/// smooth functions of its square.
+/// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
+/// are in one element, the parameters' mean are smooth functions of its square.
 bool Trace::merge() {
   const Ruling last = at_.ruling();
   const double rho = glm::distance(last.point[0], last.point[1]);
@@ -385,8 +420,9 @@ bool Trace::merge() {
   // f(0) = f - rho f' for a function of rho, f - rho f' / 2 for one of its square.
   const double linear = rho / rate;
   const double squared = 0.5 * rho / rate;
+  const bool smooth = continues(geometry_, last.contact[0], last.contact[1]);
   Ruling end = last;
-  end.n = last.n - squared * tangent_.n;
+  end.n = last.n - (smooth ? squared : linear) * tangent_.n;
   const bool one_element = same_element(last.contact[0], last.contact[1]);
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = end.contact[i];
@@ -403,21 +439,7 @@ bool Trace::merge() {
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
-  // The direction is that of the higher-dimensional contact's tangents.
-  for (const ContactJet& j : jet) {
-    if (j.dimension == 1) {
-      const dvec3 along = unit(j.dx[0]);
-      end.n -= glm::dot(end.n, along) * along;
-    }
-  }
-  for (const ContactJet& j : jet) {
-    if (j.dimension != 2) continue;
-    const dvec3 normal = unit(glm::cross(j.dx[0], j.dx[1]));
-    if (normal == dvec3(0.0)) continue;
-    end.n = glm::dot(normal, end.n) < 0 ? -normal : normal;
-    break;
-  }
-  end.n = unit(end.n);
+  end.n = limit_normal(jet, end.n);
   const std::size_t anchor = jet[0].dimension <= jet[1].dimension ? 0 : 1;
   const dvec3 x = jet[anchor].x;
   const Support top = query_(end.n, last.contact[0]);
@@ -486,8 +508,11 @@ std::optional<Trace::Pace> Trace::near_merging() {
     step_ = -0.5 * apart / rate;
     return std::nullopt;
   }
-  return merge() ? ended(TracedArc::End::merged)
-                 : lost("two contacts approach each other and do not merge");
+  if (merge()) return ended(TracedArc::End::merged);
+  if (apart < least_distance) return lost("two contacts approach each other and do not merge");
+  // A third contact may yet surpass them.
+  step_ = -0.5 * apart / rate;
+  return std::nullopt;
 }
 
 /// A contact surpasses the two at `next`: ends the arc in the plane of the three.

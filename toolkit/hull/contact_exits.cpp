@@ -83,6 +83,11 @@ Contact at_exit(Contact c, const ContactExit& exit) {
   return c;
 }
 
+/// To the same point in another element, not into what an edge or a vertex bounds.
+bool leads_over_border(const ContactExit& exit) {
+  return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
+}
+
 /// A contact whose parameter is so near to a collapsed side is at the pole.
 constexpr double pole_parameter = 1e-9;
 /// Parameters about a pole that are tried for the steepest way up, a patch.
@@ -379,21 +384,44 @@ std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contac
   return start ? climbed(geometry, *start, n) : std::nullopt;
 }
 
+bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
+  if (a.instance != b.instance || a.kind != b.kind || a.kind == SourceKind::vertex) return false;
+  if (a.element == b.element) return true;
+  for (const ContactExit& exit : exits(geometry, a)) {
+    if (!leads_over_border(exit)) continue;
+    const std::optional<Contact> over = beyond(geometry, at_exit(a, exit), exit);
+    if (over && same_element(*over, b)) return true;
+  }
+  return false;
+}
+
 void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
+  if (a.instance != b.instance || same_element(a, b)) return;
   const auto moved = [&](Contact& from, Contact& to) {
     for (const ContactExit& exit : exits(geometry, from)) {
-      if (exit.kind == ContactExit::Kind::face || exit.kind == ContactExit::Kind::edge) continue;
+      if (!leads_over_border(exit)) continue;
       const Contact border = at_exit(from, exit);
       const std::optional<Contact> over = beyond(geometry, border, exit);
-      if (!over || over->kind != to.kind || over->element != to.element) continue;
+      if (!over || !same_element(*over, to)) continue;
       from = border;
       to = *over;
       return true;
     }
     return false;
   };
-  if (a.instance != b.instance || (a.kind == b.kind && a.element == b.element)) return;
-  if (!moved(a, b)) moved(b, a);
+  if (moved(a, b) || moved(b, a)) return;
+  // Two edges that end in one vertex.
+  for (const ContactExit& own : exits(geometry, a)) {
+    if (own.kind != ContactExit::Kind::end) continue;
+    const std::optional<Contact> vertex = beyond(geometry, at_exit(a, own), own);
+    if (!vertex || vertex->kind != SourceKind::vertex) continue;
+    Contact other = *vertex;
+    Contact edge = b;
+    if (edge.kind != SourceKind::edge || !moved(edge, other)) continue;
+    a = at_exit(a, own);
+    b = edge;
+    return;
+  }
 }
 
 std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {

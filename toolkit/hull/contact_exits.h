@@ -48,8 +48,12 @@ dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c);
 std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
                                    const dvec3& n);
 
-/// Two neighbouring elements' contacts that are about to merge, moved onto the border between them;
-/// as they are where there is none.
+/// Both lie on one smooth surface or curve: in one element or in two that go on smoothly into each
+/// other.
+bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b);
+
+/// Two neighbouring elements' contacts that are about to merge, moved onto the border or to the
+/// vertex between them; as they are where there is none.
 void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 
 /// The local maximum of x . n that a climb from the contact leads to, over smooth joins, onto and

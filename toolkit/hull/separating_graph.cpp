@@ -135,11 +135,12 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
   for (int k = 0; k < secant_limit; ++k) {
     const dvec3 mixed = (1 - t) * a.n + t * b.n;
     s.n = glm::normalize(mixed);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const std::optional<Contact> c = climbed(geometry_, s.contact[i], s.n);
-      if (!c) return std::nullopt;
-      s.contact[i] = *c;
-    }
+    // From where they were seen, lest they stay with a branch that an earlier step led to.
+    const std::optional<Contact> of_a = climbed(geometry_, a.contact, s.n);
+    const std::optional<Contact> of_b = climbed(geometry_, b.contact, s.n);
+    if (!of_a || !of_b) return std::nullopt;
+    s.contact[0] = *of_a;
+    s.contact[1] = *of_b;
     s.evaluate(geometry_);
     if (glm::length(s.d()) < same_branch) return std::nullopt;
     const double value = glm::dot(s.d(), s.n);
@@ -394,7 +395,8 @@ void GraphTracer::trace(const CommonSupport& seed) {
     // It begins in the middle of a piece.
     if (arc.pieces.size() > 1 &&
         same_elements(arc.pieces.back().rulings.back(), arc.pieces.front().rulings.front())) {
-      std::vector<ArcPiece> first(1, std::move(arc.pieces.front()));
+      std::vector<ArcPiece> first;
+      first.push_back(std::move(arc.pieces.front()));
       arc.pieces.erase(arc.pieces.begin());
       append(arc.pieces, std::move(first));
     }

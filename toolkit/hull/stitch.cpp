@@ -385,7 +385,8 @@ void Stitcher::chain(HullCurveKind kind, const std::vector<CurveElement>& elemen
   const auto follows = [&](std::size_t a, std::size_t b) {
     return glm::distance(elements[a].points.back(), elements[b].points.front()) < same_point;
   };
-  for (const auto& [key, group] : alike) {
+  for (const auto& entry : alike) {
+    const std::vector<std::size_t>& group = entry.second;
     const auto unused = [&](auto matches) {
       return std::find_if(group.begin(), group.end(),
                           [&](std::size_t k) { return !used[k] && matches(k); });

@@ -67,6 +67,7 @@ TrimStretch on_border(int side, double from, double to) {
 /// The whole border, with the patch to the left as seen against its normal times the sign.
 std::vector<TrimStretch> all_around(int sign) {
   std::vector<TrimStretch> loop;
+  loop.reserve(4);
   for (int k = 0; k < 4; ++k) {
     loop.push_back(sign > 0 ? on_border(k, 0, 1) : on_border(3 - k, 1, 0));
   }
