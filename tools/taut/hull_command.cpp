@@ -242,11 +242,7 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
 }
 
 /// The exact hull, with the report as far as it goes.
-HullDocument document_of(Input& input, const Hull& hull, const Report& report,
-                         const std::string& file) {
-  if (!hull.boundary && !input.model().polyhedral()) {
-    throw IoError(file + ": the exact hull of this model is not known; .ply holds its mesh");
-  }
+HullDocument document_of(Input& input, const Hull& hull, const Report& report) {
   HullDocument document = hull.boundary
                               ? hull_document(input.scene(), *hull.boundary, input.part_files())
                               : hull_document(input.model(), hull.mesh, input.part_files());
@@ -258,7 +254,7 @@ HullDocument document_of(Input& input, const Hull& hull, const Report& report,
 WrittenMesh write_output(const std::string& file, const std::string& format, Input& input,
                          const Hull& hull, const Report& report, Console& console) {
   if (is_document(format)) {
-    const HullDocument document = document_of(input, hull, report, file);
+    const HullDocument document = document_of(input, hull, report);
     if (file != "-") {
       write_hull(file, document);
     } else {
@@ -285,6 +281,13 @@ WrittenMesh write_output(const std::string& file, const std::string& format, Inp
 /// the tolerance.
 void write_outputs(const HullArguments& arguments, Input& input, const Hull& hull, Report& report,
                    Console& console) {
+  for (const std::string& file : arguments.outputs) {
+    if (!is_document(format_of(file, arguments)) || hull.boundary || input.model().polyhedral()) {
+      continue;
+    }
+    throw IoError(file + ": the exact hull of this model, which is flat, is not known; " +
+                  ".ply holds its mesh");
+  }
   for (const std::string& file : arguments.outputs) {
     console.progress().check();
     const WrittenMesh written =
