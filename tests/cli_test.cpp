@@ -112,15 +112,50 @@ TEST_F(Cli, HullReportHasTheNamesOfTheContract) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, content(path("r.json")));
   const Json report = Json::parse(result.out);
-  for (const char* key :
-       {"/taut",           "/input/files/0",       "/input/faces",     "/input/edges",
-        "/input/vertices", "/input/patches",       "/input/diagonal",  "/input/box/1/2",
-        "/method",         "/dimension",           "/hull/gap_bound",  "/mesh/vertices",
-        "/mesh/edges",     "/mesh/faces",          "/mesh/volume",     "/mesh/area",
-        "/mesh/tolerance", "/mesh/distance_bound", "/queries/support", "/queries/newton_iterations",
-        "/seconds/read",   "/seconds/build",       "/seconds/sample",  "/seconds/cull",
-        "/seconds/trace",  "/seconds/stitch",      "/seconds/mesh",    "/seconds/write",
-        "/seconds/total",  "/peak_bytes",          "/warnings"}) {
+  for (const char* key : {"/taut",
+                          "/input/files/0",
+                          "/input/faces",
+                          "/input/edges",
+                          "/input/vertices",
+                          "/input/patches",
+                          "/input/diagonal",
+                          "/input/box/1/2",
+                          "/method",
+                          "/dimension",
+                          "/hull/gap_bound",
+                          "/mesh/vertices",
+                          "/mesh/edges",
+                          "/mesh/faces",
+                          "/mesh/volume",
+                          "/mesh/area",
+                          "/mesh/tolerance",
+                          "/mesh/distance_bound",
+                          "/queries/support",
+                          "/queries/newton_iterations",
+                          "/seconds/read",
+                          "/seconds/build",
+                          "/seconds/sample",
+                          "/seconds/cull",
+                          "/seconds/trace",
+                          "/seconds/stitch",
+                          "/seconds/mesh",
+                          "/seconds/measure",
+                          "/seconds/write",
+                          "/seconds/total",
+                          "/peak_bytes",
+                          "/warnings",
+                          "/hull/patches",
+                          "/hull/scrolls",
+                          "/hull/facets",
+                          "/hull/curves",
+                          "/hull/unresolved",
+                          "/hull/volume",
+                          "/hull/area",
+                          "/hull/centroid/2",
+                          "/hull/inertia/2/2",
+                          "/hull/mean_width",
+                          "/culling/leaves",
+                          "/culling/kept"}) {
     EXPECT_TRUE(report.contains(Json::json_pointer(key))) << key;
   }
   EXPECT_EQ(report["input"]["patches"], 32);
@@ -134,6 +169,44 @@ TEST_F(Cli, HullReportHasTheNamesOfTheContract) {
   EXPECT_EQ(v - e + f, 2);
   EXPECT_GT(report["mesh"]["volume"], 10);
   EXPECT_GT(report["peak_bytes"], 1000000);
+}
+
+TEST_F(Cli, HullTellsWhatIsUnresolved) {
+  for (const char* name : {"three_spheres", "dented_ellipsoid", "torus", "saddle", "cone"}) {
+    const std::string model = TAUT_SOURCE_DIR "/data/" + std::string(name) + ".taut.json";
+    const Result result =
+        run("hull " + model + " -o h.ply -o h.hull.json --relative 1e-3 --report r.json");
+    EXPECT_EQ(result.exit_code, 0) << name << "\n" << result.err;
+    const Json report = Json::parse(content(path("r.json")));
+    const Json& hull = report["hull"];
+    EXPECT_EQ(Json::parse(content(path("h.hull.json")))["report"]["hull"], hull) << name;
+    const long unresolved = hull["unresolved"];
+    EXPECT_EQ(hull.contains("volume"), unresolved == 0) << name;
+    EXPECT_EQ(hull.contains("mean_width"), unresolved == 0) << name;
+    if (unresolved == 0) {
+      EXPECT_EQ(report["warnings"], Json::array()) << name;
+      EXPECT_EQ(result.err, "") << name;
+      EXPECT_EQ(run("verify h.hull.json " + model).exit_code, 0) << name;
+    } else {
+      EXPECT_EQ(report["warnings"][0]["code"], "unresolved") << name;
+      EXPECT_TRUE(result.err.starts_with("taut: warning: " + std::to_string(unresolved) + " spot"))
+          << name << "\n"
+          << result.err;
+      EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
+      EXPECT_NE(result.out.find(" of the mesh\n"), std::string::npos) << result.out;
+    }
+    EXPECT_EQ(run("verify h.ply " + model + " --relative 1e-3").exit_code, 0) << name;
+  }
+}
+
+TEST_F(Cli, FlatCurvesHaveNoExactHullYet) {
+  const std::string arc = plant("arc.obj",
+                                "v 0 0 0\nv 1 2 0\nv 2 0 0\ncstype bezier\ndeg 2\n"
+                                "curv 0 1 1 2 3\nparm u 0 1\nend\n");
+  EXPECT_EQ(run("hull " + arc + " -o a.ply -q").exit_code, 0);
+  // What cannot be written is found before anything is.
+  expect_failure("hull " + arc + " -o b.ply -o b.hull.json", 3, "b.hull.json: ");
+  EXPECT_FALSE(fs::exists(path("b.ply")));
 }
 
 TEST_F(Cli, QuietHullSaysNothing) {

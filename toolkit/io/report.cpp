@@ -56,9 +56,10 @@ Json to_json(const Report::Queries& queries) {
 }
 
 Json to_json(const Report::Seconds& seconds) {
-  return {{"read", seconds.read}, {"build", seconds.build}, {"sample", seconds.sample},
-          {"cull", seconds.cull}, {"trace", seconds.trace}, {"stitch", seconds.stitch},
-          {"mesh", seconds.mesh}, {"write", seconds.write}, {"total", seconds.total}};
+  return {{"read", seconds.read},  {"build", seconds.build},     {"sample", seconds.sample},
+          {"cull", seconds.cull},  {"trace", seconds.trace},     {"stitch", seconds.stitch},
+          {"mesh", seconds.mesh},  {"measure", seconds.measure}, {"write", seconds.write},
+          {"total", seconds.total}};
 }
 
 Json to_json(const std::vector<Warning>& warnings) {

@@ -57,7 +57,7 @@ struct Report {
   } queries;
   struct Seconds {
     double read = 0, build = 0, sample = 0, cull = 0, trace = 0, stitch = 0, mesh = 0;
-    double write = 0, total = 0;
+    double measure = 0, write = 0, total = 0;
   } seconds;
   long peak_bytes = 0;
   std::vector<Warning> warnings;

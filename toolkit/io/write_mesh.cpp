@@ -30,11 +30,11 @@ using Color = std::array<std::uint8_t, 3>;
 /// Muted colours for patches, in which neighbouring numbers differ most in hue: multiples of the
 /// golden ratio are spread evenly, however many there are. Scrolls and facets stand out.
 Color face_color(FaceKind kind, int source) {
-  if (kind == FaceKind::scroll) return {233, 164, 60};
-  if (kind == FaceKind::facet) return {74, 106, 143};
+  if (kind == FaceKind::scroll) return {250, 192, 84};
+  if (kind == FaceKind::facet) return {112, 150, 196};
   if (source < 0) return {190, 190, 190};
   constexpr double golden_ratio = 0.6180339887498949;
-  constexpr double lightest = 216;
+  constexpr double lightest = 228;
   constexpr double saturation = 0.34;
   const double hue = 6 * (source * golden_ratio - std::floor(source * golden_ratio));
   Color color;

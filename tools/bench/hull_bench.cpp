@@ -1,9 +1,12 @@
-// The sampled hull of the teapot against the honest alternative: a uniform tessellation of the same
-// measured accuracy, then the hull of its points by CGAL and Qhull. One thread; the programs take
-// turns within one run, and the medians of the paired ratios are printed.
+// The hull of the teapot, one thread: its build, exact structure and mesh; then the meshes against
+// the honest alternative: a uniform tessellation of the same measured accuracy, and the hull of its
+// points by CGAL and Qhull. The programs take turns within one run, and the medians of the paired
+// ratios are printed. With --benchmark_filter only the benchmarks that it names are run.
 //
 // The peers are given their points: tessellating, and finding the resolution that a wanted accuracy
 // needs, is not counted.
+
+#include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +14,13 @@
 #include <vector>
 
 #include "peers.h"
+#include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
+#include "taut/hull/boundary_measures.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/culling.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/precise_hull.h"
 #include "taut/io/read_model.h"
 
 namespace {
@@ -64,25 +71,122 @@ std::vector<dvec3> tessellation_of_accuracy(const Model& model, const Scene& sce
   return tessellate(model, high);
 }
 
-void compare(const Model& model, const Scene& scene, double relative, int runs) {
+Model teapot() {
+  Model model;
+  read_model(TAUT_SOURCE_DIR "/data/teapot.bpt", model);
+  return model;
+}
+
+const Scene& teapot_scene() {
+  static const Scene scene(teapot(), {.threads = 1, .progress = {}});
+  return scene;
+}
+
+const GaussMap& teapot_map() {
+  static const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
+  return map;
+}
+
+HullOptions options_for(double relative) {
   HullOptions options;
-  options.tolerance = relative * scene.diagonal();
+  options.relative = relative;
   options.threads = 1;
+  return options;
+}
+
+/// What stands before the structure: hierarchies and Gauss map.
+void build(benchmark::State& state) {
+  const Model model = teapot();
+  for (auto _ : state) {
+    const Scene scene(model, {.threads = 1, .progress = {}});
+    benchmark::DoNotOptimize(GaussMap(scene, {.threads = 1, .progress = {}}));
+  }
+}
+BENCHMARK(build)->Unit(benchmark::kMillisecond);
+
+/// The exact boundary, with the milliseconds of its phases; sampling belongs to culling.
+void structure(benchmark::State& state) {
+  const GaussMap& map = teapot_map();
+  HullStatistics statistics;
+  HullBoundary boundary;
+  for (auto _ : state) {
+    boundary = exact_boundary(teapot_scene(), map, options_for(1e-4), statistics);
+  }
+  const auto milliseconds = [](double seconds) {
+    return benchmark::Counter(1e3 * seconds, benchmark::Counter::kAvgIterations);
+  };
+  state.counters["cull_ms"] = milliseconds(statistics.seconds_cull);
+  state.counters["trace_ms"] = milliseconds(statistics.seconds_trace);
+  state.counters["stitch_ms"] = milliseconds(statistics.seconds_stitch);
+  state.counters["queries"] =
+      benchmark::Counter(double(statistics.support_queries), benchmark::Counter::kAvgIterations);
+  state.counters["newton"] =
+      benchmark::Counter(double(statistics.newton_iterations), benchmark::Counter::kAvgIterations);
+  state.counters["faces"] = double(boundary.faces.size());
+  state.counters["curves"] = double(boundary.curves.size());
+  state.counters["unresolved"] = double(boundary.unresolved.size());
+}
+BENCHMARK(structure)->Unit(benchmark::kMillisecond);
+
+/// Culling down to level 5: the share of the patches' parameter area that is proven off the hull.
+void cull_to_level_5(benchmark::State& state) {
+  const GaussMap& map = teapot_map();
+  Culling culling;
+  for (auto _ : state) {
+    culling = cull(teapot_scene(), map, {.levels = 5, .threads = 1, .progress = {}});
+  }
+  state.counters["removed"] = culling.removed_share();
+  state.counters["decided"] = culling.levels.back().decided_share;
+  state.counters["visited"] = double(culling.visited());
+  state.counters["mixed"] = double(culling.mixed());
+}
+BENCHMARK(cull_to_level_5)->Unit(benchmark::kMillisecond);
+
+/// All of the precise hull but the scene. Argument: the decimal exponent of the tolerance.
+void precise_mesh(benchmark::State& state) {
+  const HullOptions options = options_for(std::pow(10.0, double(-state.range(0))));
+  Hull hull;
+  for (auto _ : state) hull = precise_hull(teapot_scene(), options);
+  state.counters["mesh_ms"] = 1e3 * hull.statistics.seconds_mesh;
+  state.counters["faces"] = double(hull.mesh.n_faces());
+  state.counters["bound"] = hull.distance_bound / teapot_scene().diagonal();
+}
+BENCHMARK(precise_mesh)->DenseRange(3, 5)->Unit(benchmark::kMillisecond);
+
+void measure_boundary(benchmark::State& state) {
+  const GaussMap& map = teapot_map();
+  HullStatistics statistics;
+  const HullBoundary boundary = exact_boundary(teapot_scene(), map, options_for(1e-4), statistics);
+  const ContactGeometry geometry(teapot_scene());
+  BoundaryMeasures measures;
+  for (auto _ : state) measures = measure(teapot_scene(), geometry, boundary);
+  state.counters["accuracy"] = measures.accuracy;
+}
+BENCHMARK(measure_boundary)->Unit(benchmark::kMillisecond);
+
+void compare(const Model& model, const Scene& scene, double relative, int runs) {
+  const HullOptions options = options_for(relative);
+  const auto method = [&](const char* name, Hull (*hull)(const Scene&, const HullOptions&)) {
+    return Method{name, [&model, options, hull] {
+                    const Scene fresh(model, {.threads = 1, .progress = {}});
+                    return long(hull(fresh, options).mesh.n_faces());
+                  }};
+  };
   std::printf("\naccuracy %g of the diagonal; scene build included\n", relative);
-  compare_with_peers(tessellation_of_accuracy(model, scene, options.tolerance), runs, [&] {
-    const Scene fresh(model, {.threads = 1, .progress = {}});
-    return long(sampled_hull(fresh, options).mesh.n_faces());
-  });
+  compare_with_peers(tessellation_of_accuracy(model, scene, relative * scene.diagonal()), runs,
+                     {method("taut precise", precise_hull), method("taut sampled", sampled_hull)});
 }
 
 }  // namespace
 
-int main() {
-  Model model;
-  read_model(TAUT_SOURCE_DIR "/data/teapot.bpt", model);
-  const Scene scene(model, {.threads = 1, .progress = {}});
-  std::printf("Taut against point hulls of uniform tessellations of equal measured accuracy\n");
-  compare(model, scene, 1e-3, 15);
-  compare(model, scene, 1e-4, 9);
-  compare(model, scene, 1e-5, 3);
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  if (!benchmark::GetBenchmarkFilter().empty()) return 0;
+  const Model model = teapot();
+  std::printf("\nTaut against point hulls of uniform tessellations of equal measured accuracy\n");
+  compare(model, teapot_scene(), 1e-3, 15);
+  compare(model, teapot_scene(), 1e-4, 9);
+  compare(model, teapot_scene(), 1e-5, 3);
 }

@@ -74,28 +74,39 @@ std::vector<Peer> peers() {
 }
 
 void compare_with_peers(const std::vector<dvec3>& points, int runs,
-                        const std::function<long()>& taut) {
-  const std::vector<Peer> others = peers();
-  long faces = 0;
-  std::vector<long> other_faces(others.size());
-  std::vector<double> times;
-  std::vector<std::vector<double>> other_times(others.size()), ratios(others.size());
-  for (int run = 0; run < runs; ++run) {
+                        const std::vector<Method>& methods) {
+  struct Result {
+    long faces = 0;
+    std::vector<double> times;
+  };
+  const auto timed = [](Result& result, const std::function<long()>& run) {
     const Stopwatch watch;
-    faces = taut();
-    times.push_back(watch.seconds());
+    result.faces = run();
+    result.times.push_back(watch.seconds());
+  };
+  const std::vector<Peer> others = peers();
+  std::vector<Result> own(methods.size()), theirs(others.size());
+  for (int run = 0; run < runs; ++run) {
+    for (std::size_t m = 0; m < methods.size(); ++m) timed(own[m], methods[m].faces);
     for (std::size_t k = 0; k < others.size(); ++k) {
-      const Stopwatch other;
-      other_faces[k] = others[k].faces(points);
-      other_times[k].push_back(other.seconds());
-      ratios[k].push_back(times.back() / other_times[k].back());
+      timed(theirs[k], [&] { return others[k].faces(points); });
     }
   }
-  std::printf("  %-20s %10.2f ms  %9ld faces\n", "taut", 1e3 * median(times), faces);
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    std::printf("  %-20s %10.2f ms  %9ld faces\n", methods[m].name.c_str(),
+                1e3 * median(own[m].times), own[m].faces);
+  }
   for (std::size_t k = 0; k < others.size(); ++k) {
-    std::printf("  %-20s %10.2f ms  %9ld faces  %9zu points    time ratio %.3f, faces ratio %.3f\n",
-                others[k].name.c_str(), 1e3 * median(other_times[k]), other_faces[k], points.size(),
-                median(ratios[k]), double(faces) / double(other_faces[k]));
+    std::printf("  %-20s %10.2f ms  %9ld faces  %9zu points\n", others[k].name.c_str(),
+                1e3 * median(theirs[k].times), theirs[k].faces, points.size());
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      std::vector<double> ratios;
+      for (std::size_t run = 0; run < own[m].times.size(); ++run) {
+        ratios.push_back(own[m].times[run] / theirs[k].times[run]);
+      }
+      std::printf("    %s to it: time ratio %.3f, faces ratio %.3f\n", methods[m].name.c_str(),
+                  median(ratios), double(own[m].faces) / double(theirs[k].faces));
+    }
   }
 }
 

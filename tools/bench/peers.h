@@ -17,10 +17,15 @@ struct Peer {
 /// Taut's own point hull without labels and mesh; CGAL and Qhull where they were found.
 std::vector<Peer> peers();
 
-/// Runs Taut, which returns the faces of its hull, and the peers on the points by turns, and prints
-/// a table: median times, and the medians of Taut's time as a ratio to each peer's in the same
-/// turn.
+/// A way in which Taut computes the hull, and returns how many faces it has.
+struct Method {
+  std::string name;
+  std::function<long()> faces;
+};
+
+/// Runs Taut and the peers on the points by turns, and prints a table: median times, and for each
+/// method the median of its time as a ratio to each peer's in the same turn.
 void compare_with_peers(const std::vector<taut::dvec3>& points, int runs,
-                        const std::function<long()>& taut);
+                        const std::vector<Method>& methods);
 
 }  // namespace taut_bench

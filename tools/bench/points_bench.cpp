@@ -37,9 +37,10 @@ void compare(std::size_t count, bool on_sphere, int runs) {
   Model model;
   model.add_part(std::move(part), 0);
   std::printf("\n%zu points %s\n", count, on_sphere ? "on a sphere" : "in a ball");
-  compare_with_peers(points, runs, [&] {
-    return long(convex_hull(model, {.threads = 1, .progress = {}}).mesh.n_faces());
-  });
+  compare_with_peers(
+      points, runs,
+      {{"taut",
+        [&] { return long(convex_hull(model, {.threads = 1, .progress = {}}).mesh.n_faces()); }}});
 }
 
 }  // namespace

@@ -25,6 +25,10 @@ namespace taut::tool {
 namespace {
 
 constexpr double default_relative = 1e-4;
+/// Reasons for unresolved spots that the warning names; -v tells all.
+constexpr std::size_t reasons_told = 3;
+/// Estimated relative accuracy of its measures that a complete boundary does not exceed.
+constexpr double worst_accuracy = 1e-9;
 
 struct HullArguments {
   InputArguments inputs;
@@ -96,12 +100,42 @@ Outcome compute(Input& input, const std::string& method, const HullOptions& opti
   }
 }
 
+/// Warns that the exact hull is not complete: how many spots of it, and the first reasons.
+void warn_of_unresolved(const HullBoundary& boundary, Console& console) {
+  if (boundary.unresolved.empty()) return;
+  std::vector<std::pair<std::string, long>> reasons;  // each once, with how often it occurs
+  for (const Unresolved& spot : boundary.unresolved) {
+    console.note("unresolved at the normal " + number(spot.n.x) + " " + number(spot.n.y) + " " +
+                 number(spot.n.z) + ": " + spot.reason);
+    const auto known = std::find_if(reasons.begin(), reasons.end(),
+                                    [&](const auto& r) { return r.first == spot.reason; });
+    if (known == reasons.end()) {
+      reasons.emplace_back(spot.reason, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  std::vector<std::string> words;
+  for (std::size_t k = 0; k < std::min(reasons.size(), reasons_told); ++k) {
+    words.push_back(reasons[k].first +
+                    (reasons[k].second > 1 ? " (" + number(reasons[k].second) + ")" : ""));
+  }
+  if (reasons.size() > reasons_told) words.emplace_back("and others (-v tells all)");
+  console.warn("unresolved",
+               counted(long(boundary.unresolved.size()), "spot", "spots") +
+                   " of the exact hull could not be resolved: " + joined(words, "; ") +
+                   ". Faces of it may be missing, it is not measured; the mesh is whole and within "
+                   "its distance");
+}
+
 /// What is known of the exact hull: its faces and its measures.
-Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method) {
+Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method,
+                             Console& console) {
   Report::ExactHull exact;
   exact.gap_bound = hull.distance_bound;
   if (hull.boundary) {
     const HullBoundary& boundary = *hull.boundary;
+    warn_of_unresolved(boundary, console);
     exact.counts = {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
                     boundary.count(FaceKind::facet), int(boundary.curves.size()),
                     int(boundary.unresolved.size())};
@@ -112,6 +146,13 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
           measure(input.scene(), ContactGeometry(input.scene()), boundary);
       exact.measures = measures;
       exact.mean_width = measures.mean_width;
+      if (!(measures.accuracy <= worst_accuracy)) {
+        console.warn("inexact-measures",
+                     "the measures of the exact hull are accurate to " +
+                         number(measures.accuracy, 2) +
+                         " only: faces of it may be missing or not meet; the mesh is whole and "
+                         "within its distance");
+      }
     }
   } else if (input.model().polyhedral() && method == "precise") {
     exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
@@ -120,17 +161,19 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
   return exact;
 }
 
-Report make_report(Input& input, const Hull& hull, const HullArguments& arguments,
-                   double tolerance) {
+Report make_report(Input& input, const Hull& hull, const HullArguments& arguments, double tolerance,
+                   Console& console) {
   Report report;
   report.input = input.summary();
   report.method = arguments.method;
   report.dimension = hull.dimension();
-  report.hull = exact_hull(input, hull, arguments.method);
+  const Stopwatch measuring;
+  report.hull = exact_hull(input, hull, arguments.method, console);
   report.mesh.vertices = long(hull.mesh.n_vertices());
   report.mesh.edges = long(hull.mesh.n_edges());
   report.mesh.faces = long(hull.mesh.n_faces());
   report.mesh.measures = measure(polygons(hull.mesh));
+  report.seconds.measure = measuring.seconds();
   report.mesh.tolerance = tolerance;
   report.mesh.distance_bound = hull.distance_bound;
   const HullStatistics& statistics = hull.statistics;
@@ -173,7 +216,8 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
                            report.method + ")");
   const auto measured = [&](double Measures::*value) {
     const std::string of_mesh = number(report.mesh.measures.*value, 10);
-    if (!report.hull.measures || report.mesh.distance_bound == 0) return of_mesh;
+    if (report.mesh.distance_bound == 0) return of_mesh;
+    if (!report.hull.measures) return of_mesh + " of the mesh";
     return number((*report.hull.measures).*value, 10) + ", the mesh's " + of_mesh;
   };
   text += line("volume", measured(&Measures::volume));
@@ -186,8 +230,8 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
   text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
                               number(s.build, 2) + ", sample " + number(s.sample, 2) + ", cull " +
                               number(s.cull, 2) + ", trace " + number(s.trace, 2) + ", stitch " +
-                              number(s.stitch, 2) + ", mesh " + number(s.mesh, 2) + ", write " +
-                              number(s.write, 2));
+                              number(s.stitch, 2) + ", mesh " + number(s.mesh, 2) + ", measure " +
+                              number(s.measure, 2) + ", write " + number(s.write, 2));
   for (const Report::Mesh::File& file : report.mesh.files) {
     if (file.rounding == 0) continue;
     text += line("rounding", "to float moved vertices of " + file.file + " by at most " +
@@ -198,11 +242,7 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
 }
 
 /// The exact hull, with the report as far as it goes.
-HullDocument document_of(Input& input, const Hull& hull, const Report& report,
-                         const std::string& file) {
-  if (!hull.boundary && !input.model().polyhedral()) {
-    throw IoError(file + ": the exact hull of this model is not known; .ply holds its mesh");
-  }
+HullDocument document_of(Input& input, const Hull& hull, const Report& report) {
   HullDocument document = hull.boundary
                               ? hull_document(input.scene(), *hull.boundary, input.part_files())
                               : hull_document(input.model(), hull.mesh, input.part_files());
@@ -214,7 +254,7 @@ HullDocument document_of(Input& input, const Hull& hull, const Report& report,
 WrittenMesh write_output(const std::string& file, const std::string& format, Input& input,
                          const Hull& hull, const Report& report, Console& console) {
   if (is_document(format)) {
-    const HullDocument document = document_of(input, hull, report, file);
+    const HullDocument document = document_of(input, hull, report);
     if (file != "-") {
       write_hull(file, document);
     } else {
@@ -241,6 +281,13 @@ WrittenMesh write_output(const std::string& file, const std::string& format, Inp
 /// the tolerance.
 void write_outputs(const HullArguments& arguments, Input& input, const Hull& hull, Report& report,
                    Console& console) {
+  for (const std::string& file : arguments.outputs) {
+    if (!is_document(format_of(file, arguments)) || hull.boundary || input.model().polyhedral()) {
+      continue;
+    }
+    throw IoError(file + ": the exact hull of this model, which is flat, is not known; " +
+                  ".ply holds its mesh");
+  }
   for (const std::string& file : arguments.outputs) {
     console.progress().check();
     const WrittenMesh written =
@@ -271,15 +318,7 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   options.progress = console.progress();
   const Outcome outcome = compute(input, arguments.method, options);
 
-  Report report = make_report(input, *outcome.hull, arguments, options.tolerance);
-  if (report.hull.counts && report.hull.counts->unresolved > 0) {
-    console.warn("unresolved", counted(report.hull.counts->unresolved, "spot", "spots") +
-                                   " of the exact hull could not be resolved; its mesh is whole");
-    for (const Unresolved& spot : outcome.hull->boundary->unresolved) {
-      console.note("unresolved at the normal " + number(spot.n.x) + " " + number(spot.n.y) + " " +
-                   number(spot.n.z) + ": " + spot.reason);
-    }
-  }
+  Report report = make_report(input, *outcome.hull, arguments, options.tolerance, console);
   bring_up_to_date(report, outcome, console);
   const Stopwatch writing;
   write_outputs(arguments, input, *outcome.hull, report, console);
