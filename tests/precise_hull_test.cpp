@@ -1,0 +1,348 @@
+#include "taut/hull/precise_hull.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <ostream>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "boundary_checks.h"
+#include "hull_checks.h"
+#include "taut/core/error.h"
+#include "taut/hull/boundary_measures.h"
+#include "truths.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models and checks
+
+/// How many of each an exact boundary has.
+struct Counts {
+  int patches = 0;
+  int scrolls = 0;
+  int facets = 0;
+  int curves = 0;
+  bool operator==(const Counts&) const = default;
+};
+
+std::ostream& operator<<(std::ostream& out, const Counts& c) {
+  return out << "patches " << c.patches << ", scrolls " << c.scrolls << ", facets " << c.facets
+             << ", curves " << c.curves;
+}
+
+Counts counts(const HullBoundary& boundary) {
+  return {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
+          boundary.count(FaceKind::facet), int(boundary.curves.size())};
+}
+
+int curve_count(const HullBoundary& boundary, HullCurveKind kind) {
+  return int(std::count_if(boundary.curves.begin(), boundary.curves.end(),
+                           [&](const HullCurve& curve) { return curve.kind == kind; }));
+}
+
+HullOptions options(double relative = 1e-2, int threads = 1) {
+  return {.relative = relative, .threads = threads, .progress = {}};
+}
+
+/// The boundary alone, without a mesh.
+Hull boundary_of(const Scene& scene, int threads = 1) {
+  Hull hull;
+  hull.kind = HullKind::solid;
+  const GaussMap map(scene, {.threads = threads, .progress = {}});
+  hull.boundary = std::make_shared<const HullBoundary>(
+      exact_boundary(scene, map, options(1e-2, threads), hull.statistics));
+  return hull;
+}
+
+BoundaryMeasures measures_of(const Scene& scene, const Hull& hull) {
+  return measure(scene, ContactGeometry(scene), *hull.boundary);
+}
+
+void expect_complete(const HullBoundary& boundary) {
+  for (const Unresolved& spot : boundary.unresolved) {
+    ADD_FAILURE() << spot.reason << " at (" << spot.n.x << ", " << spot.n.y << ", " << spot.n.z
+                  << ")";
+  }
+}
+
+Truth truth_named(const std::string& name) {
+  for (const Truth& truth : truths()) {
+    if (truth.name == name) return truth;
+  }
+  throw InvalidInput("no truth is called " + name);
+}
+
+struct ExactCase {
+  const char* name;
+  Counts counts;
+  int edges = 0;    ///< of the curves
+  int rulings = 0;  ///< of the curves
+};
+
+const std::vector<ExactCase>& exact_cases() {
+  static const std::vector<ExactCase> all = {
+      {"spheres 1 and 1, 3 apart", {2, 1, 0, 2}},
+      {"spheres 1 and 0.5, 3 apart", {2, 1, 0, 2}},
+      {"spheres 1 and 0.5, 2 apart", {2, 1, 0, 2}},
+      {"sphere and point", {1, 1, 0, 1}},
+      {"three spheres", {3, 3, 2, 12}, 0, 6},
+      {"four spheres", {4, 6, 4, 24}, 0, 12},
+      {"ellipsoid", {1, 0, 0, 0}},
+      {"two ellipsoids", {2, 1, 0, 2}},
+      {"tori like an oloid", {2, 1, 0, 2}},
+      {"oloid", {0, 1, 0, 2}, 2},
+      {"twisted cubic", {0, 2, 0, 2}, 1, 1},
+  };
+  return all;
+}
+
+bool is_smooth(const ExactCase& exact) { return exact.edges == 0; }
+
+void expect_truth(const Scene& scene, const Hull& hull, const Truth& truth, real relative = 1e-9L) {
+  const BoundaryMeasures measured = measures_of(scene, hull);
+  EXPECT_NEAR(double(measured.volume), double(truth.volume), double(relative * truth.volume));
+  if (truth.area >= 0) {
+    EXPECT_NEAR(double(measured.area), double(truth.area), double(relative * truth.area));
+  }
+  EXPECT_LE(measured.accuracy, relative);
+}
+
+TEST(PreciseHull, ClosedFormsAndTheirStructure) {
+  for (const ExactCase& exact : exact_cases()) {
+    SCOPED_TRACE(exact.name);
+    const Truth truth = truth_named(exact.name);
+    const Scene scene = make_scene(truth.shape);
+    const Hull hull = boundary_of(scene);
+    expect_complete(*hull.boundary);
+    EXPECT_EQ(counts(*hull.boundary), exact.counts);
+    EXPECT_EQ(curve_count(*hull.boundary, HullCurveKind::edge), exact.edges);
+    EXPECT_EQ(curve_count(*hull.boundary, HullCurveKind::ruling), exact.rulings);
+    expect_truth(scene, hull, truth);
+    if (!is_smooth(exact)) continue;
+    const BoundaryFacts facts = boundary_facts(scene, hull, 100);
+    EXPECT_TRUE(facts.sound()) << facts;
+  }
+}
+
+/// Turned and at any size, the same counts and measures.
+TEST(PreciseHull, StructureIsInvariant) {
+  for (const ExactCase& exact : exact_cases()) {
+    // Of spheres in a plane, turned together, poles and seams lie on the separating curves.
+    if (exact.counts.facets > 0) continue;
+    const Truth truth = truth_named(exact.name);
+    for (const double s : {1.0, 1e-6, 1e6}) {
+      SCOPED_TRACE(std::string(exact.name) + " of size " + std::to_string(s));
+      const Scene scene =
+          make_scene(scaled(mapped(truth.shape, skew_rotation(), {0.1, -0.2, 0.3}), s));
+      const Hull hull = boundary_of(scene);
+      expect_complete(*hull.boundary);
+      EXPECT_EQ(counts(*hull.boundary), exact.counts);
+      const BoundaryMeasures measured = measures_of(scene, hull);
+      EXPECT_NEAR(measured.volume / (s * s * s), double(truth.volume), 1e-9 * double(truth.volume));
+      if (truth.area >= 0) {
+        EXPECT_NEAR(measured.area / (s * s), double(truth.area), 1e-9 * double(truth.area));
+      }
+    }
+  }
+}
+
+/// Far away the surfaces' pieces no longer meet exactly: the structure stays where it does not
+/// depend on that.
+TEST(PreciseHull, StructureHoldsFarAway) {
+  for (const char* name : {"oloid", "twisted cubic"}) {
+    SCOPED_TRACE(name);
+    const Truth truth = truth_named(name);
+    const double D = make_scene(truth.shape).diagonal();
+    const Scene scene = make_scene(
+        shifted(mapped(truth.shape, skew_rotation()), 1e6 * D * dvec3(0.48, -0.6, 0.64)));
+    const Hull hull = boundary_of(scene);
+    expect_complete(*hull.boundary);
+    const double rounding = 32 * 1e6 * std::numeric_limits<double>::epsilon();
+    expect_truth(scene, hull, truth, 100 * rounding);
+  }
+}
+
+TEST(PreciseHull, Teapot) {
+  const Scene scene = make_scene(teapot());
+  const Hull hull = precise_hull(scene, options(1e-3));
+  expect_complete(*hull.boundary);
+  EXPECT_EQ(counts(*hull.boundary), (Counts{28, 15, 10, 116}));
+  const BoundaryFacts facts = boundary_facts(scene, hull, 300);
+  EXPECT_TRUE(facts.sound()) << facts;
+  const BoundaryMeasures measured = measures_of(scene, hull);
+  EXPECT_LE(measured.accuracy, 1e-12);
+  EXPECT_NEAR(measured.volume, 32.67038, 1e-5);
+  EXPECT_NEAR(measured.area, 53.66226, 1e-5);
+  expect_certified(scene, hull, 1e-3, {measured.volume, measured.area, 1e-9});
+}
+
+TEST(PreciseHull, Blobs) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    SCOPED_TRACE(seed);
+    const Scene scene = make_scene(blob(seed));
+    const Hull hull = precise_hull(scene, options(1e-3));
+    expect_complete(*hull.boundary);
+    const BoundaryFacts facts = boundary_facts(scene, hull, 200);
+    EXPECT_TRUE(facts.sound()) << facts;
+    const BoundaryMeasures measured = measures_of(scene, hull);
+    EXPECT_LE(measured.accuracy, 1e-9);
+    expect_certified(scene, hull, 1e-3, {measured.volume, measured.area, 1e-9}, 300);
+  }
+}
+
+/// Every number that the boundary holds.
+std::vector<double> bits_of(const Hull& hull) {
+  std::vector<double> all;
+  const auto add = [&](const dvec3& x) { all.insert(all.end(), {x.x, x.y, x.z}); };
+  for (const SeparatingArc& arc : hull.boundary->arcs) {
+    for (const ArcPiece& piece : arc.pieces) {
+      for (const Ruling& r : piece.rulings) {
+        add(r.n);
+        for (const Contact& c : r.contact) all.insert(all.end(), {double(c.element), c.u, c.v});
+        for (const dvec3& x : r.point) add(x);
+      }
+    }
+  }
+  for (const HullFace& face : hull.boundary->faces) {
+    all.push_back(double(face.kind));
+    all.push_back(face.source);
+    add(face.n);
+    for (const dvec3& x : face.points) add(x);
+    for (const PatchRegion& region : face.regions) {
+      all.insert(all.end(), {double(region.instance), double(region.patch)});
+      for (const auto& loop : region.loops) {
+        for (const TrimStretch& s : loop) {
+          all.insert(all.end(), {double(s.arc), double(s.piece), double(s.curve), s.from, s.to});
+        }
+      }
+    }
+  }
+  for (const HullCurve& curve : hull.boundary->curves) {
+    all.insert(all.end(), {double(curve.kind), double(curve.faces[0]), double(curve.faces[1])});
+    for (const dvec3& x : curve.points) add(x);
+  }
+  return all;
+}
+
+TEST(PreciseHull, SameBitsForAnyNumberOfThreads) {
+  const Shape shape = blob(2) + shifted(blob(3), {1, 0.5, 0.2});
+  const Scene scene = make_scene(shape);
+  const Hull one = precise_hull(scene, options(1e-2, 1));
+  const Hull four = precise_hull(scene, options(1e-2, 4));
+  EXPECT_FALSE(bits_of(one).empty());
+  EXPECT_TRUE(bits_of(one) == bits_of(four));
+  EXPECT_EQ(one.distance_bound, four.distance_bound);
+  EXPECT_TRUE(polygons(one.mesh).points == polygons(four.mesh).points);
+  EXPECT_TRUE(polygons(one.mesh).polygons == polygons(four.mesh).polygons);
+}
+
+TEST(PreciseHull, OrderOfInstancesDoesNotMatter) {
+  const Model model = posed_teapots(3, 4);
+  Model turned = model;
+  std::vector<Instance> instances(model.instances().begin(), model.instances().end());
+  turned.clear_instances();
+  for (auto i = instances.rbegin(); i != instances.rend(); ++i) {
+    turned.add_instance(i->part, i->pose);
+  }
+  const Scene scene(model, {.threads = 1, .progress = {}});
+  const Scene other(turned, {.threads = 1, .progress = {}});
+  const Hull a = boundary_of(scene);
+  const Hull b = boundary_of(other);
+  expect_complete(*a.boundary);
+  expect_complete(*b.boundary);
+  EXPECT_EQ(counts(*a.boundary), counts(*b.boundary));
+  const double volume = measures_of(scene, a).volume;
+  EXPECT_NEAR(measures_of(other, b).volume, volume, 1e-11 * volume);
+}
+
+TEST(PreciseHull, Cancelled) {
+  const Scene scene = make_scene(blob(1));
+  std::stop_source source;
+  source.request_stop();
+  HullOptions stopped = options();
+  stopped.progress.stop = source.get_token();
+  EXPECT_THROW(precise_hull(scene, stopped), Cancelled);
+  // Asked for as soon as each step begins.
+  for (const std::string name : {"cull", "trace", "stitch"}) {
+    std::stop_source later;
+    bool reached = false;
+    HullOptions interrupted = options();
+    interrupted.progress.stop = later.get_token();
+    interrupted.progress.report = [&](std::string_view step, double /*share*/) {
+      if (step != name) return;
+      reached = true;
+      later.request_stop();
+    };
+    EXPECT_THROW(precise_hull(scene, interrupted), Cancelled) << name;
+    EXPECT_TRUE(reached) << name;
+  }
+}
+
+TEST(PreciseHull, RejectsWrongTolerances) {
+  const Scene scene = make_scene(sphere());
+  EXPECT_THROW(precise_hull(scene, {.tolerance = -1, .progress = {}}), InvalidInput);
+  EXPECT_THROW(precise_hull(scene, {.relative = 0, .progress = {}}), InvalidInput);
+}
+
+TEST(PreciseHull, FlatScenesHaveNoBoundary) {
+  const Shape flat = {{}, {circle({0, 0, 0}, {1, 0, 0}, {0, 2, 0})}, {}};
+  const Shape line = {{}, {segment({0, 0, 0}, {1, 2, 3})}, {}};
+  const Shape point = {{}, {}, {{1, 2, 3}}};
+  const auto hull_of = [](const Shape& shape) {
+    return precise_hull(make_scene(mapped(shape, skew_rotation())), options());
+  };
+  const Hull planar = hull_of(flat);
+  EXPECT_EQ(planar.kind, HullKind::planar);
+  EXPECT_EQ(planar.boundary, nullptr);
+  EXPECT_EQ(hull_of(line).kind, HullKind::segment);
+  EXPECT_EQ(hull_of(line).boundary, nullptr);
+  EXPECT_EQ(hull_of(point).kind, HullKind::point);
+  EXPECT_EQ(hull_of(point).boundary, nullptr);
+}
+
+/// Whatever the input, the mesh is a certified hull, and a boundary that claims to be complete is
+/// sound and has the right measures.
+void expect_no_false_claim(const Shape& shape, double volume, const std::string& name) {
+  SCOPED_TRACE(name);
+  const Scene scene = make_scene(shape);
+  const Hull hull = precise_hull(scene, options(1e-2));
+  expect_certified(scene, hull, 1e-2, {volume, -1, 1e-9}, 100);
+  ASSERT_NE(hull.boundary, nullptr);
+  if (!hull.boundary->unresolved.empty()) return;
+  const BoundaryFacts facts = boundary_facts(scene, hull, 50);
+  EXPECT_TRUE(facts.sound(1e-11)) << facts;
+  const BoundaryMeasures measured = measures_of(scene, hull);
+  EXPECT_LE(measured.accuracy, 1e-9);
+  if (volume >= 0) {
+    EXPECT_NEAR(measured.volume, volume, 1e-9 * volume);
+  }
+}
+
+TEST(PreciseHull, DegenerateInputIsNeverClaimedWrongly) {
+  for (const Truth& truth : truths()) {
+    const bool exact = std::any_of(exact_cases().begin(), exact_cases().end(),
+                                   [&](const ExactCase& e) { return truth.name == e.name; });
+    if (exact || truth.name == "teapot" || truth.uncertainty > 0) continue;
+    expect_no_false_claim(truth.shape, double(truth.volume), truth.name);
+  }
+  constexpr double pi = std::numbers::pi;
+  const double ball = 4 * pi / 3;
+  expect_no_false_claim(sphere() + sphere(), ball, "identical spheres");
+  expect_no_false_claim(sphere() + scaled(sphere(), 0.5), ball, "a sphere inside another");
+  expect_no_false_claim(sphere() + shifted(sphere(0.5), {0, 0, 0.5}), ball,
+                        "spheres tangent from inside");
+  expect_no_false_claim(sphere() + shifted(sphere(), {2, 0, 0}), ball + 2 * pi,
+                        "spheres tangent from outside");
+  expect_no_false_claim(blob(1) + blob(1), -1, "identical blobs");
+}
+
+}  // namespace
+}  // namespace taut

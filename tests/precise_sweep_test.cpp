@@ -1,0 +1,95 @@
+// Exact boundaries against support queries in many directions: the teapot, scenes of posed teapots,
+// blobs, scenes of random spheres.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "boundary_checks.h"
+#include "hull_checks.h"
+#include "taut/hull/boundary_measures.h"
+#include "taut/hull/precise_hull.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models and checks
+
+Hull boundary_of(const Scene& scene) {
+  HullOptions options;
+  options.threads = 1;
+  Hull hull;
+  hull.kind = HullKind::solid;
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  hull.boundary =
+      std::make_shared<const HullBoundary>(exact_boundary(scene, map, options, hull.statistics));
+  return hull;
+}
+
+/// Complete, and sound in so many directions and as many points of patches. Lengths are in the
+/// scene's frame, whose size is about the diagonal's.
+void expect_exact(const Scene& scene, int directions, const std::string& name) {
+  SCOPED_TRACE(name);
+  const Hull hull = boundary_of(scene);
+  for (const Unresolved& spot : hull.boundary->unresolved) ADD_FAILURE() << spot.reason;
+  const BoundaryFacts facts = boundary_facts(scene, hull, directions);
+  EXPECT_TRUE(facts.sound()) << facts;
+  EXPECT_LT(facts.undecided, 0.01 * facts.points + 10);
+}
+
+void expect_accurate(const Scene& scene, const std::string& name) {
+  SCOPED_TRACE(name);
+  const Hull hull = boundary_of(scene);
+  EXPECT_LE(measure(scene, ContactGeometry(scene), *hull.boundary).accuracy, 1e-9);
+}
+
+constexpr int directions = 20'000;
+
+TEST(PreciseSweep, Teapot) { expect_exact(make_scene(teapot()), directions, "teapot"); }
+
+class PosedTeapots : public testing::TestWithParam<unsigned> {};
+
+TEST_P(PosedTeapots, AreExact) {
+  const unsigned seed = GetParam();
+  Model one = posed_teapots(seed, 1);
+  expect_exact(Scene(std::move(one), {.threads = 1, .progress = {}}), directions, "one");
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PosedTeapots, testing::Range(1U, 17U));
+
+class SeveralTeapots : public testing::TestWithParam<unsigned> {};
+
+TEST_P(SeveralTeapots, AreExact) {
+  const unsigned seed = GetParam();
+  Model several = posed_teapots(seed, int(seed));
+  expect_exact(Scene(std::move(several), {.threads = 1, .progress = {}}), directions / 10,
+               "several");
+}
+
+INSTANTIATE_TEST_SUITE_P(Counts, SeveralTeapots, testing::Values(2U, 3U, 5U, 16U));
+
+class Blobs : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Blobs, AreExact) {
+  const Scene scene = make_scene(blob(GetParam()));
+  expect_exact(scene, directions, "blob");
+  expect_accurate(scene, "blob");
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 21U));
+
+/// Two to eight spheres of any size and place.
+TEST(PreciseSweep, RandomSpheres) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    Random random(seed);
+    Shape shape;
+    for (int k = pick(random, 2, 8); k > 0; --k) {
+      const Shape ball = mapped(sphere(log_uniform(random, 0.1, 1)), random_rotation(random));
+      shape = shape + shifted(ball, 2.0 * random_point(random));
+    }
+    expect_exact(make_scene(shape), 500, std::to_string(seed));
+  }
+}
+
+}  // namespace
+}  // namespace taut
