@@ -24,7 +24,7 @@ struct Tracked {
     const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
     graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
     unresolved = graph.unresolved;
-    regions = trim_regions(geometry, query, graph, unresolved);
+    regions = trim_regions(geometry, query, graph, culling.cells, unresolved);
   }
 
   /// Tracks of arcs name a contact on the edge that passes the stretch the way they say.

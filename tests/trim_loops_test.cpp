@@ -28,7 +28,7 @@ struct Trimmed {
     const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
     graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
     unresolved = graph.unresolved;
-    regions = trim_regions(geometry, query, graph, unresolved);
+    regions = trim_regions(geometry, query, graph, culling.cells, unresolved);
   }
 
   Contact at(const TrimRegion& r, const dvec2& uv) const {

@@ -37,7 +37,7 @@ constexpr double least_cosine = 0.99;
 /// Rate of the distance of two contacts of one surface or curve that merge, at most. It tends to
 /// the square root of two, to less (0.6 and more were seen) where third derivatives are not
 /// continuous.
-constexpr double slowest_merging = -0.3;
+constexpr double slowest_merging = -0.05;
 /// Steps below this share of the distance between two contacts are stuck.
 constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.

@@ -90,6 +90,8 @@ bool leads_over_border(const ContactExit& exit) {
 
 /// A contact whose parameter is so near to a collapsed side is at the pole.
 constexpr double pole_parameter = 1e-9;
+/// How near to a pole, as a parameter, a climb in the direction of its normal need not go on.
+constexpr double about_pole = 1e-5;
 /// Parameters about a pole that are tried for the steepest way up, a patch.
 constexpr int pole_samples = 8;
 /// How far from a pole a climb begins at most.
@@ -168,6 +170,7 @@ class Climb {
   }
 
   Progress on_face() {
+    if (at_its_pole()) return Progress::arrived;
     const ContactJet j = geometry_.jet(c_);
     const dvec2 slope(glm::dot(j.dx[0], n_), glm::dot(j.dx[1], n_));
     const dvec2 size(glm::length(j.dx[0]), glm::length(j.dx[1]));
@@ -191,14 +194,18 @@ class Climb {
       for (int a = 0; a < 2; ++a) {
         if (size[a] == 0) continue;
         const double second = a == 0 ? uu : vv;
-        step[a] = second < 0
-                      ? -slope[a] / second
-                      : std::copysign(std::min(stride, std::abs(slope[a]) / size[a]), slope[a]);
+        // Where the value is not concave, far; where it is flat, nowhere.
+        const bool level = std::abs(slope[a]) <= flat * (size[a] + small_tangent);
+        step[a] = second < 0 ? -slope[a] / second : level ? 0 : std::copysign(stride, slope[a]);
       }
     }
     // On a border that the slope does not lead over.
     for (int a = 0; a < 2; ++a) {
       if (step[a] != 0 && room_for(a, step[a]) <= 0) step[a] = 0;
+    }
+    for (int a = 0; a < 2; ++a) {
+      const double room = step[a] < 0 ? at[a] : 1 - at[a];
+      if (step[a] != 0 && at_pole(a, step[a]) && room < pole_parameter) return off_the_pole();
     }
     if (glm::length(step * size) <= short_step) {
       return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
@@ -222,6 +229,18 @@ class Climb {
     return still && ++stuck_ > 4 ? Progress::lost : Progress::moved;
   }
 
+  /// About a pole whose normal is n: moves there. Parameters are of no use so near to it.
+  bool at_its_pole() {
+    for (const Side side : all_sides) {
+      const double t = across_u(side) ? c_.u : c_.v;
+      if ((at_end(side) ? 1 - t : t) > about_pole || !is_pole(geometry_, c_, side)) continue;
+      const Contact pole = at_exit(c_, {ContactExit::Kind::side, int(side)});
+      if (glm::length(glm::cross(unit_normal(geometry_, pole), n_)) >= pole_angle) continue;
+      c_ = pole;
+      return true;
+    }
+    return false;
+  }
   /// At a pole: arrived, unless it is not the maximum.
   Progress off_the_pole() {
     if (left_pole_) return Progress::lost;
@@ -253,11 +272,13 @@ class Climb {
     if (c_.u <= 0 && slope < -flat * size) return leave({ContactExit::Kind::end, 0});
     if (c_.u >= 1 && slope > flat * size) return leave({ContactExit::Kind::end, 1});
     const double second = glm::dot(j.dxx, n_);
-    double step = second < 0 ? -slope / second
-                             : std::copysign(std::min(stride, std::abs(slope) / size), slope);
+    double step = second < 0                       ? -slope / second
+                  : std::abs(slope) <= flat * size ? 0
+                                                   : std::copysign(stride, slope);
     step = std::clamp(step, -0.5, 0.5);
     const double to = std::clamp(c_.u + step, 0.0, 1.0);
-    if (std::abs(to - c_.u) * size > short_step) {
+    const bool to_end = to != c_.u && (to == 0 || to == 1);
+    if (std::abs(to - c_.u) * size > short_step || to_end) {
       c_.u = to;
       return Progress::moved;
     }

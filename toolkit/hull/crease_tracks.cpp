@@ -47,8 +47,10 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
       Crease& own = creases_[{first.instance, first.element}];
       const auto add = [&](double from, double to, double sense) {
         if (std::abs(to - from) < same_parameter) return;
-        own.intervals.push_back(
-            {std::min(from, to), std::max(from, to), sense > 0, {index, p, -1, 0, 0}});
+        own.intervals.push_back({std::min(from, to),
+                                 std::max(from, to),
+                                 sense > 0,
+                                 {index, p, int(i), to - from, -1, 0, 0}});
       };
       double from = first.u;
       // Runs of rulings on one side of the edge; the ends of arcs may be tangent to it.

@@ -21,6 +21,8 @@ constexpr double narrow = 1e-9;
 constexpr double first_order = 0.2;
 /// Cosine below which two directions are too far apart for a great arc between them.
 constexpr double nearly_opposite = -0.9;
+/// Share of the angle between two directions that a search between them leaves on either side.
+constexpr double least_part = 0.05;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 constexpr int secant_limit = 60;
@@ -181,9 +183,20 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   }
   const std::optional<CommonSupport> seed = parting(a, b);
   if (seed && is_traced(*seed)) return;
-  const dvec3 n = seed ? seed->n : glm::normalize(a.n + b.n);
+  // A direction that is nearly one of the two would not make the search narrower.
+  const double least = least_part * glm::distance(a.n, b.n);
+  const bool divides =
+      seed && glm::distance(seed->n, a.n) > least && glm::distance(seed->n, b.n) > least;
+  if (seed && !divides) {
+    const Sighting there = seen(seed->n, seed->contact[0]);
+    if (glm::dot(there.x, seed->n) <= glm::dot(seed->jet[0].x, seed->n) + support_tie) {
+      trace(*seed);
+      return;
+    }
+  }
+  const dvec3 n = divides ? seed->n : glm::normalize(a.n + b.n);
   const Sighting middle = seen(n, a.contact);
-  if (seed && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + support_tie) {
+  if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + support_tie) {
     trace(*seed);
     return;
   }

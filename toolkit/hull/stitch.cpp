@@ -359,6 +359,7 @@ void Stitcher::make_bitangents() {
           ++k;
           if (k >= count || !run_on(piece, (start + k) % count)) break;
         }
+        if (closed) points.back() = points.front();
         // Walked along with the patch to the left.
         if (contact == 0) std::reverse(points.begin(), points.end());
         const int scroll = scroll_of_[std::size_t(a)][std::size_t(first)];
