@@ -199,6 +199,16 @@ TEST_F(Cli, HullTellsWhatIsUnresolved) {
   }
 }
 
+TEST_F(Cli, MeanWidthBelowDimensionThree) {
+  const auto mean_width = [&](const std::string& points) {
+    return Json::parse(run("hull " + plant("p.xyz", points) + " --json").out)["hull"]["mean_width"]
+        .get<double>();
+  };
+  EXPECT_NEAR(mean_width("0 0 1\n3 0 1\n3 4 1\n0 4 1\n"), 14 / 4.0, 1e-14);
+  EXPECT_NEAR(mean_width("0 0 1\n3 4 1\n"), 2.5, 1e-14);
+  EXPECT_EQ(mean_width("1 2 3\n"), 0);
+}
+
 TEST_F(Cli, FlatCurvesHaveNoExactHullYet) {
   const std::string arc = plant("arc.obj",
                                 "v 0 0 0\nv 1 2 0\nv 2 0 0\ncstype bezier\ndeg 2\n"
@@ -427,6 +437,7 @@ TEST_F(Cli, ExactHullsAsDocumentsAndProjects) {
   EXPECT_EQ(report["hull"]["facets"], 6);
   EXPECT_EQ(report["hull"]["unresolved"], 0);
   EXPECT_EQ(report["hull"]["volume"], 8);
+  EXPECT_NEAR(report["hull"]["mean_width"], 3, 1e-14);
   const Json hull = Json::parse(content(path("c.hull.json")));
   EXPECT_EQ(hull["format"], "taut-hull");
   EXPECT_EQ(hull["faces"].size(), 6U);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -128,6 +129,38 @@ void warn_of_unresolved(const HullBoundary& boundary, Console& console) {
                    "its distance");
 }
 
+/// Mean width of a convex polyhedron, polygon (both sides of which are faces), segment or point:
+/// over 4 pi, the sum of its edges' lengths times the angles by which the normal turns there.
+double mean_width(const HullMesh& mesh) {
+  const auto normal = [&](OpenMesh::FaceHandle face) {
+    dvec3 sum(0.0);
+    const auto from = mesh.cfv_begin(face);
+    const dvec3 origin = position(mesh, *from);
+    for (const auto h : mesh.fh_range(face)) {
+      sum += glm::cross(position(mesh, mesh.from_vertex_handle(h)) - origin,
+                        position(mesh, mesh.to_vertex_handle(h)) - origin);
+    }
+    return unit(sum);
+  };
+  std::vector<dvec3> normals;
+  for (const auto face : mesh.faces()) normals.push_back(normal(face));
+  double sum = 0;
+  for (const auto edge : mesh.edges()) {
+    const auto h = mesh.halfedge_handle(edge, 0);
+    const auto a = mesh.face_handle(h);
+    const auto b = mesh.face_handle(mesh.opposite_halfedge_handle(h));
+    double turn = 2 * std::numbers::pi;  // about a segment
+    if (a.is_valid() && b.is_valid()) {
+      const dvec3& m = normals[std::size_t(a.idx())];
+      const dvec3& n = normals[std::size_t(b.idx())];
+      turn = std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n));
+    }
+    sum += turn * glm::distance(position(mesh, mesh.from_vertex_handle(h)),
+                                position(mesh, mesh.to_vertex_handle(h)));
+  }
+  return sum / (4 * std::numbers::pi);
+}
+
 /// What is known of the exact hull: its faces and its measures.
 Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method,
                              Console& console) {
@@ -141,6 +174,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
                     int(boundary.unresolved.size())};
     if (input.model().polyhedral()) {
       exact.measures = measure(polygons(hull.mesh));
+      exact.mean_width = mean_width(hull.mesh);
     } else if (boundary.unresolved.empty()) {
       const BoundaryMeasures measures =
           measure(input.scene(), ContactGeometry(input.scene()), boundary);
@@ -157,6 +191,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
   } else if (input.model().polyhedral() && method == "precise") {
     exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
     exact.measures = measure(polygons(hull.mesh));
+    exact.mean_width = mean_width(hull.mesh);
   }
   return exact;
 }
