@@ -124,7 +124,14 @@ void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
     data.u = c.u;
     data.v = c.v;
     data.quality = float_above(bounds[p]);
-    mesh.set_normal(v, {samples[p].n.x, samples[p].n.y, samples[p].n.z});
+    if (c.kind == SourceKind::face) {
+      mesh.set_normal(v, {samples[p].n.x, samples[p].n.y, samples[p].n.z});
+    } else {
+      // On a crease many directions support; which of them found the point says nothing.
+      HullMesh::Normal normal;
+      mesh.calc_vertex_normal_correct(v, normal);
+      mesh.set_normal(v, normal.normalized());
+    }
   }
 }
 

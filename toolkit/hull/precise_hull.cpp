@@ -1,5 +1,6 @@
 #include "taut/hull/precise_hull.h"
 
+#include <cmath>
 #include <utility>
 
 #include "taut/core/stopwatch.h"
@@ -34,8 +35,9 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
   Lap lap;
   options.progress.update("cull", 0);
   Culling culling = cull(scene, map, {.threads = options.threads, .progress = options.progress});
-  statistics.cells = culling.visited();
-  statistics.cells_kept = culling.mixed();
+  const auto finest = double(culling.levels.empty() ? 0 : culling.levels.size() - 1);
+  statistics.cells = std::lround(scene.model().patch_count() * std::exp2(2 * finest));
+  statistics.cells_kept = std::lround(double(statistics.cells) * (1 - culling.removed_share()));
   statistics.seconds_cull += lap.seconds();
 
   options.progress.update("trace", 0);

@@ -25,6 +25,10 @@ constexpr double nearly_opposite = -0.9;
 constexpr double least_part = 0.05;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
+/// Cells of support queries after which it is given up, too: hundreds of times what generic models
+/// take, some seconds.
+constexpr long least_cells = 5'000'000;
+constexpr long cells_a_sample = 2'000;
 constexpr int secant_limit = 60;
 /// Values of two contacts that differ by so little are equal.
 constexpr double parting_tie = 1e-15;
@@ -57,6 +61,7 @@ class GraphTracer {
   bool is_near(const Sighting& from, const Sighting& to) const;
   bool joined(const Sighting& a, const Sighting& b) const;
   std::optional<CommonSupport> parting(const Sighting& a, const Sighting& b) const;
+  bool given_up();
   bool is_crossed(const SupportChange& change) const;
   bool is_traced(const CommonSupport& seed) const;
   void trace(const CommonSupport& seed);
@@ -77,6 +82,9 @@ class GraphTracer {
   SupportQuery& query_;
   const Progress& progress_;
   SeparatingGraph graph_;
+  long first_cells_ = 0;
+  long cell_limit_ = 0;
+  bool stopped_ = false;
   struct PieceContact {
     int arc, piece, contact;
   };
@@ -161,7 +169,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
 
 /// Finds and traces the curves that the great arc between two sightings crosses.
 void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
-  if (graph_.unresolved.size() >= failure_limit || joined(a, b)) return;
+  if (given_up() || joined(a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
     // Two samples on the curve itself.
     CommonSupport tie;
@@ -228,6 +236,16 @@ bool GraphTracer::is_crossed(const SupportChange& change) const {
     }
   }
   return odd;
+}
+
+/// Whether there is too much that cannot be resolved, or it costs too much. Counted in the cells of
+/// support queries, so that the same is given up each time.
+bool GraphTracer::given_up() {
+  if (stopped_ || graph_.unresolved.size() >= failure_limit) return true;
+  if (query_.cells() - first_cells_ <= cell_limit_) return false;
+  fail(dvec3(0.0), "the search for separating curves was given up: contact along curves or areas");
+  stopped_ = true;
+  return true;
 }
 
 bool GraphTracer::is_traced(const CommonSupport& seed) const {
@@ -460,7 +478,7 @@ int GraphTracer::store(SeparatingArc arc) {
 
 /// Traces the arcs that leave facets across sides where none was met yet.
 void GraphTracer::trace_waiting() {
-  while (!waiting_.empty()) {
+  while (!waiting_.empty() && !given_up()) {
     const int node = waiting_.back();
     waiting_.pop_back();
     const std::size_t count = graph_.nodes[std::size_t(node)].contacts.size();
@@ -502,10 +520,12 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
     points.push_back(x);
     sightings.push_back({s.n, c, x});
   }
+  first_cells_ = query_.cells();
+  cell_limit_ = least_cells + cells_a_sample * long(samples.size());
   find_poles();
   trace_waiting();
   for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
-    if (graph_.unresolved.size() >= failure_limit) break;
+    if (given_up()) break;
     if (is_crossed(change)) continue;
     const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
     if (seed && !is_traced(*seed)) trace(*seed);
@@ -513,7 +533,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
-    if (!f.alive || graph_.unresolved.size() >= failure_limit) continue;
+    if (!f.alive || given_up()) continue;
     progress_.check();
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = f.vertex[k];
