@@ -200,11 +200,13 @@ class BoundaryCheck {
   void check_contact(const dvec3& n, const Contact& c, const dvec3& x) {
     const taut::ContactJet jet = geometry_.jet(c);
     raise(facts_.point, glm::distance(jet.x, x));
+    // At a pole one derivative vanishes; its rounding is that of the other.
+    double length = 0;
     for (int a = 0; a < jet.dimension; ++a) {
-      const double length = glm::length(jet.dx[std::size_t(a)]);
-      // At a pole a derivative vanishes: rounding has no direction.
-      if (length > undecided)
-        raise(facts_.stationary, glm::dot(jet.dx[std::size_t(a)], n) / length);
+      length = std::max(length, glm::length(jet.dx[std::size_t(a)]));
+    }
+    for (int a = 0; a < jet.dimension; ++a) {
+      if (length > 0) raise(facts_.stationary, glm::dot(jet.dx[std::size_t(a)], n) / length);
     }
   }
 

@@ -25,7 +25,7 @@ struct BoundaryFacts {
   /// @name Residuals, the largest ones
   /// @{
   double point = 0;       ///< a contact's point as stored against the model's
-  double stationary = 0;  ///< |dx/da . n| / |dx/da|
+  double stationary = 0;  ///< |dx/da . n| over the larger |dx/da|
   double tie = 0;         ///< |(x_0 - x_1) . n|, of facets |x . n - offset|
   double support = 0;     ///< |h(n) - x . n|
   taut::dvec3 worst_support = taut::dvec3(0.0);
