@@ -449,11 +449,19 @@ bool Trace::merge() {
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
   end.n = limit_normal(jet, end.n);
   const std::size_t anchor = jet[0].dimension <= jet[1].dimension ? 0 : 1;
-  const dvec3 x = jet[anchor].x;
+  dvec3 x = jet[anchor].x;
   const Support top = query_(end.n, last.contact[0]);
   // About a free end heights differ by the fourth power of distances, at a border by the third.
   if (top.h - glm::dot(x, end.n) > rho * rho * rho || glm::distance(top.point, x) > 4 * rho) {
     return false;
+  }
+  // The direction is as near to the end's as the extrapolation; the contact is the direction's own.
+  if (const Contact own = geometry_.canonical(top.contact);
+      one_element && same_element(own, end.contact[0])) {
+    end.contact = {own, own};
+    const ContactJet j = geometry_.jet(own);
+    end.n = limit_normal({j, j}, end.n);
+    x = j.x;
   }
   end.point = {x, x};
   arc_.pieces.back().rulings.push_back(end);

@@ -43,7 +43,8 @@ class EvenDivision {
   }
 
  private:
-  static constexpr double most_parts = 1e6;
+  /// Sagittas are then a billionth of the length, whatever is asked for.
+  static constexpr double most_parts = 1e4;
   /// Nearer than this share of a part to a place that is there, that one serves as well.
   static constexpr double snap_share = 0.1;
   std::vector<double> sums_ = {0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "taut/core/tolerances.h"
 
@@ -154,6 +155,8 @@ class Climb {
   static constexpr int step_limit = 60;
   /// Steps of the point shorter than this end the climb; the maximum is flat there.
   static constexpr double short_step = 1e-13;
+  /// Steps shorter than this that do not get shorter are rounding, which poles magnify.
+  static constexpr double noise_step = 1e-9;
   /// Slopes below this are rounding.
   static constexpr double flat = 1e-13;
   /// Beside the tangents' own length: those about a pole are as short as they like, their rounding
@@ -207,7 +210,10 @@ class Climb {
       const double room = step[a] < 0 ? at[a] : 1 - at[a];
       if (step[a] != 0 && at_pole(a, step[a]) && room < pole_parameter) return off_the_pole();
     }
-    if (glm::length(step * size) <= short_step) {
+    const double length = glm::length(step * size);
+    const bool noise = length < noise_step && length > 0.5 * last_length_;
+    last_length_ = length;
+    if (length <= short_step || noise) {
       return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
     }
     const double longest = std::max(std::abs(step.x), std::abs(step.y));
@@ -306,6 +312,7 @@ class Climb {
   dvec3 n_;
   int stuck_ = 0;
   bool left_pole_ = false;
+  double last_length_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/outline.h"
 
 namespace taut {
 namespace {
@@ -32,6 +33,27 @@ Contact clamped(Contact c) {
   c.u = std::clamp(c.u, 0.0, 1.0);
   c.v = std::clamp(c.v, 0.0, 1.0);
   return c;
+}
+
+/// The corners of the contacts' convex hull, counter-clockwise about n.
+FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
+  const auto turn = [&](std::size_t k) {
+    return glm::dot(glm::cross(f.points[1] - f.points[0], f.points[k] - f.points[0]), n);
+  };
+  std::size_t third = 2;
+  for (std::size_t k = 3; k < f.points.size(); ++k) {
+    if (std::abs(turn(k)) > std::abs(turn(third))) third = k;
+  }
+  if (turn(third) == 0) return f;
+  const dvec3& a = f.points[turn(third) > 0 ? 0 : 1];
+  const dvec3& b = f.points[turn(third) > 0 ? 1 : 0];
+  const PlaneView view(a, b, f.points[third]);
+  FacetContacts result;
+  for (const int k : simplified_outline(convex_outline(f.points, view), f.points, same_contact)) {
+    result.contacts.push_back(f.contacts[std::size_t(k)]);
+    result.points.push_back(f.points[std::size_t(k)]);
+  }
+  return result;
 }
 
 }  // namespace
@@ -117,7 +139,7 @@ std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, Sup
       ++i;
     }
   }
-  return f;
+  return f.points.size() < 3 ? f : corners_only(f, n);
 }
 
 }  // namespace taut

@@ -85,8 +85,9 @@ template <int n, std::size_t count, class Function, class Tolerance>
 void integrate(const Function& f, const Tolerance& tolerance, double a, double b,
                Integrals<count>& sum, int depth = 0,
                double before = std::numeric_limits<double>::infinity()) {
-  // A singularity within an interval of 2^-8 of the whole is left at the accuracy reached there.
-  constexpr int depth_limit = 8;
+  // A singularity within an interval of 2^-5 of the whole is left at the accuracy reached there:
+  // integrals are nested, and cost would grow with the square.
+  constexpr int depth_limit = 5;
   // An error so many times its tolerance is not noise.
   constexpr double noise_limit = 4096;
 
