@@ -288,6 +288,10 @@ class Climb {
       c_.u = to;
       return Progress::moved;
     }
+    if (geometry_.is_straight(c_)) {  // level: its ends are as high
+      c_.u = c_.u < 0.5 ? 0 : 1;
+      return leave({ContactExit::Kind::end, int(c_.u)});
+    }
     if (std::abs(slope) > flat * size && second >= 0) return Progress::lost;
     const auto& sides = geometry_.sides(c_);
     for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -329,7 +333,13 @@ std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c
     add(Kind::end, 2);
     add(Kind::face, geometry.sides(c).size());
   } else {
-    add(Kind::edge, geometry.ends(c).size());
+    // Across a straight edge its other end takes over.
+    const std::vector<ContactGeometry::PieceEnd>& ends = geometry.ends(c);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      if (!geometry.is_straight({c.instance, SourceKind::edge, ends[k].piece, 0, 0})) {
+        result.push_back({Kind::edge, int(k)});
+      }
+    }
   }
   return result;
 }
@@ -450,6 +460,12 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
     b = edge;
     return;
   }
+}
+
+Contact at_rest(const ContactGeometry& geometry, const Contact& c) {
+  const Contact own = geometry.canonical(c);
+  if (own.kind != SourceKind::edge || !geometry.is_straight(own)) return own;
+  return geometry.canonical({own.instance, own.kind, own.element, own.u < 0.5 ? 0.0 : 1.0, 0});
 }
 
 std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {

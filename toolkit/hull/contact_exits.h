@@ -20,7 +20,7 @@ struct ContactExit {
   int index = 0;
 };
 
-/// The exits that contacts of this element have.
+/// The exits that contacts of this element have; none onto straight edges.
 std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c);
 
 /// The exit's margin of contact i, linearised: a parameter's distance from its end, or the sine of
@@ -55,6 +55,10 @@ bool continues(const ContactGeometry& geometry, const Contact& a, const Contact&
 /// Two neighbouring elements' contacts that are about to merge, moved onto the border or to the
 /// vertex between them; as they are where there is none.
 void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
+
+/// The contact in its canonical form; inside of a straight edge, which supports only together with
+/// its ends, the nearer of these.
+Contact at_rest(const ContactGeometry& geometry, const Contact& c);
 
 /// The local maximum of x . n that a climb from the contact leads to, over smooth joins, onto and
 /// off edges and vertices. None where the climb gets lost.

@@ -1,8 +1,10 @@
 #include "taut/hull/contact_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "taut/bounds/scene_content.h"
+#include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
@@ -17,6 +19,15 @@ std::vector<dvec4> moved(const std::vector<dvec4>& points, const dvec3& center, 
                         scale * std::fma(-p.w, center.z, p.z), p.w);
   }
   return result;
+}
+
+/// Whether the control points lie on a line, to within rounding.
+bool is_segment(const BezierCurve& curve) {
+  const dvec3 first = euclidean(curve.points.front());
+  const dvec3 along = unit(euclidean(curve.points.back()) - first);
+  return std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec4& p) {
+    return glm::length(glm::cross(euclidean(p) - first, along)) <= coordinate_rounding;
+  });
 }
 
 }  // namespace
@@ -48,6 +59,8 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
     for (std::size_t i = 0; i < part.pieces().size(); ++i) {
       const EdgePiece& piece = part.pieces()[i];
       own.pieces.push_back({moved(piece.bezier.points, center, scale)});
+      own.straight.push_back(piece.end_vertex[0] >= 0 && piece.end_vertex[1] >= 0 &&
+                             is_segment(own.pieces.back()));
       for (int end = 0; end < 2; ++end) {
         const int vertex = piece.end_vertex[std::size_t(end)];
         if (vertex >= 0) own.ends[std::size_t(vertex)].push_back({int(i), end});
@@ -64,6 +77,10 @@ const Part& ContactGeometry::part(const Contact& c) const {
 
 const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c) const {
   return parts_[std::size_t(scene_.model().instances()[std::size_t(c.instance)].part)];
+}
+
+bool ContactGeometry::is_straight(const Contact& c) const {
+  return elements(c).straight[std::size_t(c.element)];
 }
 
 dvec3 ContactGeometry::to_local(int instance, const dvec3& n) const {

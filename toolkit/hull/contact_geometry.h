@@ -55,6 +55,10 @@ class ContactGeometry {
   /// @pre kind vertex
   const std::vector<PieceEnd>& ends(const Contact& c) const;
 
+  /// The piece is a straight segment between vertices: its ends are contacts, nothing inside of it.
+  /// @pre kind edge
+  bool is_straight(const Contact& c) const;
+
   dvec3 to_local(int instance, const dvec3& n) const;
   dvec3 to_frame(int instance, const dvec3& direction) const;
 
@@ -63,6 +67,7 @@ class ContactGeometry {
     std::vector<BezierPatch> patches;
     std::vector<BezierCurve> pieces;
     std::vector<dvec3> vertices;
+    std::vector<bool> straight;                 // per piece
     std::vector<std::vector<PieceSide>> sides;  // per piece
     std::vector<std::vector<PieceEnd>> ends;    // per vertex
   };

@@ -75,7 +75,8 @@ class ContactSystem {
   bool solve(CommonSupport& s) const;
 
   /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1) or, where n turns
-  /// too little to tell, on as `before` does; none where the system is singular.
+  /// too little to tell, on as `before` does; none where all rates vanish. Where the system is
+  /// singular it is one of the directions that solve it.
   std::optional<CurveTangent> tangent(const CommonSupport& s, const CurveTangent* before) const;
 
   long iterations() const { return iterations_; }

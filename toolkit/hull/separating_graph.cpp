@@ -96,7 +96,8 @@ class GraphTracer {
 
 GraphTracer::Sighting GraphTracer::seen(const dvec3& n, const Contact& hint) {
   const Support s = query_(n, hint);
-  return {n, geometry_.canonical(s.contact), s.point};
+  const Contact c = at_rest(geometry_, s.contact);
+  return {n, c, geometry_.point(c)};
 }
 
 /// Whether the contact's motion is, to first order, that to the other: then they are joined without
@@ -514,7 +515,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   std::vector<dvec3> points;
   Box box;
   for (const Sample& s : samples) {
-    const Contact c = geometry_.canonical(s.contact);
+    const Contact c = at_rest(geometry_, s.contact);
     const dvec3 x = geometry_.point(c);
     box.include(x);
     points.push_back(x);
