@@ -76,8 +76,7 @@ TEST_P(Blobs, AreExact) {
   expect_accurate(scene, "blob");
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 8U));
-INSTANTIATE_TEST_SUITE_P(MoreSeeds, Blobs, testing::Range(9U, 22U));
+INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
 
 /// Two to eight spheres of any size and place.
 TEST(PreciseSweep, RandomSpheres) {

@@ -41,7 +41,7 @@ constexpr double slowest_merging = -0.05;
 /// Steps below this share of the distance between two contacts are stuck.
 constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.
-constexpr double least_distance = 1e-5;
+constexpr double least_distance = 2e-4;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
@@ -451,8 +451,10 @@ bool Trace::merge() {
   const std::size_t anchor = jet[0].dimension <= jet[1].dimension ? 0 : 1;
   dvec3 x = jet[anchor].x;
   const Support top = query_(end.n, last.contact[0]);
-  // About a free end heights differ by the fourth power of distances, at a border by the third.
-  if (top.h - glm::dot(x, end.n) > rho * rho * rho || glm::distance(top.point, x) > 4 * rho) {
+  // The nearer the contacts, the better the extrapolation; until rounding spoils it. About a free
+  // end heights differ by the fourth power of distances, at a border by the third.
+  const double slack = rho > least_distance ? support_tie : rho * rho * rho;
+  if (top.h - glm::dot(x, end.n) > slack || glm::distance(top.point, x) > 4 * rho) {
     return false;
   }
   // The direction is as near to the end's as the extrapolation; the contact is the direction's own.
