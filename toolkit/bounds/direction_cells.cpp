@@ -93,8 +93,10 @@ std::array<dvec3, 4> DirectionCell::corners() const {
   for (std::uint32_t k = 0; k < 4; ++k) {
     dvec3& c = result[k];
     c[f.own] = f.sign;
-    c[f.first] = -1 + size * (i + k / 2);
-    c[f.second] = -1 + size * (j + k % 2);
+    const std::uint32_t first = i + k / 2;
+    const std::uint32_t second = j + k % 2;
+    c[f.first] = -1 + size * first;
+    c[f.second] = -1 + size * second;
   }
   return result;
 }

@@ -361,7 +361,9 @@ class PatchCulling {
     add(u, v);
     for (const double radius : ring_radii) {
       for (int k = 0; k < 9; ++k) {
-        if (k != 4) add(u + (k / 3 - 1) * radius * size, v + (k % 3 - 1) * radius * size);
+        const int along_u = k / 3 - 1;
+        const int along_v = k % 3 - 1;
+        if (k != 4) add(u + along_u * radius * size, v + along_v * radius * size);
       }
     }
     return points;

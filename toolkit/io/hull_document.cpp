@@ -80,6 +80,7 @@ class DocumentMaker {
   }
   std::vector<dvec3> to_model(const std::vector<dvec3>& points) const {
     std::vector<dvec3> result;
+    result.reserve(points.size());
     for (const dvec3& p : points) result.push_back(scene_.frame().to_model(p));
     return result;
   }
@@ -211,6 +212,7 @@ void DocumentMaker::make_patch(const HullFace& face, HullDocument::Face& result)
       for (const TrimStretch& stretch : loop) {
         const std::vector<Contact> along = contacts(region, stretch);
         std::vector<dvec2> points;
+        points.reserve(along.size());
         for (const Contact& c : along) points.push_back(uv(c));
         append(line, points);
         if (stretch.curve < 0) continue;

@@ -57,8 +57,10 @@ void check(const HullArguments& arguments, bool json) {
   for (const std::string& file : arguments.outputs) {
     const std::string format = format_of(file, arguments);
     if (arguments.method == "precise" || !is_document(format)) continue;
-    throw UsageError(file + ": a " + format + " holds the exact hull, which --method " +
-                     arguments.method + " does not find: give --method precise");
+    std::string message = file;
+    message += ": a " + format + " holds the exact hull, which --method ";
+    message += arguments.method + " does not find: give --method precise";
+    throw UsageError(message);
   }
   if (arguments.outputs.empty() && arguments.report.empty() && !json) {
     throw UsageError("nothing to write: give -o FILE, --report FILE or --json");
@@ -250,7 +252,7 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
                            counted(report.mesh.vertices, "vertex", "vertices") + " (" +
                            report.method + ")");
   const auto measured = [&](double Measures::*value) {
-    const std::string of_mesh = number(report.mesh.measures.*value, 10);
+    std::string of_mesh = number(report.mesh.measures.*value, 10);
     if (report.mesh.distance_bound == 0) return of_mesh;
     if (!report.hull.measures) return of_mesh + " of the mesh";
     return number((*report.hull.measures).*value, 10) + ", the mesh's " + of_mesh;
