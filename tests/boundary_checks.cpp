@@ -25,11 +25,6 @@ using taut::SourceKind;
 using taut::TrimStretch;
 using rvec2 = glm::vec<2, real>;
 
-dvec2 on_side(Side side, double t) {
-  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
-  return side == Side::u0 || side == Side::u1 ? dvec2(fixed, t) : dvec2(t, fixed);
-}
-
 const taut::ArcPiece& piece_of(const HullBoundary& boundary, const TrimStretch& s) {
   return boundary.arcs.at(std::size_t(s.arc)).pieces.at(std::size_t(s.piece));
 }

@@ -389,7 +389,7 @@ SourceContact Scene::source(const Contact& contact) const {
   for (const Side side : all_sides) {
     const Border& border = patch.borders[std::size_t(side)];
     if (!at[std::size_t(side)] || border.kind != BorderKind::edge || border.piece < 0) continue;
-    const double t = side == Side::u0 || side == Side::u1 ? v : u;
+    const double t = along_v(side) ? v : u;
     return on_piece(border.piece, border.piece_reversed ? 1 - t : t);
   }
   return made(SourceKind::face, patch.face, patch.u.at(u), patch.v.at(v));

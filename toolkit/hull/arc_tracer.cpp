@@ -179,8 +179,7 @@ std::optional<Event> Trace::solved_event(const CommonSupport& next, double share
   Contact& c = s.contact[std::size_t(contact)];
   if (exit.kind == ContactExit::Kind::side) {
     const Side side = all_sides[std::size_t(exit.index)];
-    (side == Side::u0 || side == Side::u1 ? c.u : c.v) =
-        side == Side::u1 || side == Side::v1 ? 1 : 0;
+    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
   } else if (exit.kind == ContactExit::Kind::end) {
     c.u = exit.index;
   }
@@ -225,7 +224,7 @@ std::pair<int, Side> Trace::pole_crossed(const CommonSupport& next) const {
 
 /// A contact at the pole of its side, at the same parameter along the side.
 Contact at_pole(Contact c, Side side) {
-  (side == Side::u0 || side == Side::u1 ? c.u : c.v) = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
   return c;
 }
 

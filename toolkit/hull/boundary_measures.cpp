@@ -376,21 +376,6 @@ class Summation {
   Sums sums_;
 };
 
-/// The parameters of a border's point.
-dvec2 on_border(Side side, double t) {
-  switch (side) {
-    case Side::u0:
-      return {0, t};
-    case Side::u1:
-      return {1, t};
-    case Side::v0:
-      return {t, 0};
-    case Side::v1:
-      return {t, 1};
-  }
-  return dvec2(0.0);
-}
-
 /// The mean of points on the boundary that span the hull, so a point inside.
 dvec3 Summation::interior_point() const {
   dvec3 sum(0.0);
@@ -413,7 +398,7 @@ dvec3 Summation::interior_point() const {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc >= 0) continue;
           for (const double s : {0.0, 0.25, 0.5, 0.75}) {
-            const dvec2 p = on_border(stretch.side, (1 - s) * stretch.from + s * stretch.to);
+            const dvec2 p = on_side(stretch.side, (1 - s) * stretch.from + s * stretch.to);
             add(geometry_.point({region.instance, SourceKind::face, region.patch, p.x, p.y}));
           }
         }
@@ -574,18 +559,18 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
 /// edge lie beyond the patch's own n, away from the patch. With the patch to the left of the
 /// direction T of travel seen from outside (positive sign), they have larger phi: its lower end.
 void Summation::add_border(const Region& region, const TrimStretch& stretch) {
-  const bool along_v = stretch.side == Side::u0 || stretch.side == Side::u1;
+  const bool of_v = along_v(stretch.side);
   const bool edge = stretch.curve >= 0 &&
                     boundary_.curves[std::size_t(stretch.curve)].kind == HullCurveKind::edge;
-  if (!along_v && !edge) return;
+  if (!of_v && !edge) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
   const auto f = [&](double t, double weight, Sample& sample) {
-    const dvec2 p = on_border(stretch.side, t);
-    if (along_v) add_line(region, p.x, p.y, 1, weight, sample);
+    const dvec2 p = on_side(stretch.side, t);
+    if (of_v) add_line(region, p.x, p.y, 1, weight, sample);
     if (!edge) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
-    const double half = crease(j.x, sense * j.dx[along_v ? 1 : 0], unit(N));
+    const double half = crease(j.x, sense * j.dx[of_v ? 1 : 0], unit(N));
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;
   };

@@ -266,10 +266,8 @@ bool BoundarySampler::samples_border(const PatchRegion& region, int face,
 
 /// As a ruling of length zero.
 Ruling BoundarySampler::border_place(const PatchRegion& region, Side side, double t) const {
-  const bool along_v = side == Side::u0 || side == Side::u1;
-  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
-  const Contact c = {region.instance, SourceKind::face, region.patch, along_v ? fixed : t,
-                     along_v ? t : fixed};
+  const dvec2 uv = on_side(side, t);
+  const Contact c = {region.instance, SourceKind::face, region.patch, uv.x, uv.y};
   const BezierPatch& patch = geometry_.part(c).patches()[std::size_t(region.patch)].bezier;
   const dvec3 n =
       double(region.sign) * geometry_.to_frame(c.instance, unit_normal(patch, c.u, c.v));

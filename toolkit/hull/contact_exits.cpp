@@ -9,14 +9,10 @@
 namespace taut {
 namespace {
 
-bool across_u(Side side) { return side == Side::u0 || side == Side::u1; }
-bool at_end(Side side) { return side == Side::u1 || side == Side::v1; }
-
 /// The patch's contact at a side, where the side's free parameter is t.
 Contact on_side(int instance, int patch, Side side, double t) {
-  const double fixed = at_end(side) ? 1 : 0;
-  return across_u(side) ? Contact{instance, SourceKind::face, patch, fixed, t}
-                        : Contact{instance, SourceKind::face, patch, t, fixed};
+  const dvec2 uv = taut::on_side(side, t);
+  return {instance, SourceKind::face, patch, uv.x, uv.y};
 }
 
 Contact on_side(const Contact& edge, const ContactGeometry::PieceSide& side) {
@@ -25,8 +21,8 @@ Contact on_side(const Contact& edge, const ContactGeometry::PieceSide& side) {
 
 /// The patch's derivative across the side, into the patch.
 dvec3 inward(const ContactJet& j, Side side) {
-  const dvec3& d = j.dx[across_u(side) ? 0 : 1];
-  return at_end(side) ? -d : d;
+  const dvec3& d = j.dx[along_v(side) ? 0 : 1];
+  return at_upper_end(side) ? -d : d;
 }
 
 /// Sine of the angle that a vector makes with the plane across n; zero of a zero vector.
@@ -44,7 +40,7 @@ dvec3 leaving(const ContactGeometry& geometry, int instance, const ContactGeomet
 std::optional<Contact> beyond_side(const ContactGeometry& geometry, const Contact& c, Side side) {
   const Border& border =
       geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
-  const double t = std::clamp(across_u(side) ? c.v : c.u, 0.0, 1.0);
+  const double t = std::clamp(along_v(side) ? c.v : c.u, 0.0, 1.0);
   if (border.kind == BorderKind::smooth) {
     return on_side(c.instance, border.neighbor, border.neighbor_side, border.reversed ? 1 - t : t);
   }
@@ -77,7 +73,7 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
 Contact at_exit(Contact c, const ContactExit& exit) {
   if (exit.kind == ContactExit::Kind::side) {
     const Side side = all_sides[std::size_t(exit.index)];
-    (across_u(side) ? c.u : c.v) = at_end(side) ? 1 : 0;
+    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
   } else if (exit.kind == ContactExit::Kind::end) {
     c.u = exit.index;
   }
@@ -121,10 +117,10 @@ std::optional<Contact> way_off_pole(const ContactGeometry& geometry, const Conta
         const dvec3 away = inward(j, side);
         const double slope = elevation(away, n);
         if (slope <= steepest) continue;
-        const double second = glm::dot(across_u(side) ? j.dxx : j.dyy, n);
+        const double second = glm::dot(along_v(side) ? j.dxx : j.dyy, n);
         const double rise = glm::dot(away, n);
         const double step = second < 0 ? std::min(-rise / second, off_pole) : off_pole;
-        (across_u(side) ? at.u : at.v) = at_end(side) ? 1 - step : step;
+        (along_v(side) ? at.u : at.v) = at_upper_end(side) ? 1 - step : step;
         steepest = slope;
         best = at;
       }
@@ -238,8 +234,8 @@ class Climb {
   /// About a pole whose normal is n: moves there. Parameters are of no use so near to it.
   bool at_its_pole() {
     for (const Side side : all_sides) {
-      const double t = across_u(side) ? c_.u : c_.v;
-      if ((at_end(side) ? 1 - t : t) > about_pole || !is_pole(geometry_, c_, side)) continue;
+      const double t = along_v(side) ? c_.u : c_.v;
+      if ((at_upper_end(side) ? 1 - t : t) > about_pole || !is_pole(geometry_, c_, side)) continue;
       const Contact pole = at_exit(c_, {ContactExit::Kind::side, int(side)});
       if (glm::length(glm::cross(unit_normal(geometry_, pole), n_)) >= pole_angle) continue;
       c_ = pole;
@@ -351,10 +347,10 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
   dvec2& parameter = e.parameter[std::size_t(i)];
   if (exit.kind == ContactExit::Kind::side) {
     const Side side = all_sides[std::size_t(exit.index)];
-    const int a = across_u(side) ? 0 : 1;
+    const int a = along_v(side) ? 0 : 1;
     const double value = a == 0 ? c.u : c.v;
-    e.residual = at_end(side) ? 1 - value : value;
-    parameter[a] = at_end(side) ? -1 : 1;
+    e.residual = at_upper_end(side) ? 1 - value : value;
+    parameter[a] = at_upper_end(side) ? -1 : 1;
   } else if (exit.kind == ContactExit::Kind::end) {
     e.residual = exit.index == 0 ? c.u : 1 - c.u;
     parameter.x = exit.index == 0 ? 1 : -1;
@@ -366,7 +362,7 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
     if (length == 0) return e;
     e.n = -in / length;
     e.residual = glm::dot(e.n, s.n);
-    const double sense = (side.reversed ? -1.0 : 1.0) * (at_end(side.side) ? -1.0 : 1.0);
+    const double sense = (side.reversed ? -1.0 : 1.0) * (at_upper_end(side.side) ? -1.0 : 1.0);
     parameter.x = -sense * glm::dot(j.dxy, s.n) / length;
   } else {
     const ContactGeometry::PieceEnd& end = geometry.ends(c)[std::size_t(exit.index)];
@@ -410,8 +406,9 @@ dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c) {
 std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c) {
   if (c.kind != SourceKind::face) return std::nullopt;
   for (const Side side : all_sides) {
-    const double t = across_u(side) ? c.u : c.v;
-    if ((at_end(side) ? 1 - t : t) < pole_parameter && is_pole(geometry, c, side)) return side;
+    const double t = along_v(side) ? c.u : c.v;
+    if ((at_upper_end(side) ? 1 - t : t) < pole_parameter && is_pole(geometry, c, side))
+      return side;
   }
   return std::nullopt;
 }

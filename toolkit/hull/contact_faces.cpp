@@ -11,17 +11,8 @@ namespace {
 /// How far outlines, as polygons through rulings, may run from the curves, in parameters.
 constexpr double outline_slack = 0.05;
 
-bool along_v(Side side) { return side == Side::u0 || side == Side::u1; }
-
-/// The place on a side where its free parameter is t.
-dvec2 on_side(Side side, double t) {
-  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
-  return along_v(side) ? dvec2(fixed, t) : dvec2(t, fixed);
-}
-
 bool lies_on(const dvec2& uv, Side side) {
-  const double fixed = side == Side::u1 || side == Side::v1 ? 1 : 0;
-  return (along_v(side) ? uv.x : uv.y) == fixed;
+  return (along_v(side) ? uv.x : uv.y) == (at_upper_end(side) ? 1 : 0);
 }
 
 double distance_to_segment(const dvec2& x, const dvec2& a, const dvec2& b) {

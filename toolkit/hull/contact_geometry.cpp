@@ -158,7 +158,7 @@ Contact ContactGeometry::canonical(const Contact& c) const {
   for (const Side side : all_sides) {
     const Border& border = patch.borders[std::size_t(side)];
     if (!at[std::size_t(side)] || border.kind != BorderKind::edge || border.piece < 0) continue;
-    const double t = side == Side::u0 || side == Side::u1 ? c.v : c.u;
+    const double t = along_v(side) ? c.v : c.u;
     return on_piece(border.piece, border.piece_reversed ? 1 - t : t);
   }
   return c;

@@ -217,10 +217,10 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
 bool GraphTracer::is_crossed(const SupportChange& change) const {
   const auto found = traces_.find({change.on.instance, change.on.element});
   if (found == traces_.end()) return false;
-  const bool along_v = change.on.u == change.off.u;
-  const double fixed = along_v ? change.on.u : change.on.v;
+  const bool of_v = change.on.u == change.off.u;
+  const double fixed = of_v ? change.on.u : change.on.v;
   const auto [low, high] =
-      along_v ? std::minmax(change.on.v, change.off.v) : std::minmax(change.on.u, change.off.u);
+      of_v ? std::minmax(change.on.v, change.off.v) : std::minmax(change.on.u, change.off.u);
   bool odd = false;
   for (const auto& [arc, piece, contact] : found->second) {
     const std::vector<Ruling>& rulings =
@@ -228,11 +228,11 @@ bool GraphTracer::is_crossed(const SupportChange& change) const {
     for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
       const Contact& a = rulings[k].contact[std::size_t(contact)];
       const Contact& b = rulings[k + 1].contact[std::size_t(contact)];
-      const double from = (along_v ? a.u : a.v) - fixed;
-      const double to = (along_v ? b.u : b.v) - fixed;
+      const double from = (of_v ? a.u : a.v) - fixed;
+      const double to = (of_v ? b.u : b.v) - fixed;
       if ((from > 0) == (to > 0)) continue;
       const double share = from / (from - to);
-      const double at = along_v ? a.v + share * (b.v - a.v) : a.u + share * (b.u - a.u);
+      const double at = of_v ? a.v + share * (b.v - a.v) : a.u + share * (b.u - a.u);
       if (at > low && at < high) odd = !odd;
     }
   }
@@ -327,8 +327,7 @@ void GraphTracer::find_poles() {
       for (const Side side : all_sides) {
         Contact c{i, SourceKind::face, p, 0.5, 0.5};
         if (!is_pole(geometry_, c, side)) continue;
-        (side == Side::u0 || side == Side::u1 ? c.u : c.v) =
-            side == Side::u1 || side == Side::v1 ? 1 : 0;
+        (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
         const dvec3 normal = unit_normal(geometry_, c);
         const dvec3 x = geometry_.point(c);
         if (normal == dvec3(0.0)) continue;

@@ -143,20 +143,6 @@ class Stitcher {
   std::map<std::tuple<int, int, int>, std::vector<std::pair<double, int>>> along_scroll_;
 };
 
-dvec2 on_side(Side side, double t) {
-  switch (side) {
-    case Side::u0:
-      return {0, t};
-    case Side::u1:
-      return {1, t};
-    case Side::v0:
-      return {t, 0};
-    case Side::v1:
-      return {t, 1};
-  }
-  return dvec2(0.0);
-}
-
 dvec3 Stitcher::border_point(const TrimRegion& r, Side side, double t) const {
   return geometry_.point(contact(r, on_side(side, t)));
 }

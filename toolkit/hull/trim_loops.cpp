@@ -74,20 +74,6 @@ std::vector<TrimStretch> all_around(int sign) {
   return loop;
 }
 
-dvec2 border_point(const TrimStretch& s, double t) {
-  switch (s.side) {
-    case Side::u0:
-      return {0, t};
-    case Side::u1:
-      return {1, t};
-    case Side::v0:
-      return {t, 0};
-    case Side::v1:
-      return {t, 1};
-  }
-  return dvec2(0.0);
-}
-
 class Trimmer {
  public:
   Trimmer(const ContactGeometry& geometry, SupportQuery& query, const SeparatingGraph& graph,
@@ -298,7 +284,7 @@ std::vector<dvec2> Trimmer::polyline(const Loop& loop) const {
   std::vector<dvec2> points;
   for (const TrimStretch& s : loop) {
     if (s.arc < 0) {
-      points.push_back(border_point(s, s.from));
+      points.push_back(on_side(s.side, s.from));
       continue;
     }
     std::vector<Ruling> rulings =

@@ -104,6 +104,16 @@ BezierPatch transposed(const BezierPatch& patch);
 enum class Side { u0, u1, v0, v1 };
 inline constexpr std::array<Side, 4> all_sides = {Side::u0, Side::u1, Side::v0, Side::v1};
 
+/// The side's free parameter is v.
+inline bool along_v(Side side) { return side == Side::u0 || side == Side::u1; }
+/// The other parameter is one there, rather than zero.
+inline bool at_upper_end(Side side) { return side == Side::u1 || side == Side::v1; }
+/// (u, v) of the side's point with the free parameter t.
+inline dvec2 on_side(Side side, double t) {
+  const double fixed = at_upper_end(side) ? 1 : 0;
+  return along_v(side) ? dvec2(fixed, t) : dvec2(t, fixed);
+}
+
 /// The border as a curve, in the direction of the growing free parameter.
 BezierCurve border(const BezierPatch& patch, Side side);
 
