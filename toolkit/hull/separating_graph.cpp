@@ -29,7 +29,7 @@ constexpr std::size_t failure_limit = 64;
 /// take, some seconds.
 constexpr long least_cells = 5'000'000;
 constexpr long cells_a_sample = 2'000;
-constexpr int secant_limit = 60;
+constexpr int newton_limit = 60;
 /// Values of two contacts that differ by so little are equal.
 constexpr double parting_tie = 1e-15;
 constexpr int depth_limit = 40;
@@ -143,7 +143,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
   double lower = 0;
   double upper = 1;
   double t = 0.5;
-  for (int k = 0; k < secant_limit; ++k) {
+  for (int k = 0; k < newton_limit; ++k) {
     const dvec3 mixed = (1 - t) * a.n + t * b.n;
     s.n = glm::normalize(mixed);
     // From where they were seen, lest they stay with a branch that an earlier step led to.
