@@ -43,8 +43,16 @@ struct ArcRange {
   int count = 0;
 };
 
+/// A stretch of a piece of an edge, from one of its parameters to another (from > to: backwards).
+struct EdgeStretch {
+  int instance = -1;
+  int piece = -1;  ///< -1: none
+  double from = 0;
+  double to = 0;
+};
+
 enum class HullCurveKind {
-  bitangent,  ///< between a patch and a scroll
+  bitangent,  ///< between a patch and a scroll or a facet, tangent to both
   edge,       ///< on an edge of the model: a crease of the hull, or the border of a patch
   join,       ///< between two patches, where two source faces meet smoothly
   ruling,     ///< a segment: the end of a scroll, or between two facets
@@ -106,12 +114,16 @@ struct HullFace {
   ArcRange scroll;
   /// scroll: the curves along contacts 0 and 1, in order; none along a vertex.
   std::array<std::vector<int>, 2> scroll_curves;
-  /// facet: the supporting plane x . n = offset, in the scene's frame, and its contacts,
-  /// counter-clockwise from outside, with their points.
+  /// facet: the supporting plane x . n = offset, in the scene's frame, and the contacts in which
+  /// its sides meet, counter-clockwise from outside, with their points.
   dvec3 n = dvec3(0.0);
   double offset = 0;
   std::vector<Contact> contacts;
   std::vector<dvec3> points;
+  /// facet: per contact the side from it to the next one (the same one again where there is but
+  /// one): the stretch of an edge that it runs along, none where it is straight. Empty where all
+  /// are straight.
+  std::vector<EdgeStretch> sides;
 };
 
 /// A spot that could not be resolved, with the reason.

@@ -28,8 +28,8 @@ struct Border {
   Side neighbor_side = Side::u0;
   /// The neighbour's free parameter runs the other way.
   bool reversed = false;
-  /// edge: the edge and its piece (an index into Part::pieces), else -1.
-  /// `piece_reversed`: the piece runs against the border.
+  /// edge: the edge and its piece (an index into Part::pieces), else -1; smooth: -1 and its piece
+  /// where it is a seam. `piece_reversed`: the piece runs against the border.
   int edge = -1;
   int piece = -1;
   bool piece_reversed = false;
@@ -43,17 +43,24 @@ struct Patch {
   BezierPatch bezier;
   Interval u, v;
   int face = -1;
+  /// Parameters along which it is a straight segment for every value of the other one: no point
+  /// inside of such a segment is extreme. Both of a plane patch.
+  bool ruled_u = false;
+  bool ruled_v = false;
+  bool ruled() const { return ruled_u || ruled_v; }
   /// Indexed by Side.
   std::array<Border, 4> borders;
   /// Vertex at the corners (u0,v0), (u0,v1), (u1,v0), (u1,v1), or -1 where the corner is none.
   std::array<int, 4> corner_vertex = {-1, -1, -1, -1};
 };
 
-/// A Bezier piece of an edge with the interval of the edge's parameter that it covers.
+/// A Bezier piece of an edge with the interval of the edge's parameter that it covers; or a seam: a
+/// smooth join along which supporting planes can change from one surface to another, though it is
+/// no edge (Part::connect).
 struct EdgePiece {
   BezierCurve bezier;
   Interval t;
-  int edge = -1;
+  int edge = -1;  ///< -1: a seam
   /// How it goes on at t.lower and t.upper: either with a vertex, or straight on (G1) with a piece
   /// of this or another edge, which may run the other way or be this piece itself. The other is -1.
   std::array<int, 2> end_vertex = {-1, -1};
