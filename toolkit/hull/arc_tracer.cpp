@@ -25,10 +25,16 @@ constexpr double plane_slack = 1e-6;
 constexpr double correction_limit = 0.15;
 /// Margins below this are crossed.
 constexpr double margin_slack = 1e-12;
-/// Turn of n by the first step away from a pole.
-constexpr double pole_step = 1e-3;
+/// Turns of n that are tried as the first step away from where contacts are singular.
+constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
+/// Normal curvature, in the scene's frame, below which a contact is taken for flat.
+constexpr double least_curvature = 1e-8;
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
 constexpr double border_slack = 1e-9;
+/// Pieces shorter than this are none.
+constexpr double shortest_piece = 1e-9;
+/// How far parameters may leave [0, 1] by rounding.
+constexpr double parameter_slack = 1e-9;
 constexpr int step_limit = 4000;
 /// Sine of the angle below which two edges that merge are one.
 constexpr double least_angle = 1e-3;
@@ -92,22 +98,32 @@ class Trace {
   /// A contact that the step takes across a pole, or -1, and the side.
   std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
   bool pass_pole(int contact, Side side, double length);
-  bool leave_pole();
+  std::optional<Contact> in_element(const Contact& c, const Contact& other) const;
+  bool is_singular(int contact) const;
+  bool leave();
+  bool leave(double step);
+  std::optional<CommonSupport> stepped_aside(double step) const;
+  std::optional<std::size_t> nearest_side(const FacetContacts& facet) const;
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
   bool merge();
+  bool crosses();
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
   Pace exchange(const Event& event);
   Pace advance();
   bool settle();
   void begin_piece();
+  void drop_empty_pieces();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
 
   Pace ended(TracedArc::End end) {
     arc_.end = end;
     return Pace::ended;
+  }
+  Pace merged() {
+    return ended(arc_.contacts.empty() ? TracedArc::End::merged : TracedArc::End::crossed);
   }
   Pace lost(const char* reason) {
     arc_.reason = reason;
@@ -252,72 +268,60 @@ bool Trace::pass_pole(int contact, Side side, double length) {
   }
   at_ = pole;
   push(at_);
-  return leave_pole();
+  return leave();
 }
 
-/// From a common support with contacts at poles, the first step away from it, in a piece of its
-/// own.
-bool Trace::leave_pole() {
-  const dvec3 along = unit(glm::cross(at_.n, at_.d()));
-  CommonSupport next = at_;
-  next.n = glm::normalize(at_.n + pole_step * along);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const bool pole = pole_side(geometry_, at_.contact[i]).has_value();
-    const std::optional<Contact> c = pole ? beside_pole(geometry_, at_.contact[i], next.n)
-                                          : climbed(geometry_, at_.contact[i], next.n);
-    if (!c) return false;
-    next.contact[i] = *c;
+/// The point of a contact as one of the element of `other`; a pole's at the parameter of `other`
+/// along its side.
+std::optional<Contact> Trace::in_element(const Contact& c, const Contact& other) const {
+  if (!pole_side(geometry_, c)) return expressed_in(geometry_, c, other);
+  if (other.kind != SourceKind::face) return std::nullopt;
+  const dvec3 x = geometry_.point(c);
+  for (const Side side : all_sides) {
+    const Contact there = at_pole(other, side);
+    if (is_pole(geometry_, other, side) && glm::distance(geometry_.point(there), x) < same_contact)
+      return there;
   }
-  next.evaluate(geometry_);
-  const dvec3 n = at_.n;
-  const auto corrected = [&] {
-    return system_.solve(next, [&](const CommonSupport& now) {
-      LinearEquation e;
-      e.residual = glm::dot(now.n - n, along) - pole_step;
-      e.n = along;
-      return e;
-    });
-  };
-  if (!corrected()) return false;
-  bool moved = false;
-  for (std::size_t i = 0; i < 2; ++i) {
-    Contact& own = next.contact[i];
-    const Contact inside{own.instance, own.kind, own.element, std::clamp(own.u, 0.0, 1.0),
-                         std::clamp(own.v, 0.0, 1.0)};
-    if (inside.u == own.u && inside.v == own.v) continue;
-    // Beyond the border of a patch about the pole.
-    const std::optional<Contact> c = climbed(geometry_, inside, next.n);
-    if (!c) return false;
-    own = *c;
-    moved = true;
+  return std::nullopt;
+}
+
+/// Whether a contact may move without the direction, or its parameters fail: at a pole, and where
+/// its element is flat along some direction. The tangent does not tell how it goes on.
+bool Trace::is_singular(int contact) const {
+  const ContactJet& j = at_.jet[std::size_t(contact)];
+  if (j.dimension == 0) return false;
+  if (pole_side(geometry_, at_.contact[std::size_t(contact)])) return true;
+  const double uu = glm::dot(j.dxx, at_.n) / glm::dot(j.dx[0], j.dx[0]);
+  if (j.dimension == 1) return uu > -least_curvature;
+  const double uv = glm::dot(j.dxy, at_.n) / (glm::length(j.dx[0]) * glm::length(j.dx[1]));
+  const double vv = glm::dot(j.dyy, at_.n) / glm::dot(j.dx[1], j.dx[1]);
+  return uu * vv - uv * uv < least_curvature * std::abs(uu + vv);
+}
+
+/// The first step away from a common support of which contacts are singular, in a piece of its own.
+bool Trace::leave() {
+  const CommonSupport start = at_;
+  for (const double step : leaving_steps) {
+    at_ = start;
+    if (leave(step)) return true;
   }
-  next.evaluate(geometry_);
-  if ((moved && !corrected()) ||
-      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + support_tie) {
-    return false;
-  }
-  const CommonSupport pole = at_;
-  at_ = next;
+  at_ = start;
+  return false;
+}
+
+bool Trace::leave(double step) {
+  const CommonSupport start = at_;
+  const std::optional<CommonSupport> beside = stepped_aside(step);
+  if (!beside) return false;
+  at_ = *beside;
   tangent_ = CurveTangent();
   if (!settle()) return false;
-  next = at_;
-  at_ = pole;
+  const CommonSupport next = at_;
+  at_ = start;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!pole_side(geometry_, at_.contact[i])) {
-      if (!same_element(at_.contact[i], next.contact[i])) return false;
-      continue;
-    }
-    // The pole as the patch that the contact moves into has it.
-    Contact& c = at_.contact[i];
-    c = next.contact[i];
-    for (const Side own : all_sides) {
-      const Contact there = at_pole(c, own);
-      if (is_pole(geometry_, c, own) &&
-          glm::distance(geometry_.point(there), pole.jet[i].x) < same_contact) {
-        c = there;
-        break;
-      }
-    }
+    const std::optional<Contact> c = in_element(start.contact[i], next.contact[i]);
+    if (!c) return false;
+    at_.contact[i] = *c;
   }
   at_.evaluate(geometry_);
   begin_piece();
@@ -326,41 +330,92 @@ bool Trace::leave_pole() {
   return true;
 }
 
+/// The common support of the two contacts' branches where n has turned by a step along the curve.
+std::optional<CommonSupport> Trace::stepped_aside(double step) const {
+  const dvec3 along = unit(glm::cross(at_.n, at_.d()));
+  CommonSupport next = at_;
+  next.n = glm::normalize(at_.n + step * along);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool pole = pole_side(geometry_, at_.contact[i]).has_value();
+    const std::optional<Contact> c = pole ? beside_pole(geometry_, at_.contact[i], next.n)
+                                          : climbed(geometry_, at_.contact[i], next.n);
+    if (!c) return std::nullopt;
+    next.contact[i] = *c;
+  }
+  next.evaluate(geometry_);
+  const auto corrected = [&] {
+    return system_.solve(next, [&](const CommonSupport& now) {
+      LinearEquation e;
+      e.residual = glm::dot(now.n - at_.n, along) - step;
+      e.n = along;
+      return e;
+    });
+  };
+  // Twice, since near a pole parameters are less exact than points.
+  if (!corrected() || !corrected()) return std::nullopt;
+  bool moved = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& own = next.contact[i];
+    const Contact inside{own.instance, own.kind, own.element, std::clamp(own.u, 0.0, 1.0),
+                         std::clamp(own.v, 0.0, 1.0)};
+    if (inside.u == own.u && inside.v == own.v) continue;
+    // Beyond the border of its element.
+    const std::optional<Contact> c = climbed(geometry_, inside, next.n);
+    if (!c) return std::nullopt;
+    own = *c;
+    moved = true;
+  }
+  next.evaluate(geometry_);
+  if ((moved && !corrected()) ||
+      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + support_tie) {
+    return std::nullopt;
+  }
+  return next;
+}
+
+/// The straight side of the landmark that the two contacts are nearest to, arriving across it.
+std::optional<std::size_t> Trace::nearest_side(const FacetContacts& facet) const {
+  std::optional<std::size_t> best;
+  double least = 0;
+  const std::size_t count = facet.points.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (facet.is_curved(k)) continue;
+    const double off = glm::distance(facet.points[k], at_.jet[1].x) +
+                       glm::distance(facet.points[(k + 1) % count], at_.jet[0].x);
+    if (best && off >= least) continue;
+    best = k;
+    least = off;
+  }
+  return best;
+}
+
 /// Ends the arc in a landmark that lies within the step.
 bool Trace::arrives(const Landmark& landmark, double length) {
   if (glm::distance(landmark.n, at_.n) > 1.5 * length) return false;
+  const FacetContacts& facet = landmark.facet;
+  const std::optional<std::size_t> side = nearest_side(facet);
+  if (!side) return false;
   CommonSupport end = at_;
   end.n = landmark.n;
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto nearest =
-        std::min_element(landmark.facet.points.begin(), landmark.facet.points.end(),
-                         [&](const dvec3& p, const dvec3& q) {
-                           return glm::distance(p, at_.jet[i].x) < glm::distance(q, at_.jet[i].x);
-                         });
-    const Contact& c =
-        landmark.facet.contacts[std::size_t(nearest - landmark.facet.points.begin())];
-    if (pole_side(geometry_, c)) {
-      for (const Side side : all_sides) {
-        if (!is_pole(geometry_, at_.contact[i], side)) continue;
-        const Contact pole = at_pole(at_.contact[i], side);
-        if (glm::distance(geometry_.point(pole), *nearest) < same_contact) end.contact[i] = pole;
-      }
-    } else {
-      const std::optional<Contact> there = climbed(geometry_, at_.contact[i], landmark.n);
-      if (!there || !same_element(*there, at_.contact[i])) return false;
-      end.contact[i] = *there;
+    const std::size_t corner = (*side + 1 - i) % facet.points.size();
+    std::optional<Contact> there = in_element(facet.contacts[corner], at_.contact[i]);
+    if (!there) there = climbed(geometry_, at_.contact[i], landmark.n);
+    if (!there || !same_element(*there, at_.contact[i]) ||
+        glm::distance(geometry_.point(*there), facet.points[corner]) > same_contact) {
+      return false;
     }
-    if (glm::distance(geometry_.point(end.contact[i]), *nearest) > same_contact) return false;
+    end.contact[i] = *there;
   }
   end.evaluate(geometry_);
   const double ahead = length_to(end);
   if (ahead <= margin_slack || ahead > length + margin_slack ||
-      distance_to(end) > (1 + correction_limit) * length) {
+      distance_to(end) > (1 + correction_limit) * ahead) {
     return false;
   }
   push(end);
   arc_.n = landmark.n;
-  arc_.contacts = landmark.facet.contacts;
+  arc_.contacts = facet.contacts;
   return true;
 }
 
@@ -415,6 +470,29 @@ dvec3 limit_normal(const std::array<ContactJet, 2>& jet, const dvec3& near) {
   return glm::dot(normal, near) < 0 ? -normal : normal;
 }
 
+/// Ends the arc where its contacts, of two surfaces or curves, meet in a common point.
+bool Trace::crosses() {
+  const std::optional<CommonSupport> end = system_.crossing(at_);
+  if (!end || distance_to(*end) > 4 * glm::length(at_.d())) return false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact& c = end->contact[i];
+    if (std::min({c.u, 1 - c.u, c.v, 1 - c.v}) < -parameter_slack) return false;
+  }
+  if (query_(end->n, end->contact[0]).h > glm::dot(end->jet[0].x, end->n) + support_tie) {
+    return false;
+  }
+  push(*end);
+  Ruling& last = arc_.pieces.back().rulings.back();
+  for (Contact& c : last.contact) {
+    c.u = std::clamp(c.u, 0.0, 1.0);
+    c.v = std::clamp(c.v, 0.0, 1.0);
+  }
+  last.point[1] = last.point[0];
+  arc_.n = end->n;
+  arc_.contacts.assign(last.contact.begin(), last.contact.end());
+  return true;
+}
+
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
 /// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
 /// are in one element, the parameters' mean are smooth functions of its square.
@@ -443,6 +521,10 @@ bool Trace::merge() {
     c.v = std::clamp(at.y, 0.0, 1.0);
   }
   move_together(geometry_, end.contact[0], end.contact[1]);
+  if (!smooth && !same_element(geometry_.canonical(end.contact[0]),
+                               geometry_.canonical(end.contact[1]))) {
+    return crosses();
+  }
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
@@ -483,17 +565,14 @@ bool Trace::settle() {
     for (const ContactExit& exit : exits(geometry_, c)) {
       const LinearEquation e = exit_margin(geometry_, at_, int(i), exit);
       const double along = glm::dot(e.parameter[i], tangent_.parameter[i]);
-      if (std::abs(e.residual) > border_slack || std::abs(along) > border_slack) continue;
+      // As lengths: about a pole parameters are less exact.
+      const Side side = all_sides[std::size_t(exit.index)];
+      const double size = std::min(1.0, glm::length(at_.jet[i].dx[along_v(side) ? 0 : 1]));
+      if (std::max(std::abs(e.residual), std::abs(along)) * size > border_slack) continue;
       // How the contact moves where the direction turns into its own region.
-      const ContactJet& j = at_.jet[i];
       const dvec3 inward = i == 0 ? at_.d() : -at_.d();
-      const double uu = glm::dot(j.dxx, at_.n);
-      const double uv = glm::dot(j.dxy, at_.n);
-      const double vv = glm::dot(j.dyy, at_.n);
-      const double det = uu * vv - uv * uv;
-      const dvec2 slope(glm::dot(j.dx[0], inward), glm::dot(j.dx[1], inward));
-      const dvec2 rate = dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
-      if (!(det > 0) || glm::dot(e.parameter[i], rate) >= 0) continue;
+      const std::optional<dvec2> rate = parameter_rate(at_.jet[i], at_.n, inward);
+      if (!rate || glm::dot(e.parameter[i], *rate) >= 0) continue;
       const std::optional<Contact> over = beyond(geometry_, c, exit);
       if (!over || over->kind != SourceKind::face) continue;
       at_.contact[i] = *over;
@@ -515,6 +594,31 @@ void Trace::begin_piece() {
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
 }
 
+/// Leaves out pieces without length, as they arise where a contact passes a corner between elements
+/// or the arc ends in it: their neighbours meet there.
+void Trace::drop_empty_pieces() {
+  std::vector<ArcPiece>& pieces = arc_.pieces;
+  const auto is_empty = [](const ArcPiece& piece) {
+    const Ruling& a = piece.rulings.front();
+    return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& b) {
+      return square(b.n - a.n) + square(b.point[0] - a.point[0]) +
+                 square(b.point[1] - a.point[1]) <
+             shortest_piece * shortest_piece;
+    });
+  };
+  for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
+    if (!is_empty(pieces[k])) continue;
+    // What ends the arc is told by its last ruling.
+    if (k + 1 == pieces.size()) {
+      Ruling& last = pieces[k - 1].rulings.back();
+      const Ruling& end = pieces[k].rulings.back();
+      last.n = end.n;
+      last.point = end.point;
+    }
+    pieces.erase(pieces.begin() + std::ptrdiff_t(k));
+  }
+}
+
 /// Where the step would take the two contacts into each other: shortens it, until they are so near
 /// that they merge.
 std::optional<Trace::Pace> Trace::near_merging() {
@@ -525,7 +629,7 @@ std::optional<Trace::Pace> Trace::near_merging() {
     step_ = -0.5 * apart / rate;
     return std::nullopt;
   }
-  if (merge()) return ended(TracedArc::End::merged);
+  if (merge()) return merged();
   if (apart < least_distance) return lost("two contacts approach each other and do not merge");
   // A third contact may yet surpass them.
   step_ = -0.5 * apart / rate;
@@ -577,7 +681,7 @@ Trace::Pace Trace::advance() {
     const double apart = glm::length(at_.d());
     const bool approach = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) < 0;
     if (approach && apart < 2 * merge_distance && step_ < stuck_share * apart && merge()) {
-      return ended(TracedArc::End::merged);
+      return merged();
     }
     return shorter("a separating curve cannot be followed");
   }
@@ -613,8 +717,8 @@ Trace::Pace Trace::advance() {
 }
 
 TracedArc Trace::run(const Progress& progress) {
-  if (pole_side(geometry_, at_.contact[0]) || pole_side(geometry_, at_.contact[1])) {
-    if (!leave_pole()) lost("a separating curve cannot be followed from a pole");
+  if (is_singular(0) || is_singular(1)) {
+    if (!leave()) lost("a separating curve cannot be followed from a pole or a flat point");
   } else if (settle()) {
     begin_piece();
   } else {
@@ -625,6 +729,7 @@ TracedArc Trace::run(const Progress& progress) {
     if (k % 64 == 0) progress.check();
     pace = k < step_limit ? advance() : lost("a separating curve has no end");
   }
+  drop_empty_pieces();
   return std::move(arc_);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/facet_contacts.h"
 
 namespace taut {
 namespace {
@@ -38,15 +39,14 @@ dvec3 leaving(const ContactGeometry& geometry, int instance, const ContactGeomet
 }
 
 std::optional<Contact> beyond_side(const ContactGeometry& geometry, const Contact& c, Side side) {
-  const Border& border =
-      geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+  const Border& border = geometry.patch(c).borders[std::size_t(side)];
   const double t = std::clamp(along_v(side) ? c.v : c.u, 0.0, 1.0);
-  if (border.kind == BorderKind::smooth) {
-    return on_side(c.instance, border.neighbor, border.neighbor_side, border.reversed ? 1 - t : t);
-  }
-  if (border.kind == BorderKind::edge && border.piece >= 0) {
+  if (border.piece >= 0) {
     return Contact{c.instance, SourceKind::edge, border.piece, border.piece_reversed ? 1 - t : t,
                    0};
+  }
+  if (border.kind == BorderKind::smooth) {
+    return on_side(c.instance, border.neighbor, border.neighbor_side, border.reversed ? 1 - t : t);
   }
   if (border.vertex >= 0) return Contact{c.instance, SourceKind::vertex, border.vertex, 0, 0};
   return std::nullopt;
@@ -136,6 +136,7 @@ class Climb {
       : geometry_(geometry), c_(c), n_(n) {}
 
   std::optional<Contact> run() {
+    if (c_.kind == SourceKind::face && geometry_.is_ruled(c_)) c_ = at_rest(geometry_, c_, n_);
     for (int k = 0; k < step_limit; ++k) {
       const Progress progress = c_.kind == SourceKind::face   ? on_face()
                                 : c_.kind == SourceKind::edge ? on_edge()
@@ -155,6 +156,8 @@ class Climb {
   static constexpr double noise_step = 1e-9;
   /// Slopes below this are rounding.
   static constexpr double flat = 1e-13;
+  /// Normal curvature from which on a level point is a minimum.
+  static constexpr double bent = 1e-9;
   /// Beside the tangents' own length: those about a pole are as short as they like, their rounding
   /// is not.
   static constexpr double small_tangent = 0.01;
@@ -193,8 +196,9 @@ class Climb {
       for (int a = 0; a < 2; ++a) {
         if (size[a] == 0) continue;
         const double second = a == 0 ? uu : vv;
-        // Where the value is not concave, far; where it is flat, nowhere.
-        const bool level = std::abs(slope[a]) <= flat * (size[a] + small_tangent);
+        // Where the value is not concave, far, off a minimum too; where it is flat, nowhere.
+        const bool level = std::abs(slope[a]) <= flat * (size[a] + small_tangent) &&
+                           second <= bent * size[a] * size[a];
         step[a] = second < 0 ? -slope[a] / second : level ? 0 : std::copysign(stride, slope[a]);
       }
     }
@@ -274,9 +278,8 @@ class Climb {
     if (c_.u <= 0 && slope < -flat * size) return leave({ContactExit::Kind::end, 0});
     if (c_.u >= 1 && slope > flat * size) return leave({ContactExit::Kind::end, 1});
     const double second = glm::dot(j.dxx, n_);
-    double step = second < 0                       ? -slope / second
-                  : std::abs(slope) <= flat * size ? 0
-                                                   : std::copysign(stride, slope);
+    const bool level = std::abs(slope) <= flat * size && second <= bent * size * size;
+    double step = second < 0 ? -slope / second : level ? 0 : std::copysign(stride, slope);
     step = std::clamp(step, -0.5, 0.5);
     const double to = std::clamp(c_.u + step, 0.0, 1.0);
     const bool to_end = to != c_.u && (to == 0 || to == 1);
@@ -300,6 +303,8 @@ class Climb {
   Progress at_vertex() {
     const auto& ends = geometry_.ends(c_);
     for (std::size_t k = 0; k < ends.size(); ++k) {
+      // The other end of a straight edge is a contact of its own.
+      if (geometry_.is_straight({c_.instance, SourceKind::edge, ends[k].piece, 0, 0})) continue;
       if (elevation(leaving(geometry_, c_.instance, ends[k]), n_) > flat) {
         return leave({ContactExit::Kind::edge, int(k)});
       }
@@ -393,14 +398,12 @@ std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
 }
 
 bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side) {
-  const Border& border =
-      geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+  const Border& border = geometry.patch(c).borders[std::size_t(side)];
   return border.kind == BorderKind::collapsed && border.vertex < 0;
 }
 
 dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c) {
-  const BezierPatch& patch = geometry.part(c).patches()[std::size_t(c.element)].bezier;
-  return geometry.to_frame(c.instance, unit_normal(patch, c.u, c.v));
+  return geometry.to_frame(c.instance, unit_normal(geometry.patch(c).bezier, c.u, c.v));
 }
 
 std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c) {
@@ -459,10 +462,54 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
   }
 }
 
-Contact at_rest(const ContactGeometry& geometry, const Contact& c) {
-  const Contact own = geometry.canonical(c);
-  if (own.kind != SourceKind::edge || !geometry.is_straight(own)) return own;
-  return geometry.canonical({own.instance, own.kind, own.element, own.u < 0.5 ? 0.0 : 1.0, 0});
+Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
+  Contact own = geometry.canonical(c);
+  const auto move_to_end = [&](double Contact::*t) {
+    Contact low = own;
+    Contact high = own;
+    low.*t = 0;
+    high.*t = 1;
+    const double rise = glm::dot(geometry.point(high) - geometry.point(low), n);
+    const bool level = std::abs(rise) <= support_tie;
+    own = geometry.canonical((level ? own.*t >= 0.5 : rise > 0) ? high : low);
+  };
+  const auto inside = [](double t) { return t > 0 && t < 1; };
+  for (const auto t : {&Contact::v, &Contact::u}) {
+    if (own.kind != SourceKind::face) break;
+    const Patch& patch = geometry.patch(own);
+    if ((t == &Contact::v ? patch.ruled_v : patch.ruled_u) && inside(own.*t)) move_to_end(t);
+  }
+  if (own.kind == SourceKind::edge && geometry.is_straight(own)) move_to_end(&Contact::u);
+  return own;
+}
+
+std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
+                                    const Contact& other) {
+  if (c.instance != other.instance) return std::nullopt;
+  if (same_element(c, other)) return c;
+  const auto found = [&](const std::optional<Contact>& next) {
+    return next && same_element(*next, other) ? next : std::nullopt;
+  };
+  if (c.kind == SourceKind::vertex) {
+    for (const ContactGeometry::PieceEnd& end : geometry.ends(c)) {
+      const Contact at{c.instance, SourceKind::edge, end.piece, double(end.end), 0};
+      if (const auto next = found(at)) return next;
+      if (const auto next = found(expressed_in(geometry, at, other))) return next;
+    }
+    if (other.kind != SourceKind::face) return std::nullopt;
+    for (const Side side : all_sides) {
+      if (geometry.patch(other).borders[std::size_t(side)].vertex != c.element) continue;
+      return on_side(c.instance, other.element, side, along_v(side) ? other.v : other.u);
+    }
+    return std::nullopt;
+  }
+  for (const ContactExit& exit : exits(geometry, c)) {
+    // Where it stands at the exit.
+    const Contact at = at_exit(c, exit);
+    if (at.u != c.u || at.v != c.v) continue;
+    if (const auto next = found(beyond(geometry, c, exit))) return next;
+  }
+  return std::nullopt;
 }
 
 std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {

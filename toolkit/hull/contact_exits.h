@@ -56,9 +56,15 @@ bool continues(const ContactGeometry& geometry, const Contact& a, const Contact&
 /// vertex between them; as they are where there is none.
 void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 
-/// The contact in its canonical form; inside of a straight edge, which supports only together with
-/// its ends, the nearer of these.
-Contact at_rest(const ContactGeometry& geometry, const Contact& c);
+/// The contact in its canonical form where it supports in the direction n; inside of a straight edge
+/// or of a ruled patch, which support only together with the ends of the segments in them, the
+/// higher of these ends.
+Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n);
+
+/// The point of `c` as a contact of the element of `other`, in whose border it lies; at a collapsed
+/// side at the parameter of `other`. None if it does not.
+std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
+                                    const Contact& other);
 
 /// The local maximum of x . n that a climb from the contact leads to, over smooth joins, onto and
 /// off edges and vertices. None where the climb gets lost.

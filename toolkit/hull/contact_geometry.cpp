@@ -32,6 +32,19 @@ bool is_segment(const BezierCurve& curve) {
 
 }  // namespace
 
+std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn) {
+  if (j.dimension == 0) return dvec2(0.0);
+  const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
+  const double uu = glm::dot(j.dxx, n);
+  if (!(uu < 0)) return std::nullopt;
+  if (j.dimension == 1) return dvec2(-slope.x / uu, 0);
+  const double uv = glm::dot(j.dxy, n);
+  const double vv = glm::dot(j.dyy, n);
+  const double det = uu * vv - uv * uv;
+  if (!(det > 0)) return std::nullopt;
+  return dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
+}
+
 ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
   const Scene::Content& content = scene.content();
   const std::vector<Part>& parts = scene.model().parts();
@@ -45,6 +58,7 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
     own.pieces.reserve(part.pieces().size());
     own.vertices.reserve(part.vertices().size());
     own.sides.resize(part.pieces().size());
+    own.ruled_sides.resize(part.pieces().size());
     own.ends.resize(part.vertices().size());
     for (std::size_t i = 0; i < part.patches().size(); ++i) {
       const Patch& patch = part.patches()[i];
@@ -52,8 +66,9 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
       own.patches.push_back({b.degree_u, b.degree_v, moved(b.points, center, scale)});
       for (const Side side : all_sides) {
         const Border& border = patch.borders[std::size_t(side)];
-        if (border.kind != BorderKind::edge || border.piece < 0) continue;
-        own.sides[std::size_t(border.piece)].push_back({int(i), side, border.piece_reversed});
+        if (border.piece < 0) continue;
+        auto& sides = patch.ruled() ? own.ruled_sides : own.sides;
+        sides[std::size_t(border.piece)].push_back({int(i), side, border.piece_reversed});
       }
     }
     for (std::size_t i = 0; i < part.pieces().size(); ++i) {
@@ -81,6 +96,16 @@ const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c)
 
 bool ContactGeometry::is_straight(const Contact& c) const {
   return elements(c).straight[std::size_t(c.element)];
+}
+
+BezierCurve ContactGeometry::curve(const Contact& c) const {
+  const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
+  BezierCurve result = elements(c).pieces[std::size_t(c.element)];
+  for (dvec4& p : result.points) {
+    const dvec3 x = instance.rotated ? instance.rotation * dvec3(p) : dvec3(p);
+    p = {x + p.w * instance.translation, p.w};
+  }
+  return result;
 }
 
 dvec3 ContactGeometry::to_local(int instance, const dvec3& n) const {
@@ -143,7 +168,7 @@ Contact ContactGeometry::canonical(const Contact& c) const {
   };
   if (c.kind == SourceKind::vertex) return c;
   if (c.kind == SourceKind::edge) return on_piece(c.element, c.u);
-  const Patch& patch = part(c).patches()[std::size_t(c.element)];
+  const Patch& patch = this->patch(c);
   const std::array<bool, 4> at = {c.u == 0, c.u == 1, c.v == 0, c.v == 1};
   for (const Side side : all_sides) {
     const Border& border = patch.borders[std::size_t(side)];
@@ -157,7 +182,7 @@ Contact ContactGeometry::canonical(const Contact& c) const {
   }
   for (const Side side : all_sides) {
     const Border& border = patch.borders[std::size_t(side)];
-    if (!at[std::size_t(side)] || border.kind != BorderKind::edge || border.piece < 0) continue;
+    if (!at[std::size_t(side)] || border.piece < 0) continue;
     const double t = along_v(side) ? c.v : c.u;
     return on_piece(border.piece, border.piece_reversed ? 1 - t : t);
   }
@@ -166,6 +191,11 @@ Contact ContactGeometry::canonical(const Contact& c) const {
 
 const std::vector<ContactGeometry::PieceSide>& ContactGeometry::sides(const Contact& c) const {
   return elements(c).sides[std::size_t(c.element)];
+}
+
+const std::vector<ContactGeometry::PieceSide>& ContactGeometry::ruled_sides(
+    const Contact& c) const {
+  return elements(c).ruled_sides[std::size_t(c.element)];
 }
 
 const std::vector<ContactGeometry::PieceEnd>& ContactGeometry::ends(const Contact& c) const {

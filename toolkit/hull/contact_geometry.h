@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "taut/bounds/scene.h"
@@ -16,10 +17,15 @@ struct ContactJet {
   dvec3 dxx = dvec3(0.0), dxy = dvec3(0.0), dyy = dvec3(0.0);
 };
 
+/// Rates of the contact's parameters where the direction n in which it supports turns by dn. None
+/// where x . n has no strict maximum there.
+std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn);
+
 /// A model's elements in the scene's frame, and how they meet: what all contacts look like.
 ///
-/// Contacts here are of three kinds: on a patch (kind face), on a piece of any edge, border or
-/// free (kind edge, parameter u), at any vertex (kind vertex).
+/// Contacts here are of three kinds: on a patch (kind face), on a piece of any edge, border, seam or
+/// free (kind edge, parameter u), at any vertex (kind vertex). Ruled patches have none but on their
+/// borders.
 class ContactGeometry {
  public:
   /// The scene must outlive it.
@@ -39,7 +45,7 @@ class ContactGeometry {
   /// of a piece, its vertex.
   Contact canonical(const Contact& c) const;
 
-  /// A side of a patch that lies on an edge's piece.
+  /// A side of a patch, not a ruled one, that lies on an edge's piece.
   struct PieceSide {
     int patch = -1;
     Side side = Side::u0;
@@ -52,12 +58,23 @@ class ContactGeometry {
   };
   /// @pre kind edge
   const std::vector<PieceSide>& sides(const Contact& c) const;
+  /// The same of ruled patches. @pre kind edge
+  const std::vector<PieceSide>& ruled_sides(const Contact& c) const;
   /// @pre kind vertex
   const std::vector<PieceEnd>& ends(const Contact& c) const;
 
   /// The piece is a straight segment between vertices: its ends are contacts, nothing inside of it.
   /// @pre kind edge
   bool is_straight(const Contact& c) const;
+  /// Contacts inside of the patch are contacts of straight segments of it, and so of their ends.
+  /// @pre kind face
+  bool is_ruled(const Contact& c) const { return patch(c).ruled(); }
+
+  const Patch& patch(const Contact& c) const {
+    return part(c).patches()[std::size_t(c.element)];
+  }
+  /// The piece in the scene's frame. @pre kind edge
+  BezierCurve curve(const Contact& c) const;
 
   dvec3 to_local(int instance, const dvec3& n) const;
   dvec3 to_frame(int instance, const dvec3& direction) const;
@@ -67,9 +84,10 @@ class ContactGeometry {
     std::vector<BezierPatch> patches;
     std::vector<BezierCurve> pieces;
     std::vector<dvec3> vertices;
-    std::vector<bool> straight;                 // per piece
-    std::vector<std::vector<PieceSide>> sides;  // per piece
-    std::vector<std::vector<PieceEnd>> ends;    // per vertex
+    std::vector<bool> straight;                       // per piece
+    std::vector<std::vector<PieceSide>> sides;        // per piece
+    std::vector<std::vector<PieceSide>> ruled_sides;  // per piece
+    std::vector<std::vector<PieceEnd>> ends;          // per vertex
   };
   const PartElements& elements(const Contact& c) const;
 

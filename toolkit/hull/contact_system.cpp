@@ -169,6 +169,56 @@ bool ContactSystem::solve(CommonSupport& s) const {
   return false;
 }
 
+std::optional<CommonSupport> ContactSystem::crossing(CommonSupport s) const {
+  double last = infinity;
+  for (int k = 0; k < step_limit; ++k) {
+    ++iterations_;
+    const std::array<dvec3, 2> frame = tangent_frame(s.n);
+    // Columns: how x_0 - x_1 moves with n along the frame, contacts kept stationary.
+    Eigen::Matrix2d motion;
+    Eigen::Vector2d off;
+    std::array<dvec2, 2> correction{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      // What makes the contact stationary in n as it is.
+      const ContactJet& j = s.jet[i];
+      const std::optional<dvec2> rate = parameter_rate(j, s.n, s.n);
+      if (!rate) return std::nullopt;
+      correction[i] = *rate;
+    }
+    const auto moved = [&](std::size_t i, const dvec2& rate) {
+      return rate.x * s.jet[i].dx[0] + rate.y * s.jet[i].dx[1];
+    };
+    const dvec3 d = s.d() + moved(0, correction[0]) - moved(1, correction[1]);
+    for (int a = 0; a < 2; ++a) {
+      dvec3 change(0.0);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const auto rate = parameter_rate(s.jet[i], s.n, frame[std::size_t(a)]);
+        change += (i == 0 ? 1.0 : -1.0) * moved(i, *rate);
+      }
+      for (int b = 0; b < 2; ++b) motion(b, a) = glm::dot(change, frame[std::size_t(b)]);
+      off[a] = -glm::dot(d, frame[std::size_t(a)]);
+    }
+    const Eigen::Vector2d turn = motion.fullPivLu().solve(off);
+    const dvec3 dn = turn[0] * frame[0] + turn[1] * frame[1];
+    double length = glm::length(dn);
+    if (!(length < step_bound)) return std::nullopt;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec2 change = correction[i] + *parameter_rate(s.jet[i], s.n, dn);
+      s.contact[i].u += change.x;
+      s.contact[i].v += change.y;
+      length = std::max(length, glm::length(moved(i, change)));
+    }
+    s.n = glm::normalize(s.n + dn);
+    s.evaluate(geometry_);
+    if (length < converged_step || (length < noise_step && length > 0.5 * last)) {
+      if (glm::length(s.d()) < residual_limit && residual(s) < residual_limit) return s;
+      return std::nullopt;
+    }
+    last = length;
+  }
+  return std::nullopt;
+}
+
 std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
                                                    const CurveTangent* before) const {
   const Linearized l(s);

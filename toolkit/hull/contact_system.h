@@ -74,6 +74,10 @@ class ContactSystem {
   /// The same of three contacts.
   bool solve(CommonSupport& s) const;
 
+  /// The direction near that of `s` in which its two contacts, of different surfaces or curves, are
+  /// one point: Newton's method on x_0 - x_1 as a function of n. None if it does not converge.
+  std::optional<CommonSupport> crossing(CommonSupport s) const;
+
   /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1) or, where n turns
   /// too little to tell, on as `before` does; none where all rates vanish. Where the system is
   /// singular it is one of the directions that solve it.

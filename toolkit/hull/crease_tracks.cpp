@@ -26,6 +26,9 @@ CreaseTracks::CreaseTracks(const ContactGeometry& geometry, const SeparatingGrap
   for (int a = 0; a < int(graph.arcs.size()); ++a) {
     add_arc(geometry, graph.arcs[std::size_t(a)], a);
   }
+  for (int k = 0; k < int(graph.nodes.size()); ++k) {
+    add_facet(graph.nodes[std::size_t(k)], k);
+  }
   for (int r = 0; r < int(regions.size()); ++r) {
     add_region(geometry, regions[std::size_t(r)], r);
   }
@@ -50,7 +53,7 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
         own.intervals.push_back({std::min(from, to),
                                  std::max(from, to),
                                  sense > 0,
-                                 {index, p, int(i), to - from, -1, 0, 0}});
+                                 {index, p, int(i), to - from, -1, 0, 0, -1}});
       };
       double from = first.u;
       // Runs of rulings on one side of the edge; the ends of arcs may be tangent to it.
@@ -84,6 +87,18 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
   }
 }
 
+/// The facet lies to the left of its sides.
+void CreaseTracks::add_facet(const FacetNode& node, int index) {
+  for (std::size_t k = 0; k < node.sides.size(); ++k) {
+    if (!node.is_curved(k)) continue;
+    const EdgeStretch& s = node.sides[k];
+    creases_[{s.instance, s.piece}].intervals.push_back({std::min(s.from, s.to),
+                                                         std::max(s.from, s.to),
+                                                         s.from < s.to,
+                                                         {-1, -1, 0, 0, -1, 0, 0, index}});
+  }
+}
+
 void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion& region,
                               int index) {
   const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
@@ -93,13 +108,13 @@ void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion&
       const TrimStretch& s = region.loops[l][k];
       if (s.arc >= 0) continue;
       const Border& border = patch.borders[std::size_t(s.side)];
-      if (border.kind != BorderKind::edge || border.piece < 0) continue;
+      if (border.piece < 0) continue;
       const auto over = [&](double t) { return border.piece_reversed ? 1 - t : t; };
       const double from = over(s.from);
       const double to = over(s.to);
       // The region lies to the left of its outline.
       creases_[{region.instance, border.piece}].intervals.push_back(
-          {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k}});
+          {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k, -1}});
     }
   }
 }

@@ -8,15 +8,17 @@
 
 namespace taut {
 
-/// What lies on the hull beside the model's edges. At each point of an edge that the hull touches,
-/// the directions that support it make an arc across the tangent; beyond its two ends lies the
-/// surface to the left and to the right of the edge: a patch that ends in it, or a scroll.
+/// What lies on the hull beside the model's edges and seams. At each point of an edge that the hull
+/// touches, the directions that support it make an arc across the tangent; beyond its two ends lies
+/// the surface to the left and to the right of the edge: a patch that ends in it, a scroll, or a
+/// facet of which it is a side.
 class CreaseTracks {
  public:
   CreaseTracks(const ContactGeometry& geometry, const SeparatingGraph& graph,
                const std::vector<TrimRegion>& regions);
 
-  /// One side of a stretch of an edge: a piece of an arc, or a stretch of a region's outline.
+  /// One side of a stretch of an edge: a piece of an arc, a stretch of a region's outline, or a
+  /// facet.
   struct Track {
     int arc = -1;
     int piece = -1;
@@ -24,7 +26,8 @@ class CreaseTracks {
     double sense = 0;  ///< positive if the edge's parameter grows along the arc
     int region = -1;
     std::size_t loop = 0, index = 0;
-    bool empty() const { return arc < 0 && region < 0; }
+    int node = -1;
+    bool empty() const { return arc < 0 && region < 0 && node < 0; }
   };
   /// A stretch of a piece of an edge, from < to, with what lies to its left and to its right, seen
   /// from outside along the growing parameter.
@@ -54,6 +57,7 @@ class CreaseTracks {
     std::vector<double> ends() const;
   };
   void add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index);
+  void add_facet(const FacetNode& node, int index);
   void add_region(const ContactGeometry& geometry, const TrimRegion& region, int index);
 
   std::map<std::pair<int, int>, Crease> creases_;  // by instance and piece

@@ -6,6 +6,7 @@
 
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/outline.h"
+#include "taut/hull/planar_hull.h"
 
 namespace taut {
 namespace {
@@ -35,6 +36,9 @@ Contact clamped(Contact c) {
   return c;
 }
 
+/// Directions in which a curved side is asked for contacts beyond it differ by no more, in radians.
+constexpr double side_angle = 0.2;
+
 /// The corners of the contacts' convex hull, counter-clockwise about n.
 FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
   const auto turn = [&](std::size_t k) {
@@ -54,6 +58,150 @@ FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
     result.points.push_back(f.points[std::size_t(k)]);
   }
   return result;
+}
+
+/// A plane's contact set, as it becomes known.
+class ContactSet {
+ public:
+  ContactSet(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
+             const std::vector<Contact>& pieces)
+      : geometry_(geometry), query_(query), n_(n), frame_(tangent_frame(n)), pieces_(pieces) {
+    curves_.reserve(pieces.size());
+    for (const Contact& piece : pieces) {
+      std::vector<dvec3>& curve = curves_.emplace_back();
+      for (const dvec4& p : geometry.curve(piece).points) {
+        curve.emplace_back(in_plane(dvec3(p)), p.w);
+      }
+    }
+  }
+
+  void add(const Contact& c) {
+    contacts_.push_back(clamped(c));
+    points_.push_back(geometry_.point(contacts_.back()));
+  }
+  std::optional<FacetContacts> complete();
+
+ private:
+  bool is_known(const Contact& c) const {
+    const dvec3 x = geometry_.point(c);
+    return std::any_of(points_.begin(), points_.end(), [&](const dvec3& p) {
+      return glm::distance(p, x) <= same_contact;
+    });
+  }
+  dvec2 in_plane(const dvec3& x) const {
+    return {glm::dot(x, frame_[0]), glm::dot(x, frame_[1])};
+  }
+  /// A direction in the plane, and how far the outline goes in it.
+  struct Probe {
+    dvec3 towards;
+    double reach;
+  };
+  std::optional<FacetContacts> outline() const;
+  std::vector<Probe> probes(const FacetContacts& f) const;
+  std::optional<Contact> found(const dvec3& towards);
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  dvec3 n_;
+  std::array<dvec3, 2> frame_;
+  const std::vector<Contact>& pieces_;
+  std::vector<std::vector<dvec3>> curves_;
+  std::vector<Contact> contacts_;
+  std::vector<dvec3> points_;
+};
+
+std::optional<FacetContacts> ContactSet::outline() const {
+  if (curves_.empty()) {
+    FacetContacts f{contacts_, points_, {}};
+    return points_.size() < 3 ? f : corners_only(f, n_);
+  }
+  std::vector<dvec2> points;
+  points.reserve(points_.size());
+  for (const dvec3& x : points_) points.push_back(in_plane(x));
+  const PlanarHull hull = planar_hull(points, curves_);
+  if (!hull.verified) return std::nullopt;
+  FacetContacts f;
+  for (const OutlineSide& side : hull.sides) {
+    Contact c;
+    if (side.point >= 0) {
+      c = contacts_[std::size_t(side.point)];
+    } else {
+      c = pieces_[std::size_t(side.curve)];
+      c.u = side.t;
+      c = geometry_.canonical(c);
+    }
+    f.contacts.push_back(c);
+    f.points.push_back(geometry_.point(c));
+    EdgeStretch stretch;
+    if (side.along >= 0) {
+      const Contact& piece = pieces_[std::size_t(side.along)];
+      stretch = {piece.instance, piece.element, side.from, side.to};
+    }
+    f.sides.push_back(stretch);
+  }
+  return f;
+}
+
+/// Where to look for contacts beyond the outline.
+std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const {
+  std::vector<Probe> result;
+  const auto add = [&](const dvec3& x, const dvec3& towards) {
+    result.push_back({towards, glm::dot(x, towards)});
+  };
+  const std::size_t count = f.points.size();
+  for (int k = 0; count == 1 && k < all_around; ++k) {
+    const double angle = 2 * std::numbers::pi * k / all_around;
+    add(f.points[0], std::cos(angle) * frame_[0] + std::sin(angle) * frame_[1]);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const dvec3& a = f.points[k];
+    if (!f.is_curved(k)) {
+      if (count > 1) add(a, unit(glm::cross(f.points[(k + 1) % count] - a, n_)));
+      continue;
+    }
+    const EdgeStretch& side = f.sides[k];
+    const BezierCurve curve = geometry_.curve({side.instance, SourceKind::edge, side.piece, 0, 0});
+    const double sense = side.from < side.to ? 1 : -1;
+    const auto at = [&](double share) {
+      return jet(curve, (1 - share) * side.from + share * side.to);
+    };
+    const auto outward = [&](double share) { return unit(glm::cross(sense * at(share).ct, n_)); };
+    // The middle, and more of them where the side turns.
+    double step = 0.5;
+    while (step > 1.0 / 64 && glm::distance(outward(0), outward(step)) > side_angle) step /= 2;
+    for (double share = 0; share <= 1; share += step) add(at(share).c, outward(share));
+  }
+  return result;
+}
+
+/// A contact that ties with the others, seen from a direction turned by `towards`.
+std::optional<Contact> ContactSet::found(const dvec3& towards) {
+  const Support s = query_(glm::normalize(n_ + side_turn * towards), contacts_[0]);
+  const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
+  if (!c || glm::dot(geometry_.point(*c), n_) < glm::dot(points_[0], n_) - support_tie) {
+    return std::nullopt;
+  }
+  return c;
+}
+
+std::optional<FacetContacts> ContactSet::complete() {
+  if (contacts_.empty()) add(at_rest(geometry_, query_(n_).contact, n_));
+  while (points_.size() <= facet_corner_limit) {
+    const std::optional<FacetContacts> f = outline();
+    if (!f) return std::nullopt;
+    bool grown = false;
+    for (const Probe& probe : probes(*f)) {
+      const std::optional<Contact> more = found(probe.towards);
+      if (!more || is_known(*more) ||
+          glm::dot(geometry_.point(*more), probe.towards) <= probe.reach + same_contact) {
+        continue;
+      }
+      add(*more);
+      grown = true;
+    }
+    if (!grown) return f;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -89,57 +237,17 @@ std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQu
   return std::nullopt;
 }
 
+bool FacetContacts::is_curved() const {
+  return std::any_of(sides.begin(), sides.end(),
+                     [](const EdgeStretch& side) { return side.piece >= 0; });
+}
+
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
-                                            const dvec3& n, const std::vector<Contact>& known) {
-  FacetContacts f;
-  const auto add = [&](std::size_t place, const Contact& c, const dvec3& x) {
-    f.contacts.insert(f.contacts.begin() + std::ptrdiff_t(place), c);
-    f.points.insert(f.points.begin() + std::ptrdiff_t(place), x);
-  };
-  for (const Contact& c : known) add(f.points.size(), clamped(c), geometry.point(clamped(c)));
-  if (known.empty()) {
-    const Support top = query(n);
-    add(0, geometry.canonical(top.contact), top.point);
-  }
-  const double h = glm::dot(f.points[0], n);
-  /// A contact that ties with the others in n, seen from a direction turned by `towards`.
-  const auto found = [&](const dvec3& towards) -> std::optional<std::pair<Contact, dvec3>> {
-    const Support s = query(glm::normalize(n + side_turn * towards), f.contacts[0]);
-    const std::optional<Contact> c = climbed(geometry, s.contact, n);
-    if (!c) return std::nullopt;
-    const dvec3 x = geometry.point(*c);
-    const bool is_new = std::all_of(f.points.begin(), f.points.end(), [&](const dvec3& p) {
-      return glm::distance(p, x) > same_contact;
-    });
-    if (!is_new || glm::dot(x, n) < h - support_tie) return std::nullopt;
-    return std::pair(*c, x);
-  };
-  if (f.points.size() == 1) {
-    const auto [e1, e2] = tangent_frame(n);
-    for (int k = 0; k < all_around && f.points.size() == 1; ++k) {
-      const double angle = 2 * std::numbers::pi * k / all_around;
-      const auto more = found(std::cos(angle) * e1 + std::sin(angle) * e2);
-      if (more) add(1, more->first, more->second);
-    }
-  }
-  if (f.points.size() == 1) return f;
-  if (f.points.size() == 3 &&
-      glm::dot(glm::cross(f.points[1] - f.points[0], f.points[2] - f.points[0]), n) < 0) {
-    std::swap(f.contacts[1], f.contacts[2]);
-    std::swap(f.points[1], f.points[2]);
-  }
-  for (std::size_t i = 0; i < f.points.size();) {
-    if (f.points.size() > facet_corner_limit) return std::nullopt;
-    const dvec3 a = f.points[i];
-    const dvec3 outward = unit(glm::cross(f.points[(i + 1) % f.points.size()] - a, n));
-    const auto more = found(outward);
-    if (more && glm::dot(more->second - a, outward) > same_contact) {
-      add(i + 1, more->first, more->second);
-    } else {
-      ++i;
-    }
-  }
-  return f.points.size() < 3 ? f : corners_only(f, n);
+                                            const dvec3& n, const std::vector<Contact>& known,
+                                            const std::vector<Contact>& pieces) {
+  ContactSet set(geometry, query, n, pieces);
+  for (const Contact& c : known) set.add(c);
+  return set.complete();
 }
 
 }  // namespace taut

@@ -22,18 +22,28 @@ inline constexpr double same_contact = 1e-7;
 std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQuery& query,
                                           const CommonSupport& s, Contact winner);
 
-/// The contacts of a plane that make the corners of its contact set's convex hull.
+/// The convex hull of a plane's contact set, by its corners and sides.
 struct FacetContacts {
   std::vector<Contact> contacts;  ///< counter-clockwise from outside
   std::vector<dvec3> points;
+  /// As in HullFace.
+  std::vector<EdgeStretch> sides;
+
+  /// The side from corner k to the next one runs along an edge.
+  bool is_curved(std::size_t k) const { return !sides.empty() && sides[k].piece >= 0; }
+  bool is_curved() const;
+  /// It has an inside.
+  bool is_facet() const { return contacts.size() >= 3 || is_curved(); }
 };
 
-/// All contacts of a direction: the corners of the convex hull of its contact set, found by support
-/// queries in directions turned a little all around and towards each of its sides. Begins with the
-/// contacts known, none or more. One or two contacts are no facet. None where there are more than
-/// facet_corner_limit (contact along a curve).
+/// All contacts of a direction: its contact set is that of `pieces`, which lie in the supporting
+/// plane as a whole (ContactPlane), and of contacts found by support queries in directions turned a
+/// little all around and towards each of its sides. Begins with the contacts known, none or more.
+/// One or two contacts are no facet. None where there are more than facet_corner_limit contacts
+/// beside the pieces (contact along another curve), or where the outline is not certain.
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
-                                            const dvec3& n, const std::vector<Contact>& known);
-inline constexpr std::size_t facet_corner_limit = 24;
+                                            const dvec3& n, const std::vector<Contact>& known,
+                                            const std::vector<Contact>& pieces = {});
+inline constexpr std::size_t facet_corner_limit = 256;
 
 }  // namespace taut

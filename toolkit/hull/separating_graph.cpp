@@ -6,6 +6,7 @@
 
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/contact_planes.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/surface_seeds.h"
@@ -23,6 +24,8 @@ constexpr double first_order = 0.2;
 constexpr double nearly_opposite = -0.9;
 /// Share of the angle between two directions that a search between them leaves on either side.
 constexpr double least_part = 0.05;
+/// Weight by which a direction between two keeps clear of a plane's between them.
+constexpr double beside_plane = 1.25;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too: hundreds of times what generic models
@@ -39,6 +42,8 @@ constexpr double same_curve = 1e-6;
 constexpr double overlap = 0.2;
 /// Normals of facets are the same below this difference.
 constexpr double same_plane = 1e-7;
+/// Those of facets with curved sides are the same below this one.
+constexpr double nearly_same_plane = 1e-5;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
 
@@ -72,10 +77,17 @@ class GraphTracer {
   int side_of(int node, const dvec3& first, const dvec3& second) const;
   bool is_taken(int node, const std::vector<ArcPiece>& pieces) const;
   void connect(int arc, int end, int node);
+  bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
+  bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const;
+  bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
+  int node_at(const TracedArc& traced);
   int add_node(const dvec3& n, FacetContacts facet);
+  void connect_crossing(int arc, int end, int node);
+  void find_planes();
   void find_poles();
-  void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
+  bool is_in_plane(const dvec3& n) const;
+  void fail(const dvec3& n, const char* reason);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -94,9 +106,18 @@ class GraphTracer {
   std::vector<int> waiting_;  // nodes whose slots may be open
 };
 
+/// One spot is told once.
+void GraphTracer::fail(const dvec3& n, const char* reason) {
+  const bool known =
+      std::any_of(graph_.unresolved.begin(), graph_.unresolved.end(), [&](const Unresolved& u) {
+        return u.reason == reason && glm::distance(u.n, n) < same_branch;
+      });
+  if (!known) graph_.unresolved.push_back({n, reason});
+}
+
 GraphTracer::Sighting GraphTracer::seen(const dvec3& n, const Contact& hint) {
   const Support s = query_(n, hint);
-  const Contact c = at_rest(geometry_, s.contact);
+  const Contact c = at_rest(geometry_, s.contact, n);
   return {n, c, geometry_.point(c)};
 }
 
@@ -104,21 +125,9 @@ GraphTracer::Sighting GraphTracer::seen(const dvec3& n, const Contact& hint) {
 /// a climb.
 bool GraphTracer::is_near(const Sighting& from, const Sighting& to) const {
   const ContactJet j = geometry_.jet(from.contact);
-  const dvec3 dn = to.n - from.n;
-  const double uu = glm::dot(j.dxx, from.n);
-  dvec3 motion(0.0);
-  if (j.dimension == 1) {
-    if (!(uu < 0)) return false;
-    motion = -glm::dot(j.dx[0], dn) / uu * j.dx[0];
-  } else if (j.dimension == 2) {
-    const double uv = glm::dot(j.dxy, from.n);
-    const double vv = glm::dot(j.dyy, from.n);
-    const double det = uu * vv - uv * uv;
-    if (!(det > 0) || !(uu < 0)) return false;
-    const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
-    motion = (uv * slope.y - vv * slope.x) / det * j.dx[0] +
-             (uv * slope.x - uu * slope.y) / det * j.dx[1];
-  }
+  const std::optional<dvec2> rate = parameter_rate(j, from.n, to.n - from.n);
+  if (!rate) return false;
+  const dvec3 motion = rate->x * j.dx[0] + rate->y * j.dx[1];
   return glm::distance(to.x - from.x, motion) < first_order * glm::distance(to.x, from.x);
 }
 
@@ -203,7 +212,8 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
       return;
     }
   }
-  const dvec3 n = divides ? seed->n : glm::normalize(a.n + b.n);
+  dvec3 n = divides ? seed->n : glm::normalize(a.n + b.n);
+  if (is_in_plane(n)) n = glm::normalize(a.n + beside_plane * b.n);
   const Sighting middle = seen(n, a.contact);
   if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + support_tie) {
     trace(*seed);
@@ -289,11 +299,29 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
   return false;
 }
 
+/// Whether the contacts are in the plane of a facet with curved sides. Its direction is the limit of
+/// those of planes with two contacts on one of the curves, which Newton's method cannot tell apart.
+bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
+                          const std::vector<Contact>& contacts) const {
+  return !node.sides.empty() && glm::distance(node.n, n) < nearly_same_plane &&
+         has_contacts(node, contacts);
+}
+
+/// All of the contacts are in the facet's plane.
+bool GraphTracer::has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const {
+  const double offset = glm::dot(node.points.front(), node.n);
+  return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
+    return glm::dot(geometry_.point(c), node.n) >= offset - support_tie;
+  });
+}
+
 /// The facet node of a plane, a new one if there is none yet; no_node if its contacts cannot be
 /// told.
 int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
     const FacetNode& node = graph_.nodes[k];
+    if (node.is_crossing()) continue;
+    if (lies_in(node, n, contacts)) return int(k);
     if (glm::distance(node.n, n) > same_plane) continue;
     // Facets of nearly equal planes have other contacts.
     const bool known = std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
@@ -309,12 +337,49 @@ int GraphTracer::node_of(const dvec3& n, const std::vector<Contact>& contacts) {
   return no_node;
 }
 
+/// The node in which a curve ends that was traced.
+int GraphTracer::node_at(const TracedArc& traced) {
+  if (traced.end == TracedArc::End::merged) return free_end;
+  if (traced.end == TracedArc::End::plane) return node_of(traced.n, traced.contacts);
+  const dvec3 x = geometry_.point(traced.contacts.front());
+  for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
+    const FacetNode& node = graph_.nodes[k];
+    if (node.is_crossing() && glm::distance(node.n, traced.n) < same_branch &&
+        glm::distance(node.points.front(), x) < same_branch) {
+      return int(k);
+    }
+  }
+  graph_.nodes.push_back({traced.n, {traced.contacts.front()}, {x}, {}, {}});
+  return int(graph_.nodes.size()) - 1;
+}
+
 int GraphTracer::add_node(const dvec3& n, FacetContacts facet) {
   const std::size_t count = facet.contacts.size();
-  graph_.nodes.push_back(
-      {n, std::move(facet.contacts), std::move(facet.points), std::vector<FacetNode::Slot>(count)});
+  graph_.nodes.push_back({n, std::move(facet.contacts), std::move(facet.points),
+                          std::move(facet.sides), std::vector<FacetNode::Slot>(count)});
   waiting_.push_back(int(graph_.nodes.size()) - 1);
   return waiting_.back();
+}
+
+/// Planes with contact along whole curves.
+void GraphTracer::find_planes() {
+  for (const ContactPlane& plane : contact_planes(geometry_, query_)) {
+    std::optional<FacetContacts> f =
+        facet_contacts(geometry_, query_, plane.n, {}, plane.pieces);
+    if (!f || !f->is_facet()) {
+      fail(plane.n, "the outline of a facet with curved sides is not found");
+      continue;
+    }
+    landmarks_.push_back({plane.n, *f});
+    add_node(plane.n, std::move(*f));
+  }
+}
+
+/// Whether it is the normal of a plane with contact along a curve: all of the curve supports in it.
+bool GraphTracer::is_in_plane(const dvec3& n) const {
+  return std::any_of(landmarks_.begin(), landmarks_.end(), [&](const Landmark& l) {
+    return l.facet.is_curved() && glm::distance(l.n, n) < same_plane;
+  });
 }
 
 /// Poles that support together with two other contacts or more: facets that Newton's method does
@@ -361,7 +426,7 @@ int GraphTracer::side_of(int node, const dvec3& first, const dvec3& second) cons
 
 /// Whether an arc is there already across the side of the node at which these pieces arrive.
 bool GraphTracer::is_taken(int node, const std::vector<ArcPiece>& pieces) const {
-  if (node == free_end) return false;
+  if (node == free_end || graph_.nodes[std::size_t(node)].is_crossing()) return false;
   const Ruling& last = pieces.back().rulings.back();
   const int side = side_of(node, last.point[1], last.point[0]);
   return side >= 0 && graph_.nodes[std::size_t(node)].slots[std::size_t(side)].arc >= 0;
@@ -371,6 +436,10 @@ bool GraphTracer::is_taken(int node, const std::vector<ArcPiece>& pieces) const 
 void GraphTracer::connect(int arc, int end, int node) {
   if (node == free_end) return;
   FacetNode& own = graph_.nodes[std::size_t(node)];
+  if (own.is_crossing()) {
+    connect_crossing(arc, end, node);
+    return;
+  }
   const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(arc)].pieces;
   const Ruling& r = end == 0 ? pieces.front().rulings.front() : pieces.back().rulings.back();
   const int side = side_of(node, r.point[end == 0 ? 0 : 1], r.point[end == 0 ? 1 : 0]);
@@ -382,6 +451,24 @@ void GraphTracer::connect(int arc, int end, int node) {
     own.slots[std::size_t(side)] = {arc, end};
     graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
   }
+}
+
+/// Adds an arc that ends in a crossing to those that leave it, in their order about its direction.
+void GraphTracer::connect_crossing(int arc, int end, int node) {
+  FacetNode& own = graph_.nodes[std::size_t(node)];
+  const std::array<dvec3, 2> frame = tangent_frame(own.n);
+  const auto angle = [&](const FacetNode::Slot& slot) {
+    const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(slot.arc)].pieces;
+    const dvec3 next = slot.end == 0 ? pieces.front().rulings[1].n
+                                     : std::prev(pieces.back().rulings.end(), 2)->n;
+    return std::atan2(glm::dot(next, frame[1]), glm::dot(next, frame[0]));
+  };
+  const FacetNode::Slot slot = {arc, end};
+  const auto place =
+      std::find_if(own.slots.begin(), own.slots.end(),
+                   [&](const FacetNode::Slot& other) { return angle(other) > angle(slot); });
+  own.slots.insert(place, slot);
+  graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
 }
 
 /// Reverses the direction, and with it the order of contacts.
@@ -412,11 +499,30 @@ void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
   std::move(first, more.end(), std::back_inserter(pieces));
 }
 
+/// Whether the seed is a facet, with other contacts beside the two: a node for it, if it is new.
+bool GraphTracer::is_facet(const CommonSupport& seed) {
+  const std::vector<Contact> contacts(seed.contact.begin(), seed.contact.begin() + seed.count);
+  for (const FacetNode& node : graph_.nodes) {
+    if (!node.is_crossing() && glm::distance(node.n, seed.n) < same_plane &&
+        has_contacts(node, contacts)) {
+      return true;
+    }
+  }
+  std::optional<FacetContacts> f = facet_contacts(geometry_, query_, seed.n, contacts);
+  if (!f || !f->is_facet()) return false;
+  add_node(seed.n, std::move(*f));
+  return true;
+}
+
 /// Traces the curve through a seed, both ways unless it closes.
 void GraphTracer::trace(const CommonSupport& seed) {
   TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
   if (ahead.end == TracedArc::End::lost) {
-    fail(seed.n, ahead.reason);
+    if (is_facet(seed)) {
+      trace_waiting();
+    } else {
+      fail(seed.n, ahead.reason);
+    }
     return;
   }
   SeparatingArc arc;
@@ -443,10 +549,14 @@ void GraphTracer::trace(const CommonSupport& seed) {
                                                     : "a separating curve closes one way only");
     return;
   }
-  const int begin =
-      behind.end == TracedArc::End::plane ? node_of(behind.n, behind.contacts) : free_end;
-  const int end = ahead.end == TracedArc::End::plane ? node_of(ahead.n, ahead.contacts) : free_end;
+  const int begin = node_at(behind);
+  const int end = node_at(ahead);
   if (begin == no_node || end == no_node) return;
+  if (begin == end && begin != free_end && glm::distance(ahead.n, seed.n) < same_plane &&
+      glm::distance(behind.n, seed.n) < same_plane) {
+    trace_waiting();  // two contacts of a facet that share no side
+    return;
+  }
   // A facet has one curve across each side: this one is there already.
   if (is_taken(begin, behind.pieces) || is_taken(end, ahead.pieces)) return;
   reverse(behind.pieces);
@@ -483,8 +593,8 @@ void GraphTracer::trace_waiting() {
     waiting_.pop_back();
     const std::size_t count = graph_.nodes[std::size_t(node)].contacts.size();
     for (std::size_t i = 0; i < count; ++i) {
-      if (graph_.nodes[std::size_t(node)].slots[i].arc >= 0) continue;
       const FacetNode& own = graph_.nodes[std::size_t(node)];
+      if (own.slots[i].arc >= 0 || own.is_curved(i)) continue;
       CommonSupport start;
       start.n = own.n;
       start.add(geometry_, own.contacts[i]);
@@ -496,8 +606,7 @@ void GraphTracer::trace_waiting() {
                           : "a separating curve returns into its facet");
         continue;
       }
-      const int end =
-          traced.end == TracedArc::End::plane ? node_of(traced.n, traced.contacts) : free_end;
+      const int end = node_at(traced);
       if (end == no_node) continue;
       SeparatingArc arc;
       arc.pieces = std::move(traced.pieces);
@@ -510,19 +619,21 @@ void GraphTracer::trace_waiting() {
 
 SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
+  first_cells_ = query_.cells();
+  cell_limit_ = least_cells + cells_a_sample * long(samples.size());
+  find_planes();
+  find_poles();
   std::vector<Sighting> sightings;
   std::vector<dvec3> points;
   Box box;
   for (const Sample& s : samples) {
-    const Contact c = at_rest(geometry_, s.contact);
+    if (is_in_plane(s.n)) continue;
+    const Contact c = at_rest(geometry_, s.contact, s.n);
     const dvec3 x = geometry_.point(c);
     box.include(x);
     points.push_back(x);
     sightings.push_back({s.n, c, x});
   }
-  first_cells_ = query_.cells();
-  cell_limit_ = least_cells + cells_a_sample * long(samples.size());
-  find_poles();
   trace_waiting();
   for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
     if (given_up()) break;

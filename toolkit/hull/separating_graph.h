@@ -9,19 +9,27 @@
 
 namespace taut {
 
-/// A direction in which three or more contacts support: a facet of the hull.
+/// A direction in which separating curves meet: three or more contacts support in it, or all of a
+/// curve, which makes a facet of the hull; or two surfaces or curves touch each other (a crossing:
+/// one contact and point, and a slot for each separating curve that ends there, counter-clockwise).
 struct FacetNode {
   dvec3 n = dvec3(0.0);
   /// Counter-clockwise from outside; with their points in the scene's frame.
   std::vector<Contact> contacts;
   std::vector<dvec3> points;
+  /// As in FacetContacts.
+  std::vector<EdgeStretch> sides;
   /// Per side from contact i to i + 1: the arc that leaves across it, contact i being the arc's
-  /// contact 0 if it begins here (end 0), contact 1 if it ends here (end 1).
+  /// contact 0 if it begins here (end 0), contact 1 if it ends here (end 1). None leaves across a
+  /// curved side.
   struct Slot {
     int arc = -1;
     int end = 0;
   };
   std::vector<Slot> slots;
+
+  bool is_curved(std::size_t side) const { return !sides.empty() && sides[side].piece >= 0; }
+  bool is_crossing() const { return points.size() == 1 && sides.empty(); }
 };
 
 /// The separating curves of a scene's support function on the sphere of directions: a planar graph

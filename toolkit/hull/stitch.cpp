@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "taut/hull/crease_tracks.h"
+#include "taut/hull/ruled_faces.h"
 #include "taut/hull/trim_loops.h"
 
 namespace taut {
@@ -185,7 +186,8 @@ void Stitcher::match_joins() {
   for (int k = 0; k < int(stretches_.size()); ++k) {
     const TrimStretch& s = stretch(stretches_[std::size_t(k)]);
     const TrimRegion& r = regions_[std::size_t(stretches_[std::size_t(k)].region)];
-    if (s.arc < 0 && border(r, s.side).kind == BorderKind::smooth) {
+    const bool on_border = s.arc < 0;
+    if (on_border && border(r, s.side).kind == BorderKind::smooth && border(r, s.side).piece < 0) {
       on[{r.instance, r.patch, int(s.side)}].push_back(k);
     }
   }
@@ -279,6 +281,10 @@ void Stitcher::make_scrolls() {
 
 void Stitcher::make_facets() {
   for (const FacetNode& node : graph_.nodes) {
+    if (node.is_crossing()) {
+      facet_of_.push_back(-1);
+      continue;
+    }
     facet_of_.push_back(int(boundary_.faces.size()));
     HullFace face;
     face.kind = FaceKind::facet;
@@ -286,6 +292,7 @@ void Stitcher::make_facets() {
     face.offset = glm::dot(node.points.front(), node.n);
     face.contacts = node.contacts;
     face.points = node.points;
+    face.sides = node.sides;
     boundary_.faces.push_back(std::move(face));
   }
 }
@@ -449,7 +456,7 @@ void Stitcher::split_at_creases() {
       std::vector<TrimStretch> split;
       for (const TrimStretch& s : loop) {
         const Border& b = border(r, s.side);
-        if (s.arc >= 0 || b.kind != BorderKind::edge || b.piece < 0) {
+        if (s.arc >= 0 || b.piece < 0) {
           split.push_back(s);
           continue;
         }
@@ -468,29 +475,34 @@ void Stitcher::split_at_creases() {
   }
 }
 
+/// Where faces meet in edges, and in seams.
 void Stitcher::make_creases() {
   const CreaseTracks tracks(geometry_, graph_, regions_);
-  std::vector<CurveElement> elements;
+  std::vector<CurveElement> edges;
+  std::vector<CurveElement> seams;
+  const auto face = [&](const CreaseTracks::Track& t) {
+    return t.arc >= 0    ? scroll_of_[std::size_t(t.arc)][std::size_t(t.piece)]
+           : t.node >= 0 ? facet_of_[std::size_t(t.node)]
+                         : face_of(t.region);
+  };
+  const auto stretch_at = [&](const CreaseTracks::Track& t) {
+    return t.region < 0 ? -1 : number_of({t.region, t.loop, t.index});
+  };
   for (const CreaseTracks::Stretch& c : tracks.overlay()) {
+    const Contact at{c.instance, SourceKind::edge, c.piece, 0.5 * (c.from + c.to), 0};
     if (c.low.empty() || c.high.empty()) {
-      const Contact at{c.instance, SourceKind::edge, c.piece, 0.5 * (c.from + c.to), 0};
       fail(unit(geometry_.point(at)), "an edge lies on the hull on one side only");
       continue;
     }
-    const auto face = [&](const CreaseTracks::Track& t) {
-      return t.arc >= 0 ? scroll_of_[std::size_t(t.arc)][std::size_t(t.piece)] : face_of(t.region);
-    };
-    const auto stretch_at = [&](const CreaseTracks::Track& t) {
-      return t.arc >= 0 ? -1 : number_of({t.region, t.loop, t.index});
-    };
     CurveElement e;
     e.left = face(c.low);
     e.right = face(c.high);
-    const Model& model = geometry_.scene().model();
-    const Contact at{c.instance, SourceKind::edge, c.piece, 0, 0};
-    const Part& part = geometry_.part(at);
-    e.source =
-        model.source_id({SourceKind::edge, c.instance, part.pieces()[std::size_t(c.piece)].edge});
+    const int edge = geometry_.part(at).pieces()[std::size_t(c.piece)].edge;
+    if (edge >= 0) {
+      const Model& model = geometry_.scene().model();
+      e.source = model.source_id({SourceKind::edge, c.instance, edge});
+    }
+    e.points.reserve(border_points + 1);
     for (int k = 0; k <= border_points; ++k) {
       const double share = double(k) / border_points;
       const double t = k == border_points ? c.to : (1 - share) * c.from + share * c.to;
@@ -502,9 +514,10 @@ void Stitcher::make_creases() {
       // Along the arc the parameter grows or falls.
       if (t.arc >= 0) e.contacts.push_back({t.arc, t.piece, t.contact, t.sense * c.from});
     }
-    elements.push_back(std::move(e));
+    (edge >= 0 ? edges : seams).push_back(std::move(e));
   }
-  chain(HullCurveKind::edge, elements);
+  chain(HullCurveKind::edge, edges);
+  chain(HullCurveKind::bitangent, seams);
 }
 
 /// The ends of scrolls: segments between a scroll and a facet, another scroll beyond a segment
@@ -694,6 +707,7 @@ HullBoundary Stitcher::run(const std::vector<CulledCell>& cells) {
   for (SeparatingArc& arc : boundary_.arcs) {
     for (int& facet : arc.facet) facet = facet < 0 ? -1 : facet_of_[std::size_t(facet)];
   }
+  label_ruled_faces(geometry_, boundary_);
   return std::move(boundary_);
 }
 

@@ -364,7 +364,8 @@ void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
   }
 }
 
-/// Patches that no separating curve enters lie on the hull as a whole or not at all.
+/// Patches that no separating curve enters lie on the hull as a whole or not at all; ruled ones are
+/// parts of scrolls and facets.
 void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
   std::set<std::tuple<int, int, int>> candidates;
   for (const CulledCell& c : cells) {
@@ -378,6 +379,7 @@ void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
   for (const auto& [instance, patch, sign] : candidates) {
     if (sheet_index_.contains({instance, patch, sign})) continue;
     const Contact c{instance, SourceKind::face, patch, 0.5, 0.5};
+    if (geometry_.is_ruled(c)) continue;
     const ContactJet j = geometry_.jet(c);
     const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
     if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + support_tie) continue;
@@ -401,7 +403,12 @@ HalfArc next_half_arc(const SeparatingGraph& graph, const HalfArc& half) {
   const std::vector<FacetNode::Slot>& slots = graph.nodes[std::size_t(node)].slots;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (slots[i].arc != half.arc || slots[i].end != end) continue;
-    const FacetNode::Slot& next = slots[(i + slots.size() - 1) % slots.size()];
+    // Along curved sides the contact moves on to the next corner.
+    std::size_t k = i;
+    do {
+      k = (k + slots.size() - 1) % slots.size();
+    } while (graph.nodes[std::size_t(node)].is_curved(k));
+    const FacetNode::Slot& next = slots[k];
     if (next.arc < 0) return {};
     return {next.arc, next.end == 0 ? 1 : 0};
   }

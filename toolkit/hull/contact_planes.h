@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/contact_geometry.h"
+
+namespace taut {
+
+/// A supporting plane that contains whole curves of the model.
+struct ContactPlane {
+  dvec3 n = dvec3(0.0);  ///< unit, outward
+  double offset = 0;
+  /// The pieces of edges that lie in it, straight ones apart; with parameter 0.
+  std::vector<Contact> pieces;
+};
+
+/// All planes that support the scene and contain plane pieces of edges that are not straight, to
+/// within support_tie. The directions of such a plane have contact along the whole curve.
+std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query);
+
+}  // namespace taut

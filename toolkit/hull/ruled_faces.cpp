@@ -1,0 +1,92 @@
+#include "taut/hull/ruled_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "taut/hull/contact_exits.h"
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+namespace {
+
+/// Sine of the angle between rulings that are one.
+constexpr double same_ruling = 1e-7;
+
+int source_of(const ContactGeometry& geometry, const Contact& c) {
+  return geometry.scene().model().source_id(
+      {SourceKind::face, c.instance, geometry.patch(c).face});
+}
+
+/// Whether the corners and the middle of the patch lie in the facet's plane.
+bool is_in_plane(const ContactGeometry& geometry, Contact c, const HullFace& facet) {
+  for (const double u : {0.0, 0.5, 1.0}) {
+    for (const double v : {0.0, 0.5, 1.0}) {
+      c.u = u;
+      c.v = v;
+      if (std::abs(glm::dot(geometry.point(c), facet.n) - facet.offset) > support_tie) return false;
+    }
+  }
+  return true;
+}
+
+/// Plane patches, those that are ruled in both parameters, on facets.
+void label_facets(const ContactGeometry& geometry, HullBoundary& boundary) {
+  const Model& model = geometry.scene().model();
+  for (int i = 0; i < int(model.instances().size()); ++i) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    for (int p = 0; p < int(part.patches().size()); ++p) {
+      const Patch& patch = part.patches()[std::size_t(p)];
+      if (!patch.ruled_u || !patch.ruled_v) continue;
+      const Contact c{i, SourceKind::face, p, 0, 0};
+      for (HullFace& face : boundary.faces) {
+        if (face.kind != FaceKind::facet || face.source >= 0) continue;
+        if (is_in_plane(geometry, c, face)) face.source = source_of(geometry, c);
+      }
+    }
+  }
+}
+
+/// The face of whose rulings one begins in contact `end` and runs along the segment. -1: none.
+int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t end) {
+  const Contact& c = r.contact[end];
+  if (c.kind != SourceKind::edge) return -1;
+  const dvec3 along = unit(r.point[1 - end] - r.point[end]);
+  for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(c)) {
+    Contact far{c.instance, SourceKind::face, side.patch, 0, 0};
+    const Patch& patch = geometry.patch(far);
+    if (!(along_v(side.side) ? patch.ruled_u : patch.ruled_v)) continue;
+    const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
+    far.u = uv.x;
+    far.v = uv.y;
+    double& across = along_v(side.side) ? far.u : far.v;
+    across = 1 - across;
+    const dvec3 ruling = unit(geometry.point(far) - r.point[end]);
+    if (glm::distance(ruling, along) < same_ruling) return source_of(geometry, far);
+  }
+  return -1;
+}
+
+int source_along(const ContactGeometry& geometry, const ArcPiece& piece) {
+  const Ruling& r = piece.rulings[piece.rulings.size() / 2];
+  const int source = source_along(geometry, r, 0);
+  return source >= 0 ? source : source_along(geometry, r, 1);
+}
+
+}  // namespace
+
+void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) {
+  label_facets(geometry, boundary);
+  for (HullFace& face : boundary.faces) {
+    if (face.kind != FaceKind::scroll) continue;
+    const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
+    for (int k = 0; k < face.scroll.count; ++k) {
+      const auto piece = std::size_t(face.scroll.first + k) % pieces.size();
+      const int source = source_along(geometry, pieces[piece]);
+      if (k == 0) face.source = source;
+      if (source != face.source) face.source = -1;
+    }
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "taut/hull/contact_geometry.h"
+#include "taut/hull/hull_boundary.h"
+
+namespace taut {
+
+/// Labels the scrolls and facets that lie on ruled faces of the model with these (HullFace::source):
+/// a facet with the first plane face in its plane, a scroll if the middle rulings of all its pieces
+/// run along rulings of one face.
+void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary);
+
+}  // namespace taut
