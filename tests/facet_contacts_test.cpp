@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "models.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 
 namespace taut {

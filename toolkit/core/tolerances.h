@@ -33,6 +33,10 @@ inline constexpr double rotation_tolerance = 1e-9;
 /// the last bits.
 inline constexpr double support_slack = 1024 * rounding_unit;
 
+/// Values of two contacts that differ by no more than this fraction of the scene's size are one: ten
+/// times what a support query may miss. Elements whose control points differ by no more coincide.
+inline constexpr double support_tie = 1e-12;
+
 /// What the rounding of a set of points may do to the plane of some of them, as a fraction of the
 /// sum of the largest coordinates' sizes (2^-49).
 ///

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 
@@ -521,8 +522,8 @@ bool Trace::merge() {
     c.v = std::clamp(at.y, 0.0, 1.0);
   }
   move_together(geometry_, end.contact[0], end.contact[1]);
-  if (!smooth && !same_element(geometry_.canonical(end.contact[0]),
-                               geometry_.canonical(end.contact[1]))) {
+  if (!smooth &&
+      !same_element(geometry_.canonical(end.contact[0]), geometry_.canonical(end.contact[1]))) {
     return crosses();
   }
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
@@ -601,8 +602,7 @@ void Trace::drop_empty_pieces() {
   const auto is_empty = [](const ArcPiece& piece) {
     const Ruling& a = piece.rulings.front();
     return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& b) {
-      return square(b.n - a.n) + square(b.point[0] - a.point[0]) +
-                 square(b.point[1] - a.point[1]) <
+      return square(b.n - a.n) + square(b.point[0] - a.point[0]) + square(b.point[1] - a.point[1]) <
              shortest_piece * shortest_piece;
     });
   };

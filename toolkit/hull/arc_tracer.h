@@ -26,11 +26,11 @@ struct Landmark {
 /// One way along a separating curve.
 struct TracedArc {
   enum class End {
-    plane,   ///< other contacts support too: see `n` and `contacts`
-    merged,  ///< the two contacts merge in a free end
-    crossed, ///< they meet, being of two surfaces or curves that touch: see `n` and `contacts`
-    closed,  ///< the curve closes; the pieces are one way round
-    lost,    ///< see `reason`
+    plane,    ///< other contacts support too: see `n` and `contacts`
+    merged,   ///< the two contacts merge in a free end
+    crossed,  ///< they meet, being of two surfaces or curves that touch: see `n` and `contacts`
+    closed,   ///< the curve closes; the pieces are one way round
+    lost,     ///< see `reason`
   };
   std::vector<ArcPiece> pieces;
   End end = End::lost;

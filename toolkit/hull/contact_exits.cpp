@@ -17,7 +17,8 @@ Contact on_side(int instance, int patch, Side side, double t) {
 }
 
 Contact on_side(const Contact& edge, const ContactGeometry::PieceSide& side) {
-  return on_side(edge.instance, side.patch, side.side, side.reversed ? 1 - edge.u : edge.u);
+  return on_side(side.instance < 0 ? edge.instance : side.instance, side.patch, side.side,
+                 side.reversed ? 1 - edge.u : edge.u);
 }
 
 /// The patch's derivative across the side, into the patch.
@@ -32,9 +33,16 @@ double elevation(const dvec3& v, const dvec3& n) {
   return length > 0 ? glm::dot(v, n) / length : 0;
 }
 
+/// The vertex as the end of a piece.
+Contact at_end(const Contact& vertex, const ContactGeometry::PieceEnd& end) {
+  return {end.instance < 0 ? vertex.instance : end.instance, SourceKind::edge, end.piece,
+          double(end.end), 0};
+}
+
 /// The edge's tangent at the end of the piece, away from the end.
-dvec3 leaving(const ContactGeometry& geometry, int instance, const ContactGeometry::PieceEnd& end) {
-  const ContactJet j = geometry.jet({instance, SourceKind::edge, end.piece, double(end.end), 0});
+dvec3 leaving(const ContactGeometry& geometry, const Contact& vertex,
+              const ContactGeometry::PieceEnd& end) {
+  const ContactJet j = geometry.jet(at_end(vertex, end));
   return end.end == 0 ? j.dx[0] : -j.dx[0];
 }
 
@@ -304,8 +312,8 @@ class Climb {
     const auto& ends = geometry_.ends(c_);
     for (std::size_t k = 0; k < ends.size(); ++k) {
       // The other end of a straight edge is a contact of its own.
-      if (geometry_.is_straight({c_.instance, SourceKind::edge, ends[k].piece, 0, 0})) continue;
-      if (elevation(leaving(geometry_, c_.instance, ends[k]), n_) > flat) {
+      if (geometry_.is_straight(at_end(c_, ends[k]))) continue;
+      if (elevation(leaving(geometry_, c_, ends[k]), n_) > flat) {
         return leave({ContactExit::Kind::edge, int(k)});
       }
     }
@@ -337,7 +345,7 @@ std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c
     // Across a straight edge its other end takes over.
     const std::vector<ContactGeometry::PieceEnd>& ends = geometry.ends(c);
     for (std::size_t k = 0; k < ends.size(); ++k) {
-      if (!geometry.is_straight({c.instance, SourceKind::edge, ends[k].piece, 0, 0})) {
+      if (!geometry.is_straight(at_end(c, ends[k]))) {
         result.push_back({Kind::edge, int(k)});
       }
     }
@@ -371,7 +379,7 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
     parameter.x = -sense * glm::dot(j.dxy, s.n) / length;
   } else {
     const ContactGeometry::PieceEnd& end = geometry.ends(c)[std::size_t(exit.index)];
-    const dvec3 away = leaving(geometry, c.instance, end);
+    const dvec3 away = leaving(geometry, c, end);
     const double length = glm::length(away);
     if (length == 0) return e;
     e.n = -away / length;
@@ -382,16 +390,19 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
                               const ContactExit& exit) {
+  const auto first = [&](const std::optional<Contact>& over) {
+    return over ? std::optional(geometry.first(*over)) : std::nullopt;
+  };
   switch (exit.kind) {
     case ContactExit::Kind::side:
-      return beyond_side(geometry, c, all_sides[std::size_t(exit.index)]);
+      return first(beyond_side(geometry, c, all_sides[std::size_t(exit.index)]));
     case ContactExit::Kind::end:
-      return beyond_end(geometry, c, exit.index);
+      return first(beyond_end(geometry, c, exit.index));
     case ContactExit::Kind::face:
       return on_side(c, geometry.sides(c)[std::size_t(exit.index)]);
     case ContactExit::Kind::edge: {
       const ContactGeometry::PieceEnd& end = geometry.ends(c)[std::size_t(exit.index)];
-      return Contact{c.instance, SourceKind::edge, end.piece, double(end.end), 0};
+      return at_end(c, end);
     }
   }
   return std::nullopt;
@@ -492,7 +503,7 @@ std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Conta
   };
   if (c.kind == SourceKind::vertex) {
     for (const ContactGeometry::PieceEnd& end : geometry.ends(c)) {
-      const Contact at{c.instance, SourceKind::edge, end.piece, double(end.end), 0};
+      const Contact at = at_end(c, end);
       if (const auto next = found(at)) return next;
       if (const auto next = found(expressed_in(geometry, at, other))) return next;
     }

@@ -56,8 +56,8 @@ bool continues(const ContactGeometry& geometry, const Contact& a, const Contact&
 /// vertex between them; as they are where there is none.
 void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 
-/// The contact in its canonical form where it supports in the direction n; inside of a straight edge
-/// or of a ruled patch, which support only together with the ends of the segments in them, the
+/// The contact in its canonical form where it supports in the direction n; inside of a straight
+/// edge or of a ruled patch, which support only together with the ends of the segments in them, the
 /// higher of these ends.
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n);
 

@@ -68,7 +68,7 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
         const Border& border = patch.borders[std::size_t(side)];
         if (border.piece < 0) continue;
         auto& sides = patch.ruled() ? own.ruled_sides : own.sides;
-        sides[std::size_t(border.piece)].push_back({int(i), side, border.piece_reversed});
+        sides[std::size_t(border.piece)].push_back({-1, int(i), side, border.piece_reversed});
       }
     }
     for (std::size_t i = 0; i < part.pieces().size(); ++i) {
@@ -78,10 +78,79 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
                              is_segment(own.pieces.back()));
       for (int end = 0; end < 2; ++end) {
         const int vertex = piece.end_vertex[std::size_t(end)];
-        if (vertex >= 0) own.ends[std::size_t(vertex)].push_back({int(i), end});
+        if (vertex >= 0) own.ends[std::size_t(vertex)].push_back({-1, int(i), end});
       }
     }
     for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
+  }
+  find_coincidences();
+}
+
+PlacedElement ContactGeometry::placed(const Contact& c) const {
+  const PartElements& own = elements(c);
+  const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
+  PlacedElement result{c.kind, c.instance, c.element, 0, 0, {}};
+  if (c.kind == SourceKind::face) {
+    const BezierPatch& patch = own.patches[std::size_t(c.element)];
+    result.degree_u = patch.degree_u;
+    result.degree_v = patch.degree_v;
+    result.points = patch.points;
+  } else if (c.kind == SourceKind::edge) {
+    result.points = own.pieces[std::size_t(c.element)].points;
+    result.degree_u = int(result.points.size()) - 1;
+  } else {
+    result.points = {homogeneous(own.vertices[std::size_t(c.element)])};
+  }
+  for (dvec4& p : result.points) {
+    const dvec3 x = instance.rotated ? instance.rotation * dvec3(p) : dvec3(p);
+    p = {x + p.w * instance.translation, p.w};
+  }
+  return result;
+}
+
+void ContactGeometry::find_coincidences() {
+  const Model& model = scene_.model();
+  std::vector<PlacedElement> all;
+  for (int i = 0; i < int(model.instances().size()); ++i) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    const auto add = [&](SourceKind kind, std::size_t count) {
+      for (int k = 0; k < int(count); ++k) all.push_back(placed({i, kind, k, 0, 0}));
+    };
+    add(SourceKind::face, part.patches().size());
+    add(SourceKind::edge, part.pieces().size());
+    add(SourceKind::vertex, part.vertices().size());
+  }
+  coincidences_ = Coincidences(all, support_tie);
+  for (const Contact& c : coincidences_.all()) share(c);
+}
+
+/// Lets the first element know what the repeated one has about it.
+void ContactGeometry::share(const Contact& repeated) {
+  if (repeated.kind == SourceKind::face) return;
+  const Contact own = first(repeated);
+  const Place place(own.instance, own.element);
+  const PartElements& from = elements(repeated);
+  const PartElements& to = elements(own);
+  const auto merge = [&](auto& shared, const auto& own_list, const auto& more, const auto& add) {
+    auto& list = shared.try_emplace(place, own_list[std::size_t(own.element)]).first->second;
+    for (auto item : more[std::size_t(repeated.element)]) {
+      item.instance = repeated.instance;
+      add(item, list);
+    }
+  };
+  if (repeated.kind == SourceKind::edge) {
+    const bool reversed = coincidences_.reversed(repeated);
+    const auto add = [&](PieceSide side, std::vector<PieceSide>& list) {
+      if (is_repeated({side.instance, SourceKind::face, side.patch, 0, 0})) return;
+      side.reversed = side.reversed != reversed;
+      list.push_back(side);
+    };
+    merge(shared_sides_, to.sides, from.sides, add);
+    merge(shared_ruled_sides_, to.ruled_sides, from.ruled_sides, add);
+  } else {
+    merge(shared_ends_, to.ends, from.ends, [&](PieceEnd end, std::vector<PieceEnd>& list) {
+      if (!is_repeated({end.instance, SourceKind::edge, end.piece, 0, 0})) list.push_back(end);
+    });
   }
 }
 
@@ -98,15 +167,7 @@ bool ContactGeometry::is_straight(const Contact& c) const {
   return elements(c).straight[std::size_t(c.element)];
 }
 
-BezierCurve ContactGeometry::curve(const Contact& c) const {
-  const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
-  BezierCurve result = elements(c).pieces[std::size_t(c.element)];
-  for (dvec4& p : result.points) {
-    const dvec3 x = instance.rotated ? instance.rotation * dvec3(p) : dvec3(p);
-    p = {x + p.w * instance.translation, p.w};
-  }
-  return result;
-}
+BezierCurve ContactGeometry::curve(const Contact& c) const { return {placed(c).points}; }
 
 dvec3 ContactGeometry::to_local(int instance, const dvec3& n) const {
   const SceneInstance& own = scene_.content().instances[std::size_t(instance)];
@@ -156,15 +217,16 @@ PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
   return j;
 }
 
-Contact ContactGeometry::canonical(const Contact& c) const {
+Contact ContactGeometry::canonical(const Contact& contact) const {
+  const Contact c = first(contact);
   const auto at_vertex = [&](int vertex) {
-    return Contact{c.instance, SourceKind::vertex, vertex, 0, 0};
+    return first({c.instance, SourceKind::vertex, vertex, 0, 0});
   };
   const auto on_piece = [&](int index, double t) {
     const EdgePiece& piece = part(c).pieces()[std::size_t(index)];
     if (t == 0 && piece.end_vertex[0] >= 0) return at_vertex(piece.end_vertex[0]);
     if (t == 1 && piece.end_vertex[1] >= 0) return at_vertex(piece.end_vertex[1]);
-    return Contact{c.instance, SourceKind::edge, index, t, 0};
+    return first({c.instance, SourceKind::edge, index, t, 0});
   };
   if (c.kind == SourceKind::vertex) return c;
   if (c.kind == SourceKind::edge) return on_piece(c.element, c.u);
@@ -190,15 +252,21 @@ Contact ContactGeometry::canonical(const Contact& c) const {
 }
 
 const std::vector<ContactGeometry::PieceSide>& ContactGeometry::sides(const Contact& c) const {
+  const auto shared = shared_sides_.find({c.instance, c.element});
+  if (shared != shared_sides_.end()) return shared->second;
   return elements(c).sides[std::size_t(c.element)];
 }
 
 const std::vector<ContactGeometry::PieceSide>& ContactGeometry::ruled_sides(
     const Contact& c) const {
+  const auto shared = shared_ruled_sides_.find({c.instance, c.element});
+  if (shared != shared_ruled_sides_.end()) return shared->second;
   return elements(c).ruled_sides[std::size_t(c.element)];
 }
 
 const std::vector<ContactGeometry::PieceEnd>& ContactGeometry::ends(const Contact& c) const {
+  const auto shared = shared_ends_.find({c.instance, c.element});
+  if (shared != shared_ends_.end()) return shared->second;
   return elements(c).ends[std::size_t(c.element)];
 }
 

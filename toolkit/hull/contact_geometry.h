@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "taut/bounds/scene.h"
+#include "taut/hull/coincidences.h"
 
 namespace taut {
 
@@ -23,9 +25,9 @@ std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const d
 
 /// A model's elements in the scene's frame, and how they meet: what all contacts look like.
 ///
-/// Contacts here are of three kinds: on a patch (kind face), on a piece of any edge, border, seam or
-/// free (kind edge, parameter u), at any vertex (kind vertex). Ruled patches have none but on their
-/// borders.
+/// Contacts here are of three kinds: on a patch (kind face), on a piece of any edge, border, seam
+/// or free (kind edge, parameter u), at any vertex (kind vertex). Ruled patches have none but on
+/// their borders.
 class ContactGeometry {
  public:
   /// The scene must outlive it.
@@ -45,22 +47,31 @@ class ContactGeometry {
   /// of a piece, its vertex.
   Contact canonical(const Contact& c) const;
 
+  /// The same point on the first of the elements that coincide with the contact's, within
+  /// support_tie.
+  Contact first(const Contact& c) const { return coincidences_.first(c); }
+  /// The contact's element coincides with an earlier one. Contacts are told as ones of the first.
+  bool is_repeated(const Contact& c) const { return coincidences_.repeats(c); }
+
   /// A side of a patch, not a ruled one, that lies on an edge's piece.
   struct PieceSide {
+    int instance = -1;  ///< -1: the contact's
     int patch = -1;
     Side side = Side::u0;
     bool reversed = false;  ///< the piece runs against the border
   };
   /// An edge's piece that ends in a vertex.
   struct PieceEnd {
+    int instance = -1;  ///< -1: the contact's
     int piece = -1;
     int end = 0;  ///< 0: begins there, 1: ends there
   };
-  /// @pre kind edge
+  /// Also of the pieces that repeat this one.
+  /// @pre kind edge, not repeated
   const std::vector<PieceSide>& sides(const Contact& c) const;
   /// The same of ruled patches. @pre kind edge
   const std::vector<PieceSide>& ruled_sides(const Contact& c) const;
-  /// @pre kind vertex
+  /// @pre kind vertex, not repeated
   const std::vector<PieceEnd>& ends(const Contact& c) const;
 
   /// The piece is a straight segment between vertices: its ends are contacts, nothing inside of it.
@@ -70,9 +81,7 @@ class ContactGeometry {
   /// @pre kind face
   bool is_ruled(const Contact& c) const { return patch(c).ruled(); }
 
-  const Patch& patch(const Contact& c) const {
-    return part(c).patches()[std::size_t(c.element)];
-  }
+  const Patch& patch(const Contact& c) const { return part(c).patches()[std::size_t(c.element)]; }
   /// The piece in the scene's frame. @pre kind edge
   BezierCurve curve(const Contact& c) const;
 
@@ -90,9 +99,18 @@ class ContactGeometry {
     std::vector<std::vector<PieceEnd>> ends;          // per vertex
   };
   const PartElements& elements(const Contact& c) const;
+  PlacedElement placed(const Contact& c) const;
+  void find_coincidences();
+  void share(const Contact& repeated);
 
   const Scene& scene_;
   std::vector<PartElements> parts_;
+  Coincidences coincidences_;
+  /// Of elements that others repeat: by instance and element.
+  using Place = std::pair<int, int>;
+  std::map<Place, std::vector<PieceSide>> shared_sides_;
+  std::map<Place, std::vector<PieceSide>> shared_ruled_sides_;
+  std::map<Place, std::vector<PieceEnd>> shared_ends_;
 };
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
 
 namespace taut {
@@ -50,6 +51,7 @@ std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, Suppor
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     for (int k = 0; k < int(part.pieces().size()); ++k) {
       const Contact piece{i, SourceKind::edge, k, 0, 0};
+      if (geometry.is_repeated(piece)) continue;
       const std::vector<dvec3> points = control_points(geometry.curve(piece));
       const dvec3 normal = plane_normal(points);
       if (normal == dvec3(0.0)) continue;

@@ -109,11 +109,15 @@ void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion&
       if (s.arc >= 0) continue;
       const Border& border = patch.borders[std::size_t(s.side)];
       if (border.piece < 0) continue;
-      const auto over = [&](double t) { return border.piece_reversed ? 1 - t : t; };
-      const double from = over(s.from);
-      const double to = over(s.to);
+      const auto on_piece = [&](double t) {
+        return geometry.first({region.instance, SourceKind::edge, border.piece,
+                               border.piece_reversed ? 1 - t : t, 0});
+      };
+      const Contact first = on_piece(s.from);
+      const double from = first.u;
+      const double to = on_piece(s.to).u;
       // The region lies to the left of its outline.
-      creases_[{region.instance, border.piece}].intervals.push_back(
+      creases_[{first.instance, first.element}].intervals.push_back(
           {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k, -1}});
     }
   }

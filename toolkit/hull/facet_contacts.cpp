@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/outline.h"
 #include "taut/hull/planar_hull.h"
@@ -84,13 +85,10 @@ class ContactSet {
  private:
   bool is_known(const Contact& c) const {
     const dvec3 x = geometry_.point(c);
-    return std::any_of(points_.begin(), points_.end(), [&](const dvec3& p) {
-      return glm::distance(p, x) <= same_contact;
-    });
+    return std::any_of(points_.begin(), points_.end(),
+                       [&](const dvec3& p) { return glm::distance(p, x) <= same_contact; });
   }
-  dvec2 in_plane(const dvec3& x) const {
-    return {glm::dot(x, frame_[0]), glm::dot(x, frame_[1])};
-  }
+  dvec2 in_plane(const dvec3& x) const { return {glm::dot(x, frame_[0]), glm::dot(x, frame_[1])}; }
   /// A direction in the plane, and how far the outline goes in it.
   struct Probe {
     dvec3 towards;

@@ -8,10 +8,6 @@
 
 namespace taut {
 
-/// Values of two contacts that differ by no more than this, in the scene's frame, are one: ten
-/// times what a support query may miss (support_slack).
-inline constexpr double support_tie = 1e-12;
-
 /// Contacts nearer than this, in the scene's frame, are one. Two contacts of one direction that are
 /// so near are about to merge in a free end; they differ in height by the fourth power of it.
 inline constexpr double same_contact = 1e-7;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 
@@ -14,8 +15,7 @@ namespace {
 constexpr double same_ruling = 1e-7;
 
 int source_of(const ContactGeometry& geometry, const Contact& c) {
-  return geometry.scene().model().source_id(
-      {SourceKind::face, c.instance, geometry.patch(c).face});
+  return geometry.scene().model().source_id({SourceKind::face, c.instance, geometry.patch(c).face});
 }
 
 /// Whether the corners and the middle of the patch lie in the facet's plane.
@@ -53,7 +53,7 @@ int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t e
   if (c.kind != SourceKind::edge) return -1;
   const dvec3 along = unit(r.point[1 - end] - r.point[end]);
   for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(c)) {
-    Contact far{c.instance, SourceKind::face, side.patch, 0, 0};
+    Contact far{side.instance < 0 ? c.instance : side.instance, SourceKind::face, side.patch, 0, 0};
     const Patch& patch = geometry.patch(far);
     if (!(along_v(side.side) ? patch.ruled_u : patch.ruled_v)) continue;
     const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);

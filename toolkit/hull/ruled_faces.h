@@ -5,9 +5,9 @@
 
 namespace taut {
 
-/// Labels the scrolls and facets that lie on ruled faces of the model with these (HullFace::source):
-/// a facet with the first plane face in its plane, a scroll if the middle rulings of all its pieces
-/// run along rulings of one face.
+/// Labels the scrolls and facets that lie on ruled faces of the model with these
+/// (HullFace::source): a facet with the first plane face in its plane, a scroll if the middle
+/// rulings of all its pieces run along rulings of one face.
 void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary);
 
 }  // namespace taut

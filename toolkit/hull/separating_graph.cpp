@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
@@ -299,8 +300,9 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
   return false;
 }
 
-/// Whether the contacts are in the plane of a facet with curved sides. Its direction is the limit of
-/// those of planes with two contacts on one of the curves, which Newton's method cannot tell apart.
+/// Whether the contacts are in the plane of a facet with curved sides. Its direction is the limit
+/// of those of planes with two contacts on one of the curves, which Newton's method cannot tell
+/// apart.
 bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
                           const std::vector<Contact>& contacts) const {
   return !node.sides.empty() && glm::distance(node.n, n) < nearly_same_plane &&
@@ -364,8 +366,7 @@ int GraphTracer::add_node(const dvec3& n, FacetContacts facet) {
 /// Planes with contact along whole curves.
 void GraphTracer::find_planes() {
   for (const ContactPlane& plane : contact_planes(geometry_, query_)) {
-    std::optional<FacetContacts> f =
-        facet_contacts(geometry_, query_, plane.n, {}, plane.pieces);
+    std::optional<FacetContacts> f = facet_contacts(geometry_, query_, plane.n, {}, plane.pieces);
     if (!f || !f->is_facet()) {
       fail(plane.n, "the outline of a facet with curved sides is not found");
       continue;
@@ -391,7 +392,7 @@ void GraphTracer::find_poles() {
     for (int p = 0; p < int(part.patches().size()); ++p) {
       for (const Side side : all_sides) {
         Contact c{i, SourceKind::face, p, 0.5, 0.5};
-        if (!is_pole(geometry_, c, side)) continue;
+        if (!is_pole(geometry_, c, side) || geometry_.is_repeated(c)) continue;
         (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
         const dvec3 normal = unit_normal(geometry_, c);
         const dvec3 x = geometry_.point(c);
@@ -459,8 +460,8 @@ void GraphTracer::connect_crossing(int arc, int end, int node) {
   const std::array<dvec3, 2> frame = tangent_frame(own.n);
   const auto angle = [&](const FacetNode::Slot& slot) {
     const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(slot.arc)].pieces;
-    const dvec3 next = slot.end == 0 ? pieces.front().rulings[1].n
-                                     : std::prev(pieces.back().rulings.end(), 2)->n;
+    const dvec3 next =
+        slot.end == 0 ? pieces.front().rulings[1].n : std::prev(pieces.back().rulings.end(), 2)->n;
     return std::atan2(glm::dot(next, frame[1]), glm::dot(next, frame[0]));
   };
   const FacetNode::Slot slot = {arc, end};

@@ -461,7 +461,9 @@ void Stitcher::split_at_creases() {
           continue;
         }
         double from = s.from;
-        for (const double t : tracks.breaks(r.instance, b.piece, b.piece_reversed, s.from, s.to)) {
+        const Contact low = geometry_.first({r.instance, SourceKind::edge, b.piece, 0, 0});
+        const bool reversed = b.piece_reversed != (low.u != 0);
+        for (const double t : tracks.breaks(low.instance, low.element, reversed, s.from, s.to)) {
           split.push_back(s);
           split.back().from = from;
           split.back().to = t;

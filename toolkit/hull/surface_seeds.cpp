@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
@@ -41,7 +42,10 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
   std::set<std::pair<Place, Place>> sides;
   std::vector<SupportChange> changes;
   for (const CulledCell& cell : cells) {
-    if (cell.state != CellState::mixed) continue;
+    if (cell.state != CellState::mixed ||
+        geometry.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0})) {
+      continue;
+    }
     const Interval u = cell.cell.u();
     const Interval v = cell.cell.v();
     const std::array<dvec2, 4> corners = {dvec2(u.lower, v.lower), dvec2(u.upper, v.lower),

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
 
 namespace taut {
@@ -379,7 +380,7 @@ void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
   for (const auto& [instance, patch, sign] : candidates) {
     if (sheet_index_.contains({instance, patch, sign})) continue;
     const Contact c{instance, SourceKind::face, patch, 0.5, 0.5};
-    if (geometry_.is_ruled(c)) continue;
+    if (geometry_.is_ruled(c) || geometry_.is_repeated(c)) continue;
     const ContactJet j = geometry_.jet(c);
     const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
     if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + support_tie) continue;

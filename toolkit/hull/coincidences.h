@@ -1,0 +1,55 @@
+#pragma once
+
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "taut/bounds/scene.h"
+
+namespace taut {
+
+/// A patch, piece or vertex of an instance by its control points, in one frame for all.
+struct PlacedElement {
+  SourceKind kind = SourceKind::face;
+  int instance = -1;
+  int element = -1;
+  int degree_u = 0;  ///< 0 of a vertex
+  int degree_v = 0;  ///< 0 of a piece or a vertex
+  std::vector<dvec4> points;
+};
+
+/// Which elements of a scene coincide: copies of models, faces that touch each other all over, the
+/// common edge of two solids.
+class Coincidences {
+ public:
+  Coincidences() = default;
+  /// Two elements of a kind are the same if their control points are, within the tolerance, and
+  /// their weights, up to a common factor: for patches also after reversing and exchanging u and v,
+  /// for pieces after reversing.
+  Coincidences(const std::vector<PlacedElement>& elements, double tolerance);
+
+  bool empty() const { return repeats_.empty(); }
+  /// An earlier element is the same.
+  bool repeats(const Contact& c) const { return !empty() && repeats_.contains(key(c)); }
+  /// The same point on the first element that is the same.
+  Contact first(const Contact& c) const;
+  /// The element repeats another one with its first parameter reversed.
+  bool reversed(const Contact& c) const;
+  /// All that repeat another, in their order.
+  std::vector<Contact> all() const;
+
+ private:
+  /// How (u, v) of the repeated element come from those of the other: exchanged, then reversed.
+  struct Repeat {
+    int instance, element;
+    bool swapped = false;
+    bool reversed_u = false;
+    bool reversed_v = false;
+  };
+  using Key = std::tuple<int, int, int>;
+  static Key key(const Contact& c) { return {int(c.kind), c.instance, c.element}; }
+
+  std::map<Key, Repeat> repeats_;
+};
+
+}  // namespace taut
