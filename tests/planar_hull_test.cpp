@@ -63,44 +63,68 @@ LongPoint at(const Curve& curve, real t) {
   return {b[0][0] / b[0][2], b[0][1] / b[0][2]};
 }
 
-/// The largest height over [from, to]: sampled, and the best place refined by golden sections.
-real height(const Curve& curve, real from, real to, const dvec2& n) {
-  const auto value = [&](real t) {
-    const LongPoint p = at(curve, t);
-    return p.x * n.x + p.y * n.y;
-  };
-  constexpr int samples = 128;
-  real best = from;
-  for (int k = 0; k <= samples; ++k) {
-    const real t = from + (to - from) * k / samples;
-    if (value(t) > value(best)) best = t;
+/// A part of a curve, sampled.
+class Sampled {
+ public:
+  Sampled(const Curve& curve, real from, real to) : curve_(curve), from_(from), to_(to) {
+    samples_.reserve(count + 1);
+    for (int k = 0; k <= count; ++k) samples_.push_back(at(curve, from + (to - from) * k / count));
   }
-  const real width = (to - from) / samples;
-  real lower = std::max(std::min(from, to), best - std::abs(width));
-  real upper = std::min(std::max(from, to), best + std::abs(width));
-  const real share = (std::sqrt(real(5)) - 1) / 2;
-  for (int step = 0; step < 60; ++step) {
-    const real s = upper - share * (upper - lower);
-    const real t = lower + share * (upper - lower);
-    (value(s) > value(t) ? upper : lower) = value(s) > value(t) ? t : s;
-  }
-  return std::max({value(best), value(lower), value(upper)});
-}
 
-real height(const Points& points, const Curves& curves, const dvec2& n) {
-  real best = -10;
-  for (const dvec2& p : points) best = std::max(best, real(p.x) * n.x + real(p.y) * n.y);
-  for (const Curve& c : curves) best = std::max(best, height(c, 0, 1, n));
-  return best;
-}
-
-real height(const PlanarHull& hull, const Curves& curves, const dvec2& n) {
-  real best = -10;
-  for (const OutlineSide& s : hull.sides) {
-    best = std::max(best, real(s.x.x) * n.x + real(s.x.y) * n.y);
-    if (s.along < 0) continue;
-    best = std::max(best, height(curves[std::size_t(s.along)], s.from, s.to, n));
+  /// The largest height, or a smaller one where it is below `least`: samples that are higher than
+  /// their neighbours, refined.
+  real height(const dvec2& n, real least) const {
+    std::vector<real> heights;
+    heights.reserve(samples_.size());
+    for (const LongPoint& p : samples_) heights.push_back(p.x * n.x + p.y * n.y);
+    // No curve here rises more from a sample.
+    constexpr real room = 0.01;
+    least = std::max(least, *std::max_element(heights.begin(), heights.end())) - room;
+    real best = least;
+    for (int k = 0; k <= count; ++k) {
+      const real h = heights[std::size_t(k)];
+      if (h < least || h < heights[std::size_t(std::max(k - 1, 0))] ||
+          h < heights[std::size_t(std::min(k + 1, count))]) {
+        continue;
+      }
+      best = std::max(
+          {best, h,
+           refined(n, real(std::max(k - 1, 0)) / count, real(std::min(k + 1, count)) / count)});
+    }
+    return best;
   }
+
+ private:
+  /// By golden sections.
+  real refined(const dvec2& n, real lower, real upper) const {
+    const auto value = [&](real s) {
+      const LongPoint p = at(curve_, from_ + (to_ - from_) * s);
+      return p.x * n.x + p.y * n.y;
+    };
+    const real share = (std::sqrt(real(5)) - 1) / 2;
+    for (int step = 0; step < 28; ++step) {
+      const real s = upper - share * (upper - lower);
+      const real t = lower + share * (upper - lower);
+      if (value(s) > value(t)) {
+        upper = t;
+      } else {
+        lower = s;
+      }
+    }
+    return std::max(value(lower), value(upper));
+  }
+
+  static constexpr int count = 160;
+  const Curve& curve_;
+  real from_;
+  real to_;
+  std::vector<LongPoint> samples_;
+};
+
+real height(const Points& corners, const std::vector<Sampled>& parts, const dvec2& n) {
+  real best = -10;
+  for (const dvec2& p : corners) best = std::max(best, real(p.x) * n.x + real(p.y) * n.y);
+  for (const Sampled& part : parts) best = std::max(best, part.height(n, best));
   return best;
 }
 
@@ -115,16 +139,29 @@ void expect_hull(const PlanarHull& hull, const Points& points, const Curves& cur
       const LongPoint p = at(curves[std::size_t(curve)], t);
       EXPECT_LT(std::hypot(p.x - x.x, p.y - x.y), curve == s.curve ? 1e-14 : 1e-10);
     };
-    if (s.point >= 0) EXPECT_EQ(s.x, points[std::size_t(s.point)]);
+    if (s.point >= 0) {
+      EXPECT_EQ(s.x, points[std::size_t(s.point)]);
+    }
     if (s.curve >= 0) is_at(s.x, s.curve, s.t);
     if (s.along < 0) continue;
     is_at(s.x, s.along, s.from);
     is_at(hull.sides[(k + 1) % hull.sides.size()].x, s.along, s.to);
   }
+  Points corners;
+  std::vector<Sampled> parts;
+  corners.reserve(hull.sides.size());
+  parts.reserve(hull.sides.size());
+  for (const OutlineSide& s : hull.sides) {
+    corners.push_back(s.x);
+    if (s.along >= 0) parts.emplace_back(curves[std::size_t(s.along)], s.from, s.to);
+  }
+  std::vector<Sampled> whole;
+  whole.reserve(curves.size());
+  for (const Curve& c : curves) whole.emplace_back(c, 0, 1);
   for (int k = 0; k < directions; ++k) {
     const double angle = 2 * pi * (k + 0.123) / directions;
     const dvec2 n(std::cos(angle), std::sin(angle));
-    EXPECT_NEAR(double(height(hull, curves, n) - height(points, curves, n)), 0, 1e-12) << angle;
+    EXPECT_NEAR(double(height(corners, parts, n) - height(points, whole, n)), 0, 1e-12) << angle;
   }
 }
 

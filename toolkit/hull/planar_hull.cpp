@@ -86,6 +86,7 @@ class Sweep {
     const ConvexArc& to = arcs_[b.at.arc];
     if (a.at.arc == b.at.arc && a.at.t == b.at.t) return true;
     if (from.curve < 0 || from.curve != to.curve || from.t0 == from.t1) return false;
+    if (is_same_place(a.at, b.at)) return true;
     const int sense = b.at.t > a.at.t ? 1 : -1;
     double turn = 0;
     const int first = std::min(a.at.arc, b.at.arc);
@@ -97,6 +98,12 @@ class Sweep {
     // A spiral may come back to the same direction.
     constexpr double slack = 0.01;
     return turn <= b.angle - a.angle + slack;
+  }
+
+  /// On the same curve, but for the rounding of the parameter.
+  static bool is_same_place(const ArcPoint& p, const ArcPoint& q) {
+    constexpr double parameter_noise = 1e-5;
+    return std::abs(p.t - q.t) < parameter_noise && glm::distance(p.x, q.x) < same_corner;
   }
 
   /// Where another element is farther out than a run in a direction between those of its ends.
@@ -139,23 +146,33 @@ class Sweep {
     return 0.5 * (lower + upper);
   }
 
-  /// From one arc to another one.
+  /// From one arc to another one, or over the hollow side of one.
   void cross_over(const Touch& a, const Touch& b, int depth) {
-    const double angle = common_height(a, b);
+    const bool hollow = a.at.arc == b.at.arc;
+    const double angle = hollow ? chord_angle(a, b) : common_height(a, b);
     const dvec2 n = direction(angle);
-    const ArcPoint p = arcs_.support(a.at.arc, n);
-    const ArcPoint q = arcs_.support(b.at.arc, n);
+    const Touch p = {angle, hollow ? a.at : arcs_.support(a.at.arc, n)};
+    const Touch q = {angle, hollow ? b.at : arcs_.support(b.at.arc, n), true};
     const ArcPoint all = arcs_.support(n, a.at.arc);
-    const double height = std::max(glm::dot(n, p.x), glm::dot(n, q.x));
+    const double height = std::max(glm::dot(n, p.at.x), glm::dot(n, q.at.x));
     if (glm::dot(n, all.x) > height + support_slack && angle > a.angle && angle < b.angle) {
       const Touch middle = {angle, all};
       between(a, middle, depth + 1);
       between(middle, b, depth + 1);
       return;
     }
-    touches_.push_back({angle, p});
-    touches_.push_back({angle, q, true});
-    touches_.push_back(b);
+    // Within the interval an arc may have been touched in its other end.
+    between(a, p, depth + 1);
+    touches_.push_back(q);
+    between(q, b, depth + 1);
+  }
+
+  /// The direction of the side from a to b.
+  static double chord_angle(const Touch& a, const Touch& b) {
+    const dvec2 n = outward(a.at.x, b.at.x);
+    const dvec2 start = direction(a.angle);
+    const double turn = std::atan2(cross(start, n), glm::dot(start, n));
+    return std::clamp(a.angle + turn, a.angle, b.angle);
   }
 
   /// The direction in which the arcs of a and b are equally far. @pre they are the farthest in
@@ -226,7 +243,7 @@ class Chain {
   void polish(Stretch& a, Stretch& b) const;
   dvec2 at(const Stretch& s, double t) const;
   double nearest(const Stretch& s, double t, const dvec2& x) const;
-  std::vector<double> ends_near(const Stretch& s, double t) const;
+  std::optional<double> end_near(const Stretch& s, double t) const;
   bool is_tangent(const Stretch& s, double t, const dvec2& d) const;
   bool has_no_length(const Stretch& s) const;
   void drop_doubles();
@@ -288,14 +305,12 @@ double Chain::nearest(const Stretch& s, double t, const dvec2& x) const {
   return t;
 }
 
-/// The ends of the stretch's curve near a parameter; a single point is its own end.
-std::vector<double> Chain::ends_near(const Stretch& s, double t) const {
-  if (!s.smooth) return {t};
-  std::vector<double> result;
-  for (const double end : {0.0, 1.0}) {
-    if (glm::distance(at(s, end), at(s, t)) < joint_reach) result.push_back(end);
-  }
-  return result;
+/// The end of the stretch's curve, where it is near a parameter; a single point is its own end.
+std::optional<double> Chain::end_near(const Stretch& s, double t) const {
+  if (!s.smooth) return t;
+  const double end = t < 0.5 ? 0 : 1;
+  if (glm::distance(at(s, end), at(s, t)) > joint_reach) return std::nullopt;
+  return end;
 }
 
 bool Chain::join_at(Stretch& a, Stretch& b, double ta, double tb) const {
@@ -314,19 +329,11 @@ bool Chain::join_at(Stretch& a, Stretch& b, double ta, double tb) const {
 
 bool Chain::join(Stretch& a, Stretch& b) const {
   if (glm::distance(a.end, b.start) > joint_reach) return false;
-  const std::vector<double> ends_a = ends_near(a, a.to);
-  const std::vector<double> ends_b = ends_near(b, b.from);
-  for (const double ta : ends_a) {
-    for (const double tb : ends_b) {
-      if (join_at(a, b, ta, tb)) return true;
-    }
-  }
-  for (const double ta : ends_a) {
-    if (join_at(a, b, ta, nearest(b, b.from, at(a, ta)))) return true;
-  }
-  for (const double tb : ends_b) {
-    if (join_at(a, b, nearest(a, a.to, at(b, tb)), tb)) return true;
-  }
+  const std::optional<double> ta = end_near(a, a.to);
+  const std::optional<double> tb = end_near(b, b.from);
+  if (ta && tb && join_at(a, b, *ta, *tb)) return true;
+  if (ta && join_at(a, b, *ta, nearest(b, b.from, at(a, *ta)))) return true;
+  if (tb && join_at(a, b, nearest(a, a.to, at(b, *tb)), *tb)) return true;
   return join_at(a, b, a.to, b.from);
 }
 
