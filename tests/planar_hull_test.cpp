@@ -357,11 +357,11 @@ void expect_same(const PlanarHull& a, const PlanarHull& b, double tolerance) {
 }
 
 TEST(PlanarHull, Invariance) {
-  for (unsigned seed = 0; seed < 30; ++seed) {
+  for (unsigned seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     Curves curves;
-    for (int k = 0; k < 6; ++k) curves.push_back(wiggly(random, pick(random, 2, 5)));
+    for (int k = 0; k < 6; ++k) curves.push_back(wiggly(random, pick(random, 2, 9)));
     const PlanarHull hull = planar_hull({}, curves);
     const double scale = log_uniform(random, 1e-3, 1);
     const double angle = uniform(random, 0, 6);

@@ -239,6 +239,8 @@ class Chain {
   std::size_t previous(std::size_t k) const { return (k + chain_.size() - 1) % chain_.size(); }
   void connect(std::size_t k);
   bool join(Stretch& a, Stretch& b) const;
+  /// A part of the stretch's curve.
+  bool stays_above(const Stretch& s, double from, double to, const dvec2& n, double height) const;
   bool join_at(Stretch& a, Stretch& b, double ta, double tb) const;
   void polish(Stretch& a, Stretch& b) const;
   dvec2 at(const Stretch& s, double t) const;
@@ -272,6 +274,7 @@ void Chain::collect(const std::vector<Touch>& touches) {
       add(touch);
     }
   }
+  chain_.back().normal = direction(touches[first].angle);
 }
 
 void Chain::add(const Touch& touch) {
@@ -284,7 +287,6 @@ void Chain::add(const Touch& touch) {
   s.smooth = arc.t0 < arc.t1;
   s.from = s.to = touch.at.t;
   s.start = s.end = touch.at.x;
-  s.normal = chain_.empty() ? direction(touch.angle) : chain_.front().normal;
   chain_.push_back(s);
 }
 
@@ -313,13 +315,22 @@ std::optional<double> Chain::end_near(const Stretch& s, double t) const {
   return end;
 }
 
+bool Chain::stays_above(const Stretch& s, double from, double to, const dvec2& n,
+                        double height) const {
+  if (!s.smooth) return glm::dot(n, at(s, to)) >= height;
+  const std::vector<dvec2> polygon = part_polygon(arcs_.curve(s.curve), from, to);
+  return std::all_of(polygon.begin(), polygon.end(),
+                     [&](const dvec2& p) { return glm::dot(n, p) >= height; });
+}
+
 bool Chain::join_at(Stretch& a, Stretch& b, double ta, double tb) const {
   const dvec2 xa = at(a, ta);
   const dvec2 xb = at(b, tb);
   if (glm::distance(xa, xb) > same_corner) return false;
-  // An end inside of a notch is no joint.
-  const double height = std::max(glm::dot(a.normal, a.end), glm::dot(a.normal, b.start));
-  if (glm::dot(a.normal, xa) < height - 4 * support_slack) return false;
+  // A side over a notch or a hollow is no joint.
+  const dvec2& n = a.normal;
+  const double least = std::max(glm::dot(n, a.end), glm::dot(n, b.start)) - 4 * support_slack;
+  if (!stays_above(a, a.to, ta, n, least) || !stays_above(b, b.from, tb, n, least)) return false;
   a.to = ta;
   a.end = xa;
   b.from = tb;
