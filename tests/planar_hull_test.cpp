@@ -274,6 +274,14 @@ TEST(PlanarHull, InflectionConcaveAndSelfBitangent) {
   expect_hull(square, {}, hollow);
 }
 
+TEST(PlanarHull, Cusps) {
+  // The derivative of the first is zero at 1/2.
+  const Curves curves = {polynomial({{0, 0}, {1, 1}, {0, 1}, {1, 0}}),
+                         polynomial({{0, -0.5}, {1, -0.5}, {1, -0.5}, {0, -1}})};
+  for (const Curve& curve : curves) expect_hull(planar_hull({}, Curves{curve}), {}, {curve});
+  expect_hull(planar_hull({}, curves), {}, curves);
+}
+
 TEST(PlanarHull, StraightCurves) {
   const Points points = {{0, 0}, {0.5, 1}};
   const Curves curves = {polynomial({{0, 0}, {0.2, 0}, {0.5, 0}}), polynomial({{0.5, 0}, {1, 0}}),

@@ -93,6 +93,8 @@ class Sweep {
     const int last = std::max(a.at.arc, b.at.arc);
     for (int k = first; k <= last; ++k) {
       if (arcs_[k].sense == -sense) return false;
+      // A cusp between two arcs.
+      if (k > first && glm::dot(arcs_[k - 1].last, arcs_[k].first) <= 0) return false;
       if (k > first && k < last) turn += arcs_[k].turn;
     }
     // A spiral may come back to the same direction.
