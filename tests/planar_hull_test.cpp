@@ -309,6 +309,23 @@ TEST(PlanarHull, Duplicates) {
   expect_hull(hull, points, curves);
 }
 
+TEST(PlanarHull, SmallBumps) {
+  // Small circles that are farther out than a large one, in few directions.
+  for (int k = 0; k < 50; ++k) {
+    const double angle = 0.11 * k + 0.013;
+    const dvec2 n(std::cos(angle), std::sin(angle));
+    const double out = 1e-7;
+    Curves curves;
+    add_circle(curves, {0, 0}, 1);
+    add_circle(curves, (0.99 + out) * n, 0.01);
+    const PlanarHull hull = planar_hull({}, curves);
+    EXPECT_TRUE(std::any_of(hull.sides.begin(), hull.sides.end(), [](const OutlineSide& s) {
+      return s.along >= 4;
+    })) << k;
+    expect_hull(hull, {}, curves, 10);
+  }
+}
+
 TEST(PlanarHull, TouchedFromInside) {
   Curves curves;
   add_circle(curves, {0.4, 0.3}, 0.3);
