@@ -36,6 +36,15 @@ struct Across {
   }
 };
 
+/// Whether all of `turn` seems to vanish where the coordinate does, between parameters at which its
+/// signs differ: most signs change where the others stay. At a crest what is left is of second
+/// order in the step.
+bool may_vanish(const Across& across, int axis, double a, const dvec3& fa, double b,
+                const dvec3& fb) {
+  const double s = (a * fb[axis] - b * fa[axis]) / (fb[axis] - fa[axis]);
+  return glm::length(across.turn(s)) <= 0.5 * std::max(glm::length(fa), glm::length(fb));
+}
+
 /// Root of a coordinate of `turn` between parameters where its signs differ, to the last bits
 /// (false position, Illinois' variant).
 double turn_root(const Across& across, int axis, double a, double fa, double b, double fb) {
@@ -70,7 +79,9 @@ void add_roots(const Across& across, const std::vector<dvec3>& turns, int axis,
     const double f = turns[k][axis];
     if (std::abs(f) <= crest_angle) continue;
     // More than one value without a sign between two of them is a coordinate that vanishes.
-    if (before && k - *before <= 2 && (f > 0) != (turns[*before][axis] > 0)) {
+    const bool crossed = before && k - *before <= 2 && (f > 0) != (turns[*before][axis] > 0);
+    if (crossed && may_vanish(across, axis, double(*before) * step, turns[*before],
+                              double(k) * step, turns[k])) {
       roots.push_back(turn_root(across, axis, double(*before) * step, turns[*before][axis],
                                 double(k) * step, f));
     }
