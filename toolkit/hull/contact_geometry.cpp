@@ -66,7 +66,7 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
       own.patches.push_back({b.degree_u, b.degree_v, moved(b.points, center, scale)});
       for (const Side side : all_sides) {
         const Border& border = patch.borders[std::size_t(side)];
-        if (border.piece < 0) continue;
+        if (border.piece < 0 || patch.repeats >= 0) continue;
         auto& sides = patch.ruled() ? own.ruled_sides : own.sides;
         sides[std::size_t(border.piece)].push_back({-1, int(i), side, border.piece_reversed});
       }
