@@ -20,6 +20,19 @@ constexpr double outline_gap = 1e-6;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
+/// Of a contact on a seam, which is no source: on the first patch that has it for a border.
+Contact beside_seam(const Part& part, const Contact& c) {
+  for (std::size_t p = 0; p < part.patches().size(); ++p) {
+    for (const Side side : all_sides) {
+      const Border& border = part.patches()[p].borders[std::size_t(side)];
+      if (border.piece != c.element) continue;
+      const dvec2 uv = on_side(side, border.piece_reversed ? 1 - c.u : c.u);
+      return {c.instance, SourceKind::face, int(p), uv.x, uv.y};
+    }
+  }
+  return c;
+}
+
 /// A contact in the terms of the element that it is expressed in, on its border or not: a point of
 /// an edge as its neighbouring faces have it may be another one by join_distance.
 SourceContact place_of(const Model& model, const Contact& c) {
@@ -30,10 +43,21 @@ SourceContact place_of(const Model& model, const Contact& c) {
   if (c.kind == SourceKind::vertex) return made(c.element, 0, 0);
   if (c.kind == SourceKind::edge) {
     const EdgePiece& piece = part.pieces()[to_size(c.element)];
+    if (piece.edge < 0) return place_of(model, beside_seam(part, c));
     return made(piece.edge, piece.t.at(c.u), 0);
   }
   const Patch& patch = part.patches()[to_size(c.element)];
   return made(patch.face, patch.u.at(c.u), patch.v.at(c.v));
+}
+
+Contact on_edge(const EdgeStretch& side, double t) {
+  return {side.instance, SourceKind::edge, side.piece, t, 0};
+}
+
+std::vector<double> parameters(const SourceContact& place) {
+  if (place.kind == SourceKind::face) return {place.u, place.v};
+  if (place.kind == SourceKind::edge) return {place.u};
+  return {};
 }
 
 /// A stretch of a patch's outline, in the direction in which the hull's outlines run: with the
@@ -63,6 +87,7 @@ class DocumentMaker {
   void for_each_piece(const ArcRange& range, Visit visit) const;
   void collect_sources();
   HullDocument::Contact contact(const Contact& c, const dvec3& point) const;
+  HullDocument::Side side(const EdgeStretch& stretch) const;
   dvec2 uv(const Contact& c) const;
   /// The contacts along a stretch of a region's outline, as it is directed there.
   std::vector<Contact> contacts(const PatchRegion& region, const TrimStretch& stretch) const;
@@ -128,6 +153,9 @@ void DocumentMaker::collect_sources() {
   for (const HullFace& face : boundary_.faces) {
     sources_.add(face.source);
     for (const Contact& c : face.contacts) add(c);
+    for (const EdgeStretch& side : face.sides) {
+      if (side.piece >= 0) add(on_edge(side, side.from));
+    }
     if (face.kind != FaceKind::scroll) continue;
     for_each_piece(face.scroll, [&](const ArcPiece& piece) {
       for (const Ruling& r : piece.rulings) {
@@ -141,10 +169,14 @@ void DocumentMaker::collect_sources() {
 
 HullDocument::Contact DocumentMaker::contact(const Contact& c, const dvec3& point) const {
   const SourceContact place = place_of(scene_.model(), c);
-  HullDocument::Contact result{sources_.place(place.source), {}, scene_.frame().to_model(point)};
-  if (place.kind == SourceKind::face) result.uv = {place.u, place.v};
-  if (place.kind == SourceKind::edge) result.uv = {place.u};
-  return result;
+  return {sources_.place(place.source), parameters(place), scene_.frame().to_model(point)};
+}
+
+HullDocument::Side DocumentMaker::side(const EdgeStretch& stretch) const {
+  if (stretch.piece < 0) return {};
+  const SourceContact from = place_of(scene_.model(), on_edge(stretch, stretch.from));
+  const SourceContact to = place_of(scene_.model(), on_edge(stretch, stretch.to));
+  return {sources_.place(from.source), parameters(from), parameters(to)};
 }
 
 dvec2 DocumentMaker::uv(const Contact& c) const {
@@ -288,6 +320,8 @@ void DocumentMaker::make_facet(int index, HullDocument::Face& result) const {
   for (std::size_t i = 0; i < face.contacts.size(); ++i) {
     result.contacts.push_back(contact(face.contacts[i], face.points[i]));
   }
+  result.sides.reserve(face.sides.size());
+  for (const EdgeStretch& stretch : face.sides) result.sides.push_back(side(stretch));
   result.outline = facet_outline(index);
   if (result.outline.empty()) {
     result.boundary = to_model(face.points);
