@@ -5,6 +5,7 @@
 
 #include "taut/hull/contact_geometry.h"
 #include "taut/io/hull_sources.h"
+#include "taut/surface/beside_piece.h"
 
 namespace taut {
 namespace {
@@ -20,19 +21,6 @@ constexpr double outline_gap = 1e-6;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-/// Of a contact on a seam, which is no source: on the first patch that has it for a border.
-Contact beside_seam(const Part& part, const Contact& c) {
-  for (std::size_t p = 0; p < part.patches().size(); ++p) {
-    for (const Side side : all_sides) {
-      const Border& border = part.patches()[p].borders[std::size_t(side)];
-      if (border.piece != c.element) continue;
-      const dvec2 uv = on_side(side, border.piece_reversed ? 1 - c.u : c.u);
-      return {c.instance, SourceKind::face, int(p), uv.x, uv.y};
-    }
-  }
-  return c;
-}
-
 /// A contact in the terms of the element that it is expressed in, on its border or not: a point of
 /// an edge as its neighbouring faces have it may be another one by join_distance.
 SourceContact place_of(const Model& model, const Contact& c) {
@@ -43,7 +31,10 @@ SourceContact place_of(const Model& model, const Contact& c) {
   if (c.kind == SourceKind::vertex) return made(c.element, 0, 0);
   if (c.kind == SourceKind::edge) {
     const EdgePiece& piece = part.pieces()[to_size(c.element)];
-    if (piece.edge < 0) return place_of(model, beside_seam(part, c));
+    if (piece.edge < 0) {
+      const PatchPlace seam = beside_piece(part, c.element, c.u);
+      return place_of(model, {c.instance, SourceKind::face, seam.patch, seam.uv.x, seam.uv.y});
+    }
     return made(piece.edge, piece.t.at(c.u), 0);
   }
   const Patch& patch = part.patches()[to_size(c.element)];
