@@ -205,12 +205,12 @@ HullFace disc_facet(const ContactGeometry& geometry, const Circle& circle, const
 
 /// Along a circle, between the face within and that beyond.
 HullCurve circle_curve(const KnownBoundary& known, const ContactGeometry& geometry,
-                       const Circle& circle, int left, int right) {
+                       const Circle& circle, HullCurveKind kind, std::array<int, 2> faces) {
   HullCurve curve;
-  curve.kind = HullCurveKind::edge;
-  curve.faces = {left, right};
+  curve.kind = kind;
+  curve.faces = faces;
   curve.closed = true;
-  curve.source = known.scene.source(circle.contact(0, 0.5)).source;
+  if (kind == HullCurveKind::edge) curve.source = known.scene.source(circle.contact(0, 0.5)).source;
   for (std::size_t quarter = 0; quarter < 4; ++quarter) {
     for (int k = quarter == 0 ? 0 : 1; k <= steps; ++k) {
       curve.points.push_back(geometry.point(circle.contact(quarter, double(k) / steps)));
@@ -224,27 +224,56 @@ std::vector<TrimStretch> whole_outline() {
           on_border(Side::u0, 1, 0)};
 }
 
-/// All patches of a part, whole; `curve_of(piece)` names the curve along a border. `inside` is a
-/// point of the model inside.
-template <class CurveOf>
+/// Patches of a part, whole: those that `belongs` says of the point in their middle. `curve_of`
+/// names the curve along a border's piece. `inside` is a point of the model inside.
+template <class CurveOf, class Belongs>
 HullFace whole_surface(const KnownBoundary& known, const ContactGeometry& geometry,
-                       const dvec3& inside, CurveOf curve_of) {
+                       const dvec3& inside, CurveOf curve_of, Belongs belongs) {
   HullFace face;
   face.kind = FaceKind::patch;
   face.source = 0;
   const std::vector<Patch>& patches = known.scene.model().parts()[0].patches();
   for (int p = 0; p < int(patches.size()); ++p) {
     const ContactJet j = geometry.jet({0, SourceKind::face, p, 0.5, 0.5});
+    if (!belongs(known.scene.frame().to_model(j.x))) continue;
     const dvec3 outward = j.x - known.scene.frame().to_frame(inside);
     PatchRegion own = region(p, whole_outline());
     own.sign = glm::dot(glm::cross(j.dx[0], j.dx[1]), outward) > 0 ? 1 : -1;
     for (TrimStretch& stretch : own.loops[0]) {
       const Border& border = patches[std::size_t(p)].borders[std::size_t(stretch.side)];
-      if (border.kind == BorderKind::edge) stretch.curve = curve_of(border.piece);
+      if (border.piece >= 0) stretch.curve = curve_of(border.piece);
     }
     face.regions.push_back(std::move(own));
   }
   return face;
+}
+
+bool any_patch(const dvec3&) { return true; }
+
+/// The outer half of a torus, part of the shape or all of it, and the discs that touch it along its
+/// rims, curves of this kind.
+KnownBoundary outer_torus_boundary(const Shape& shape, double R, double r, HullCurveKind kind) {
+  KnownBoundary known{make_scene(shape), {}};
+  const ContactGeometry geometry(known.scene);
+  const Part& part = known.scene.model().parts()[0];
+  const std::array<Circle, 2> rims = {circle_at(part, r, dmat3(1.0), dvec3(0.0)),
+                                      circle_at(part, -r, dmat3(1.0), dvec3(0.0))};
+  const auto curve_of = [&](int piece) {
+    for (int k = 0; k < 2; ++k) {
+      const auto& pieces = rims[std::size_t(k)].piece;
+      if (std::find(pieces.begin(), pieces.end(), piece) != pieces.end()) return k;
+    }
+    return -1;
+  };
+  const auto outer = [&](const dvec3& x) { return std::hypot(x.x, x.y) > R; };
+  HullBoundary& boundary = known.boundary;
+  boundary.faces = {whole_surface(known, geometry, dvec3(0.0), curve_of, outer),
+                    disc_facet(geometry, rims[0], {0, 0, 1}, true),
+                    disc_facet(geometry, rims[1], {0, 0, -1}, false)};
+  boundary.faces[0].loops = {{{0, -1}}, {{1, 1}}};
+  boundary.curves = {circle_curve(known, geometry, rims[0], kind, {1, 0}),
+                     circle_curve(known, geometry, rims[1], kind, {0, 2})};
+  return known;
 }
 
 }  // namespace
@@ -302,32 +331,17 @@ KnownBoundary cap_boundary(double height, const dmat3& rotation, const dvec3& sh
   const Circle rim = circle_at(known.scene.model().parts()[0], 1 - height, rotation, shift);
   const dvec3 inside = rotation * dvec3(0, 0, 1 - 0.5 * height) + shift;
   HullBoundary& boundary = known.boundary;
-  boundary.faces = {whole_surface(known, geometry, inside, [](int) { return 0; }),
+  boundary.faces = {whole_surface(
+                        known, geometry, inside, [](int) { return 0; }, any_patch),
                     disc_facet(geometry, rim, rotation * dvec3(0, 0, -1), false)};
   boundary.faces[0].loops = {{{0, 1}}};
-  boundary.curves = {circle_curve(known, geometry, rim, 0, 1)};
+  boundary.curves = {circle_curve(known, geometry, rim, HullCurveKind::edge, {0, 1})};
   return known;
 }
 
 KnownBoundary half_torus_boundary(double R, double r) {
   const NurbsCurve profile = half_circle({R, 0, 0}, {r, 0, 0}, {0, 0, r});
-  KnownBoundary known{make_scene({{revolved(profile)}, {}, {}}), {}};
-  const ContactGeometry geometry(known.scene);
-  const Part& part = known.scene.model().parts()[0];
-  const std::array<Circle, 2> rims = {circle_at(part, r, dmat3(1.0), dvec3(0.0)),
-                                      circle_at(part, -r, dmat3(1.0), dvec3(0.0))};
-  const auto curve_of = [&](int piece) {
-    const auto& upper = rims[0].piece;
-    return std::find(upper.begin(), upper.end(), piece) != upper.end() ? 0 : 1;
-  };
-  HullBoundary& boundary = known.boundary;
-  boundary.faces = {whole_surface(known, geometry, dvec3(0.0), curve_of),
-                    disc_facet(geometry, rims[0], {0, 0, 1}, true),
-                    disc_facet(geometry, rims[1], {0, 0, -1}, false)};
-  boundary.faces[0].loops = {{{0, -1}}, {{1, 1}}};
-  boundary.curves = {circle_curve(known, geometry, rims[0], 1, 0),
-                     circle_curve(known, geometry, rims[1], 0, 2)};
-  return known;
+  return outer_torus_boundary({{revolved(profile)}, {}, {}}, R, r, HullCurveKind::edge);
 }
 
 namespace {
@@ -376,7 +390,8 @@ KnownBoundary paraboloid_boundary() {
   const ContactGeometry geometry(known.scene);
   const Patch& patch = known.scene.model().parts()[0].patches()[0];
   HullBoundary& boundary = known.boundary;
-  boundary.faces.push_back(whole_surface(known, geometry, dvec3(0, 0, 1), [](int) { return -1; }));
+  boundary.faces.push_back(whole_surface(
+      known, geometry, dvec3(0, 0, 1), [](int) { return -1; }, any_patch));
   boundary.faces[0].loops.emplace_back();
   HullFace lid;
   lid.n = dvec3(0, 0, 1);
