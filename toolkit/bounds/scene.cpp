@@ -11,7 +11,6 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
-#include "taut/surface/beside_piece.h"
 
 namespace taut {
 namespace {
@@ -151,8 +150,7 @@ Candidates candidates(const Part& part) {
   }
   for (std::size_t i = 0; i < part.pieces().size(); ++i) {
     const EdgePiece& piece = part.pieces()[i];
-    const bool free = piece.edge >= 0 && part.edges()[std::size_t(piece.edge)].faces.empty();
-    if (!free) continue;
+    if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
     result.elements.emplace_back(SourceKind::edge, int(i));
     result.patches.push_back({piece.bezier.degree(), 0, piece.bezier.points});
   }
@@ -369,10 +367,7 @@ SourceContact Scene::source(const Contact& contact) const {
   };
   const auto on_piece = [&](int index, double t) {
     const EdgePiece& piece = part.pieces()[std::size_t(index)];
-    if (piece.edge >= 0) return made(SourceKind::edge, piece.edge, piece.t.at(t), 0);
-    const PatchPlace seam = beside_piece(part, index, t);
-    const Patch& patch = part.patches()[std::size_t(seam.patch)];
-    return made(SourceKind::face, patch.face, patch.u.at(seam.uv.x), patch.v.at(seam.uv.y));
+    return made(SourceKind::edge, piece.edge, piece.t.at(t), 0);
   };
   if (contact.kind == SourceKind::vertex) return made(SourceKind::vertex, contact.element, 0, 0);
   if (contact.kind == SourceKind::edge) return on_piece(contact.element, contact.u);

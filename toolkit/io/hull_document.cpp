@@ -5,7 +5,6 @@
 
 #include "taut/hull/contact_geometry.h"
 #include "taut/io/hull_sources.h"
-#include "taut/surface/beside_piece.h"
 
 namespace taut {
 namespace {
@@ -31,10 +30,6 @@ SourceContact place_of(const Model& model, const Contact& c) {
   if (c.kind == SourceKind::vertex) return made(c.element, 0, 0);
   if (c.kind == SourceKind::edge) {
     const EdgePiece& piece = part.pieces()[to_size(c.element)];
-    if (piece.edge < 0) {
-      const PatchPlace seam = beside_piece(part, c.element, c.u);
-      return place_of(model, {c.instance, SourceKind::face, seam.patch, seam.uv.x, seam.uv.y});
-    }
     return made(piece.edge, piece.t.at(c.u), 0);
   }
   const Patch& patch = part.patches()[to_size(c.element)];
@@ -43,12 +38,6 @@ SourceContact place_of(const Model& model, const Contact& c) {
 
 Contact on_edge(const EdgeStretch& side, double t) {
   return {side.instance, SourceKind::edge, side.piece, t, 0};
-}
-
-std::vector<double> parameters(const SourceContact& place) {
-  if (place.kind == SourceKind::face) return {place.u, place.v};
-  if (place.kind == SourceKind::edge) return {place.u};
-  return {};
 }
 
 /// A stretch of a patch's outline, in the direction in which the hull's outlines run: with the
@@ -160,14 +149,17 @@ void DocumentMaker::collect_sources() {
 
 HullDocument::Contact DocumentMaker::contact(const Contact& c, const dvec3& point) const {
   const SourceContact place = place_of(scene_.model(), c);
-  return {sources_.place(place.source), parameters(place), scene_.frame().to_model(point)};
+  HullDocument::Contact result{sources_.place(place.source), {}, scene_.frame().to_model(point)};
+  if (place.kind == SourceKind::face) result.uv = {place.u, place.v};
+  if (place.kind == SourceKind::edge) result.uv = {place.u};
+  return result;
 }
 
 HullDocument::Side DocumentMaker::side(const EdgeStretch& stretch) const {
   if (stretch.piece < 0) return {};
-  const SourceContact from = place_of(scene_.model(), on_edge(stretch, stretch.from));
-  const SourceContact to = place_of(scene_.model(), on_edge(stretch, stretch.to));
-  return {sources_.place(from.source), parameters(from), parameters(to)};
+  const HullDocument::Contact from = contact(on_edge(stretch, stretch.from), dvec3(0.0));
+  const HullDocument::Contact to = contact(on_edge(stretch, stretch.to), dvec3(0.0));
+  return {from.source, from.uv, to.uv};
 }
 
 dvec2 DocumentMaker::uv(const Contact& c) const {

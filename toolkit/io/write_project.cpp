@@ -70,8 +70,7 @@ void add_patch(const Patch& patch, const RigidMotion& pose, Layer& layer) {
 void add_part(const Part& part, const RigidMotion& pose, Layer& layer) {
   for (const Patch& patch : part.patches()) add_patch(patch, pose, layer);
   for (const EdgePiece& piece : part.pieces()) {
-    const bool free = piece.edge >= 0 && part.edges()[std::size_t(piece.edge)].faces.empty();
-    if (!free) continue;  // a border or a seam
+    if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;  // a border
     Polyline line;
     for (int i = 0; i <= curve_segments; ++i) {
       line.push_back(pose(point(piece.bezier, double(i) / curve_segments)));
