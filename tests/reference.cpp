@@ -274,6 +274,7 @@ ReferenceSupport::ReferenceSupport(const taut::Model& model, const dvec3& origin
     }
     // The borders of patches and their corners are in the patches already.
     for (const taut::EdgePiece& piece : part.pieces()) {
+      if (piece.edge < 0) break;  // seams
       if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
       add(piece.bezier.degree(), 0, piece.bezier.points);
     }

@@ -130,8 +130,9 @@ std::vector<Contact> contacts(const Scene& scene, Random& random) {
     };
     for (int k = 0; k < int(part.patches().size()); ++k) places(SourceKind::face, k, true);
     for (int k = 0; k < int(part.pieces().size()); ++k) {
-      const auto edge = std::size_t(part.pieces()[std::size_t(k)].edge);
-      if (part.edges()[edge].faces.empty()) places(SourceKind::edge, k, false);
+      const int edge = part.pieces()[std::size_t(k)].edge;
+      if (edge < 0) break;  // seams
+      if (part.edges()[std::size_t(edge)].faces.empty()) places(SourceKind::edge, k, false);
     }
     for (int k = 0; k < part.point_count(); ++k) result.push_back({i, SourceKind::vertex, k, 0, 0});
   }

@@ -150,6 +150,8 @@ Candidates candidates(const Part& part) {
   }
   for (std::size_t i = 0; i < part.pieces().size(); ++i) {
     const EdgePiece& piece = part.pieces()[i];
+    // Seams, and what comes after them, lie in patches.
+    if (piece.edge < 0) break;
     if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
     result.elements.emplace_back(SourceKind::edge, int(i));
     result.patches.push_back({piece.bezier.degree(), 0, piece.bezier.points});
@@ -162,6 +164,53 @@ Candidates candidates(const Part& part) {
 dvec4 moved(const dvec4& p, const dvec3& center, double scale) {
   return {scale * std::fma(-p.w, center.x, p.x), scale * std::fma(-p.w, center.y, p.y),
           scale * std::fma(-p.w, center.z, p.z), p.w};
+}
+
+/// Passes over all patches, those that are not ruled first.
+template <class Visit>
+void visit_curved_first(const Part& part, const Visit& visit) {
+  for (const bool ruled : {false, true}) {
+    for (std::size_t i = 0; i < part.patches().size(); ++i) {
+      if (part.patches()[i].ruled() == ruled) visit(int(i), part.patches()[i]);
+    }
+  }
+}
+
+/// What stands for seams and their vertices: a side or corner of a patch, of a curved one if there
+/// is any, since that is where support points move on; but an edge that passes through a vertex.
+void find_seams(const Part& part, ScenePart& result) {
+  const std::vector<EdgePiece>& pieces = part.pieces();
+  const auto first = std::find_if(pieces.begin(), pieces.end(),
+                                  [](const EdgePiece& piece) { return piece.edge < 0; });
+  const auto count = std::size_t(pieces.end() - first);
+  const auto first_vertex = part.vertices().size() - std::size_t(part.seam_vertex_count());
+  result.first_seam = int(pieces.size() - count);
+  result.seams.resize(count);
+  result.seam_vertices.resize(std::size_t(part.seam_vertex_count()));
+  if (count == 0) return;
+  const auto stand_for = [&](int vertex, const Contact& c) {
+    if (vertex < int(first_vertex)) return;
+    Contact& contact = result.seam_vertices[std::size_t(vertex) - first_vertex];
+    if (contact.element < 0) contact = c;
+  };
+  for (int i = 0; i < result.first_seam; ++i) {
+    const EdgePiece& piece = pieces[std::size_t(i)];
+    for (const int end : {0, 1}) {
+      stand_for(piece.end_vertex[std::size_t(end)], {-1, SourceKind::edge, i, double(end), 0});
+    }
+  }
+  visit_curved_first(part, [&](int index, const Patch& patch) {
+    for (int corner = 0; corner < 4; ++corner) {
+      stand_for(patch.corner_vertex[std::size_t(corner)],
+                {-1, SourceKind::face, index, double(corner / 2), double(corner % 2)});
+    }
+    for (const Side side : all_sides) {
+      const Border& border = patch.borders[std::size_t(side)];
+      if (border.piece < result.first_seam) continue;
+      SeamSide& seam = result.seams[std::size_t(border.piece - result.first_seam)];
+      if (seam.patch < 0) seam = {index, side, border.piece_reversed};
+    }
+  });
 }
 
 ScenePart make_part(const Part& part, double scale, int threads) {
@@ -192,6 +241,7 @@ ScenePart make_part(const Part& part, double scale, int threads) {
     points.push_back(scale * (part.vertices()[std::size_t(i)] - result.center));
   }
   result.point_tree = BoxTree(points);
+  find_seams(part, result);
   return result;
 }
 
@@ -365,11 +415,26 @@ SourceContact Scene::source(const Contact& contact) const {
   const auto made = [&](SourceKind kind, int index, double u, double v) {
     return SourceContact{model.source_id({kind, contact.instance, index}), kind, u, v};
   };
+  const ScenePart& own = content_->parts[std::size_t(instance.part)];
+  const auto on_patch = [&](int index, const dvec2& uv) {
+    const Patch& patch = part.patches()[std::size_t(index)];
+    return made(SourceKind::face, patch.face, patch.u.at(uv.x), patch.v.at(uv.y));
+  };
   const auto on_piece = [&](int index, double t) {
+    if (index >= own.first_seam) {
+      const SeamSide& seam = own.seams[std::size_t(index - own.first_seam)];
+      return on_patch(seam.patch, on_side(seam.side, seam.reversed ? 1 - t : t));
+    }
     const EdgePiece& piece = part.pieces()[std::size_t(index)];
     return made(SourceKind::edge, piece.edge, piece.t.at(t), 0);
   };
-  if (contact.kind == SourceKind::vertex) return made(SourceKind::vertex, contact.element, 0, 0);
+  const auto at_vertex = [&](int index) {
+    const int seam = index - (int(part.vertices().size()) - part.seam_vertex_count());
+    if (seam < 0) return made(SourceKind::vertex, index, 0, 0);
+    const Contact& c = own.seam_vertices[std::size_t(seam)];
+    return c.kind == SourceKind::edge ? on_piece(c.element, c.u) : on_patch(c.element, {c.u, c.v});
+  };
+  if (contact.kind == SourceKind::vertex) return at_vertex(contact.element);
   if (contact.kind == SourceKind::edge) return on_piece(contact.element, contact.u);
 
   const Patch& patch = part.patches()[std::size_t(contact.element)];
@@ -379,20 +444,20 @@ SourceContact Scene::source(const Contact& contact) const {
   for (const Side side : all_sides) {
     const Border& border = patch.borders[std::size_t(side)];
     if (at[std::size_t(side)] && border.kind == BorderKind::collapsed && border.vertex >= 0) {
-      return made(SourceKind::vertex, border.vertex, 0, 0);
+      return at_vertex(border.vertex);
     }
   }
   if ((at[0] || at[1]) && (at[2] || at[3])) {
     const int vertex = patch.corner_vertex[std::size_t(2 * int(at[1]) + int(at[3]))];
-    if (vertex >= 0) return made(SourceKind::vertex, vertex, 0, 0);
+    if (vertex >= 0) return at_vertex(vertex);
   }
   for (const Side side : all_sides) {
     const Border& border = patch.borders[std::size_t(side)];
-    if (!at[std::size_t(side)] || border.kind != BorderKind::edge || border.piece < 0) continue;
+    if (!at[std::size_t(side)] || border.piece < 0) continue;
     const double t = along_v(side) ? v : u;
     return on_piece(border.piece, border.piece_reversed ? 1 - t : t);
   }
-  return made(SourceKind::face, patch.face, patch.u.at(u), patch.v.at(v));
+  return on_patch(contact.element, {u, v});
 }
 
 std::size_t Scene::memory() const {

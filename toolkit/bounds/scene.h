@@ -76,7 +76,9 @@ class Scene {
   /// The contact's point in model coordinates, rounded.
   dvec3 point(const Contact& contact) const;
   /// The contact in the model's terms. A contact on a border that is an edge belongs to that edge,
-  /// one at a corner that is a vertex to that vertex.
+  /// one at a corner that is a vertex to that vertex. Seams and their vertices are no sources: what
+  /// lies on one belongs to the edge that passes through it, else to the face of the first of the
+  /// patches there that is not ruled, else of the first.
   SourceContact source(const Contact& contact) const;
 
   /// Bytes held by the CBVHs and hierarchies.

@@ -72,6 +72,13 @@ struct SceneCell {
   SceneNet net;
 };
 
+/// A side of a patch that lies on a piece of a seam; the piece runs against it if `reversed`.
+struct SeamSide {
+  int patch = -1;
+  Side side = Side::u0;
+  bool reversed = false;
+};
+
 /// A part in the scene's units, about a centre of its own.
 struct ScenePart {
   dvec3 center;
@@ -79,7 +86,10 @@ struct ScenePart {
   std::vector<SceneCell> cells;
   std::vector<int> element_of_patch, element_of_piece;  ///< -1: not queried
   BoxTree tree;                                         ///< over the cells
-  BoxTree point_tree;  ///< over the part's points, in the part's units
+  BoxTree point_tree;                  ///< over the part's points, in the part's units
+  int first_seam = 0;                  ///< index of the first piece of a seam
+  std::vector<SeamSide> seams;         ///< what stands for those pieces, in their order
+  std::vector<Contact> seam_vertices;  ///< and for their vertices, but for the instance
 };
 
 struct SceneInstance {

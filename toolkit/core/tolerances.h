@@ -41,6 +41,25 @@ inline constexpr double support_slack = 1024 * rounding_unit;
 /// corners and the point above it, is 12 rounding units.
 inline constexpr double coordinate_rounding = 16 * rounding_unit;
 
+/// What rounding may leave of second differences that vanish, and of distances from a line or plane,
+/// as a fraction of the largest coordinate (2^-47): a second difference takes four coordinates.
+inline constexpr double ruled_rounding = 4 * coordinate_rounding;
+
+/// Largest angle between normals along a crest, and largest difference of heights over its tangent
+/// plane as a fraction of the patch's size. Control points round a crest's normals to some 1e-15
+/// and its parameter to about that; a thousand times more leaves room for files of fewer digits,
+/// and a curve that misses by so little cannot be told from a crest by any support value.
+inline constexpr double crest_angle = 1e-11;
+inline constexpr double crest_height = 1e-12;
+
+/// Crests nearer to a patch's border, or to each other, than this share of the patch are the same:
+/// normals turn between them by no more than crest_angle on any but degenerate patches.
+inline constexpr double least_crest_share = 1e-9;
+
+/// Patches whose control points differ by at most this fraction of their part's diagonal are the
+/// same: more than what moving and rounding does to a copy, less than any gap that is meant.
+inline constexpr double repeated_patch_distance = 1e-12;
+
 /// Largest share of the diagonal that is ever put down to rounding (2^-33, about 1.2e-10): points
 /// that are nearly as close as their rounding mean what they say.
 inline constexpr double spurious_share = 1048576 * rounding_unit;

@@ -486,11 +486,7 @@ void Stitcher::make_creases() {
     CurveElement e;
     e.left = face(c.low);
     e.right = face(c.high);
-    const Model& model = geometry_.scene().model();
-    const Contact at{c.instance, SourceKind::edge, c.piece, 0, 0};
-    const Part& part = geometry_.part(at);
-    e.source =
-        model.source_id({SourceKind::edge, c.instance, part.pieces()[std::size_t(c.piece)].edge});
+    e.source = geometry_.scene().source({c.instance, SourceKind::edge, c.piece, 0.5, 0}).source;
     for (int k = 0; k <= border_points; ++k) {
       const double share = double(k) / border_points;
       const double t = k == border_points ? c.to : (1 - share) * c.from + share * c.to;

@@ -21,15 +21,21 @@ constexpr double outline_gap = 1e-6;
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// A contact in the terms of the element that it is expressed in, on its border or not: a point of
-/// an edge as its neighbouring faces have it may be another one by join_distance.
-SourceContact place_of(const Model& model, const Contact& c) {
+/// an edge as its neighbouring faces have it may be another one by join_distance. Seams and their
+/// vertices are no sources.
+SourceContact place_of(const Scene& scene, const Contact& c) {
+  const Model& model = scene.model();
   const Part& part = model.parts()[to_size(model.instances()[to_size(c.instance)].part)];
   const auto made = [&](int index, double u, double v) {
     return SourceContact{model.source_id({c.kind, c.instance, index}), c.kind, u, v};
   };
-  if (c.kind == SourceKind::vertex) return made(c.element, 0, 0);
+  if (c.kind == SourceKind::vertex) {
+    const bool of_seam = c.element >= int(part.vertices().size()) - part.seam_vertex_count();
+    return of_seam ? scene.source(c) : made(c.element, 0, 0);
+  }
   if (c.kind == SourceKind::edge) {
     const EdgePiece& piece = part.pieces()[to_size(c.element)];
+    if (piece.edge < 0) return scene.source(c);
     return made(piece.edge, piece.t.at(c.u), 0);
   }
   const Patch& patch = part.patches()[to_size(c.element)];
@@ -129,7 +135,7 @@ void DocumentMaker::for_each_piece(const ArcRange& range, Visit visit) const {
 }
 
 void DocumentMaker::collect_sources() {
-  const auto add = [&](const Contact& c) { sources_.add(place_of(scene_.model(), c).source); };
+  const auto add = [&](const Contact& c) { sources_.add(place_of(scene_, c).source); };
   for (const HullFace& face : boundary_.faces) {
     sources_.add(face.source);
     for (const Contact& c : face.contacts) add(c);
@@ -148,7 +154,7 @@ void DocumentMaker::collect_sources() {
 }
 
 HullDocument::Contact DocumentMaker::contact(const Contact& c, const dvec3& point) const {
-  const SourceContact place = place_of(scene_.model(), c);
+  const SourceContact place = place_of(scene_, c);
   HullDocument::Contact result{sources_.place(place.source), {}, scene_.frame().to_model(point)};
   if (place.kind == SourceKind::face) result.uv = {place.u, place.v};
   if (place.kind == SourceKind::edge) result.uv = {place.u};
@@ -163,7 +169,7 @@ HullDocument::Side DocumentMaker::side(const EdgeStretch& stretch) const {
 }
 
 dvec2 DocumentMaker::uv(const Contact& c) const {
-  const SourceContact place = place_of(scene_.model(), c);
+  const SourceContact place = place_of(scene_, c);
   return {place.u, place.v};
 }
 

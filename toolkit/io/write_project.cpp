@@ -70,6 +70,7 @@ void add_patch(const Patch& patch, const RigidMotion& pose, Layer& layer) {
 void add_part(const Part& part, const RigidMotion& pose, Layer& layer) {
   for (const Patch& patch : part.patches()) add_patch(patch, pose, layer);
   for (const EdgePiece& piece : part.pieces()) {
+    if (piece.edge < 0) break;                                           // seams
     if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;  // a border
     Polyline line;
     for (int i = 0; i <= curve_segments; ++i) {

@@ -1,88 +1,25 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <numbers>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/crests.h"
+#include "taut/surface/flatness.h"
 #include "taut/surface/model.h"
+#include "taut/surface/point_grid.h"
+#include "taut/surface/repeated_patches.h"
+#include "taut/surface/side_joins.h"
+#include "taut/surface/split_crests.h"
 
 namespace taut {
 namespace {
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 int to_int(std::size_t n) { return static_cast<int>(n); }
-
-/// The quotient comes first since squares of a small part's lengths underflow.
-bool same_point(const dvec3& a, const dvec3& b, double tolerance) {
-  const dvec3 d = (a - b) / tolerance;
-  return glm::dot(d, d) <= 1;
-}
-
-/// Numbered points, found by place. Cells are a few tolerances wide: a query seldom looks into more
-/// than one, and points that lie farther apart than the tolerance cannot crowd one.
-class PointGrid {
- public:
-  PointGrid(const Box& box, double tolerance)
-      : origin_(box.lower), tolerance_(tolerance), cell_(8 * tolerance) {}
-
-  void insert(const dvec3& p, int number) {
-    int& head = heads_.try_emplace(key(cell(p, 0)), -1).first->second;
-    entries_.push_back({p, number, head});
-    head = to_int(entries_.size()) - 1;
-  }
-
-  /// Calls visit(number) for all points within the tolerance of p, in a fixed order.
-  template <class Visit>
-  void visit_near(const dvec3& p, const Visit& visit) const {
-    const Cell lower = cell(p, -tolerance_);
-    const Cell upper = cell(p, tolerance_);
-    Cell c;
-    for (c[0] = lower[0]; c[0] <= upper[0]; ++c[0]) {
-      for (c[1] = lower[1]; c[1] <= upper[1]; ++c[1]) {
-        for (c[2] = lower[2]; c[2] <= upper[2]; ++c[2]) {
-          const auto head = heads_.find(key(c));
-          if (head == heads_.end()) continue;
-          for (int e = head->second; e >= 0; e = entries_[to_size(e)].next) {
-            const Entry& entry = entries_[to_size(e)];
-            if (same_point(entry.point, p, tolerance_)) visit(entry.number);
-          }
-        }
-      }
-    }
-  }
-
- private:
-  struct Entry {
-    dvec3 point;
-    int number;
-    int next;
-  };
-  using Cell = std::array<std::uint64_t, 3>;
-
-  /// The box is at most 1 / (8 join_distance) cells wide, which leaves room in 21 bits; the limits
-  /// are met only where coordinates are so far out that a tolerance is less than their rounding.
-  Cell cell(const dvec3& p, double offset) const {
-    Cell c;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double x = std::floor((p[axis] + offset - origin_[axis]) / cell_) + 2;
-      c[to_size(axis)] = static_cast<std::uint64_t>(std::fmin(std::fmax(x, 0), 0x1p21 - 1));
-    }
-    return c;
-  }
-  static std::uint64_t key(const Cell& c) { return (c[0] << 42) | (c[1] << 21) | c[2]; }
-
-  dvec3 origin_;
-  double tolerance_;
-  double cell_;
-  std::unordered_map<std::uint64_t, int> heads_;
-  std::vector<Entry> entries_;
-};
 
 /// Disjoint sets of the numbers below a count; a set is known by its lowest member.
 class DisjointSets {
@@ -109,38 +46,6 @@ class DisjointSets {
 /// Unit vectors differ by at most the angle whose chord is given.
 bool same_direction(const dvec3& a, const dvec3& b, double chord) {
   return glm::length(a - b) <= chord;
-}
-
-/// Chebyshev parameter k of 0 .. m on [0, 1]: a polynomial of degree m is at most O(log m) times as
-/// large between them as at them.
-double sample_parameter(int k, int m) { return 0.5 - 0.5 * std::cos(std::numbers::pi * k / m); }
-
-/// Curve b, run backwards if `reversed`, is curve a.
-///
-/// They are compared as points at equal parameters rather than by control points, since that is the
-/// distance which the tolerance means, for any weights and degrees. Two rational curves of degrees
-/// p and q that agree at p + q + 1 parameters are the same.
-bool agree(const BezierCurve& a, const BezierCurve& b, bool reversed, double tolerance) {
-  const auto same = [&](const dvec4& p, const dvec4& q) {
-    return same_point(euclidean(p), euclidean(q), tolerance);
-  };
-  if (!same(a.points.front(), reversed ? b.points.back() : b.points.front()) ||
-      !same(a.points.back(), reversed ? b.points.front() : b.points.back())) {
-    return false;
-  }
-  const int m = a.degree() + b.degree();
-  for (int k = 1; k < m; ++k) {
-    const double t = sample_parameter(k, m);
-    if (!same_point(point(a, t), point(b, reversed ? 1 - t : t), tolerance)) return false;
-  }
-  return true;
-}
-
-/// A point that curves have in common if they agree, in either direction, within twice the
-/// tolerance. The middle alone would do, but not where very many curves cross in theirs.
-dvec3 place_of(const BezierCurve& curve) {
-  const dvec3 chord = euclidean(curve.points.back()) - euclidean(curve.points.front());
-  return point(curve, 0.5) + 0.5 * glm::abs(chord);
 }
 
 /// Unit direction in which the curve leaves its start, or zero if it stays within the tolerance.
@@ -185,27 +90,10 @@ std::array<int, 2> side_corners(Side side) {
 /// Su x Sv is (direction into the patch) x (direction of the side), or minus it.
 bool normal_is_inward_cross_along(Side side) { return side == Side::u0 || side == Side::v1; }
 
-/// One side of a patch; sides are numbered 4 * patch + side.
-struct SideCurve {
-  BezierCurve curve;
-  bool collapsed = false;
-};
-
-/// A side that takes part in a join.
-struct Use {
-  int side = 0;
-  bool reversed = false;  ///< relative to the first use
-};
-
-/// A curve in which sides meet, or a single one ends; uses are in ascending order of the sides.
-struct Join {
-  std::vector<Use> uses;
-  bool smooth = false;
-};
-
 /// A piece of an edge before edges are put together; arcs' ends are numbered 2 * arc + end.
 struct Arc {
-  int join = -1;                           ///< -1: a piece of a free curve
+  int join = -1;  ///< -1: a piece of a free curve
+  bool seam = false;
   std::array<int, 2> point = {-1, -1};     ///< set of points at its ends
   std::array<dvec3, 2> direction = {};     ///< from its ends into the arc, unit
   std::array<int, 2> neighbor = {-1, -1};  ///< the arc's end that goes straight on from its ends
@@ -223,37 +111,48 @@ class Connector {
         edges_(edges),
         vertices_(vertices),
         box_(box),
-        tolerance_(std::max(join_distance * diagonal(box), std::numeric_limits<double>::min())),
+        tolerance_(join_tolerance(box)),
         chord_(2 * std::sin(smooth_angle / 2)),
         free_piece_count_(to_int(pieces.size())),
         points_(4 * patches.size() + 2 * pieces.size()) {}
 
   void run() {
-    find_sides();
-    match_sides();
+    sides_ = side_curves(patches_, tolerance_);
+    joins_ = match_sides(patches_, sides_, box_, tolerance_);
+    classify_joins();
     identify_points();
     find_arcs();
     place_vertices();
     make_edges();
+    make_seams();
+    fill_ends();
     fill_borders();
+    fill_repeated();
   }
 
+  int seam_vertex_count() const { return seam_vertex_count_; }
+
  private:
-  void find_sides();
-  void match_sides();
+  void classify_joins();
   bool is_smooth(const Use& a, const Use& b) const;
+  bool is_seam(const Join& join) const;
   bool is_pole(int side) const;
   dvec3 point_at(int number) const;
   void identify_points();
   void find_arcs();
   void add_arc(int join, const BezierCurve& curve, std::array<int, 2> points);
   void place_vertices();
+  std::vector<std::pair<int, int>> sorted_ends() const;
+  void add_vertices(const std::vector<bool>& has_vertex);
   bool goes_straight_on(int end_a, int end_b) const;
   std::vector<int> face_sides(const Arc& arc) const;
   std::vector<int> successors() const;
   void make_edges();
   void append_piece(Arc& arc, Edge& edge);
+  void make_seams();
+  void fill_ends();
   void fill_borders();
+  void fill_repeated();
 
   /// Of a side's or a corner's number.
   const Patch& patch_of(int number) const { return patches_[to_size(number / 4)]; }
@@ -271,52 +170,32 @@ class Connector {
   const int free_piece_count_;
   std::vector<SideCurve> sides_;
   std::vector<Join> joins_;
+  std::vector<bool> smooth_;  // per join
   DisjointSets points_;
   std::vector<int> vertex_of_;  // by point set
-  std::vector<Arc> arcs_;       // the free pieces first, in their order
+  int seam_vertex_count_ = 0;
+  std::vector<Arc> arcs_;  // the free pieces first, in their order
 };
 
-void Connector::find_sides() {
-  sides_.reserve(4 * patches_.size());
-  for (const Patch& patch : patches_) {
-    for (const Side side : all_sides) {
-      SideCurve s{border(patch.bezier, side), true};
-      const dvec3 start = euclidean(s.curve.points.front());
-      for (const dvec4& p : s.curve.points) {
-        s.collapsed = s.collapsed && same_point(euclidean(p), start, tolerance_);
-      }
-      sides_.push_back(std::move(s));
-    }
+void Connector::classify_joins() {
+  smooth_.reserve(joins_.size());
+  for (const Join& join : joins_) {
+    smooth_.push_back(join.size() == 2 && is_smooth(join[0], join[1]));
   }
 }
 
-void Connector::match_sides() {
-  PointGrid places(box_, 2 * tolerance_);
-  for (int side = 0; side < to_int(sides_.size()); ++side) {
-    const SideCurve& s = sides_[to_size(side)];
-    if (s.collapsed) continue;
-    const dvec3 place = place_of(s.curve);
-    Use use{side, false};
-    int found = to_int(joins_.size());
-    places.visit_near(place, [&](int join) {
-      if (join > found) return;
-      const BezierCurve& first = sides_[to_size(joins_[to_size(join)].uses.front().side)].curve;
-      for (const bool reversed : {false, true}) {
-        if (!agree(first, s.curve, reversed, tolerance_)) continue;
-        found = join;
-        use.reversed = reversed;
-        return;
-      }
-    });
-    if (found == to_int(joins_.size())) {
-      joins_.emplace_back();
-      places.insert(place, found);
-    }
-    joins_[to_size(found)].uses.push_back(use);
-  }
-  for (Join& join : joins_) {
-    join.smooth = join.uses.size() == 2 && is_smooth(join.uses[0], join.uses[1]);
-  }
+/// Where a ruled patch ends, rulings end; on both sides of a crest support points are few, on it
+/// many. Across other smooth joins support points move on from one patch to the next.
+/// @pre the join is smooth
+bool Connector::is_seam(const Join& join) const {
+  const bool straight = is_straight(sides_[to_size(join[0].side)].curve);
+  const bool ruled[2] = {patch_of(join[0].side).ruled(), patch_of(join[1].side).ruled()};
+  if (ruled[0] || ruled[1]) return !straight || ruled[0] != ruled[1];
+  return !straight && std::all_of(join.begin(), join.end(), [&](const Use& use) {
+    const Side side = all_sides[to_size(use.side % 4)];
+    return is_crest(patch_of(use.side).bezier, along_v(side) ? Direction::u : Direction::v,
+                    at_upper_end(side) ? 1 : 0);
+  });
 }
 
 /// G1 along a border x(t) is det(X, X', A, B) = 0 with homogeneous X and cross derivatives A, B: a
@@ -386,8 +265,8 @@ void Connector::identify_points() {
     if (is_new) grid.insert(p, i);
   }
   for (const Join& join : joins_) {
-    const std::array<int, 2> first = side_points(join.uses.front().side);
-    for (const Use& use : join.uses) {
+    const std::array<int, 2> first = side_points(join.front().side);
+    for (const Use& use : join) {
       const std::array<int, 2> ends = side_points(use.side);
       points_.unite(first[0], ends[use.reversed ? 1 : 0]);
       points_.unite(first[1], ends[use.reversed ? 0 : 1]);
@@ -415,13 +294,29 @@ void Connector::find_arcs() {
     arcs_.back().piece = i;
   }
   for (int j = 0; j < to_int(joins_.size()); ++j) {
-    if (joins_[to_size(j)].smooth) continue;
-    const int side = joins_[to_size(j)].uses.front().side;
+    const Join& join = joins_[to_size(j)];
+    const bool smooth = smooth_[to_size(j)];
+    if (smooth && !is_seam(join)) continue;
+    const int side = join.front().side;
     add_arc(j, sides_[to_size(side)].curve, side_points(side));
+    arcs_.back().seam = smooth;
   }
 }
 
-/// An end that meets exactly one other straight on goes on there; all others end in a vertex.
+/// All arcs' ends with the points they are at, by point.
+std::vector<std::pair<int, int>> Connector::sorted_ends() const {
+  std::vector<std::pair<int, int>> ends;
+  ends.reserve(2 * arcs_.size());
+  for (int a = 0; a < to_int(arcs_.size()); ++a) {
+    for (const int e : {0, 1}) ends.emplace_back(arcs_[to_size(a)].point[to_size(e)], 2 * a + e);
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+/// An end that meets exactly one other straight on goes on there; all others end in a vertex. First
+/// without seams, for these leave edges and their vertices what they are; then with them: a seam
+/// that ends beside an edge that goes on makes a vertex inside of that edge.
 void Connector::place_vertices() {
   std::vector<bool> has_vertex(4 * patches_.size() + 2 * to_size(free_piece_count_));
   for (int side = 0; side < to_int(sides_.size()); ++side) {
@@ -429,25 +324,37 @@ void Connector::place_vertices() {
       has_vertex[to_size(points_.find(side_points(side)[0]))] = true;
     }
   }
-  std::vector<std::pair<int, int>> ends;  // (point set, end)
-  for (int a = 0; a < to_int(arcs_.size()); ++a) {
-    for (const int e : {0, 1}) ends.emplace_back(arcs_[to_size(a)].point[to_size(e)], 2 * a + e);
-  }
-  std::sort(ends.begin(), ends.end());
-  for (std::size_t i = 0, next = 0; i < ends.size(); i = next) {
-    const int point = ends[i].first;
-    while (next < ends.size() && ends[next].first == point) ++next;
-    if (next - i == 2 && !has_vertex[to_size(point)] &&
-        goes_straight_on(ends[i].second, ends[i + 1].second)) {
-      neighbor(ends[i].second) = ends[i + 1].second;
-      neighbor(ends[i + 1].second) = ends[i].second;
-    } else {
-      has_vertex[to_size(point)] = true;
-    }
-  }
+  const std::vector<std::pair<int, int>> ends = sorted_ends();
   vertex_of_.assign(has_vertex.size(), -1);
+  for (const bool seams : {false, true}) {
+    std::vector<int> here;
+    for (std::size_t i = 0; i < ends.size();) {
+      const int point = ends[i].first;
+      bool concerned = !seams;
+      here.clear();
+      for (; i < ends.size() && ends[i].first == point; ++i) {
+        const bool seam = arcs_[to_size(ends[i].second / 2)].seam;
+        concerned = concerned || seam;
+        if (seams || !seam) here.push_back(ends[i].second);
+      }
+      if (here.empty() || !concerned || has_vertex[to_size(point)]) continue;
+      if (here.size() == 2 && goes_straight_on(here[0], here[1])) {
+        neighbor(here[0]) = here[1];
+        neighbor(here[1]) = here[0];
+      } else {
+        has_vertex[to_size(point)] = true;
+      }
+    }
+    const std::size_t before = vertices_.size();
+    add_vertices(has_vertex);
+    if (seams) seam_vertex_count_ = to_int(vertices_.size() - before);
+  }
+}
+
+/// Adds those that are new.
+void Connector::add_vertices(const std::vector<bool>& has_vertex) {
   for (std::size_t point = 0; point < has_vertex.size(); ++point) {
-    if (!has_vertex[point]) continue;
+    if (!has_vertex[point] || vertex_of_[point] >= 0) continue;
     vertex_of_[point] = to_int(vertices_.size());
     vertices_.push_back(point_at(to_int(point)));
   }
@@ -462,7 +369,7 @@ bool Connector::goes_straight_on(int end_a, int end_b) const {
 /// The sides of faces that meet in a border arc, the same for all arcs of one edge.
 std::vector<int> Connector::face_sides(const Arc& arc) const {
   std::vector<int> result;
-  for (const Use& use : joins_[to_size(arc.join)].uses) {
+  for (const Use& use : joins_[to_size(arc.join)]) {
     result.push_back(4 * patch_of(use.side).face + use.side % 4);
   }
   return result;
@@ -473,7 +380,7 @@ std::vector<int> Connector::successors() const {
   std::vector<int> next(arcs_.size(), -1);
   for (std::size_t a = to_size(free_piece_count_); a < arcs_.size(); ++a) {
     const int end = arcs_[a].neighbor[1];
-    if (end < 2 * free_piece_count_ || end % 2 != 0) continue;
+    if (arcs_[a].seam || end < 2 * free_piece_count_ || end % 2 != 0) continue;
     if (face_sides(arcs_[a]) == face_sides(arcs_[to_size(end / 2)])) next[a] = end / 2;
   }
   return next;
@@ -487,7 +394,7 @@ void Connector::make_edges() {
     if (next[to_size(a)] >= 0) previous[to_size(next[to_size(a)])] = a;
   }
   for (int a = free_piece_count_; a < to_int(arcs_.size()); ++a) {
-    if (arcs_[to_size(a)].piece >= 0) continue;
+    if (arcs_[to_size(a)].seam || arcs_[to_size(a)].piece >= 0) continue;
     int first = a;
     while (previous[to_size(first)] >= 0) {
       first = previous[to_size(first)];
@@ -503,16 +410,6 @@ void Connector::make_edges() {
     }
     edges_.push_back(std::move(edge));
   }
-  for (const Arc& arc : arcs_) {
-    EdgePiece& piece = pieces_[to_size(arc.piece)];
-    for (const std::size_t e : {0u, 1u}) {
-      if (arc.neighbor[e] >= 0) {
-        piece.end_neighbor[e] = arcs_[to_size(arc.neighbor[e] / 2)].piece;
-      } else {
-        piece.end_vertex[e] = vertex_of_[to_size(arc.point[e])];
-      }
-    }
-  }
 }
 
 /// Appends the arc's piece to the edge that is about to be added.
@@ -520,26 +417,50 @@ void Connector::append_piece(Arc& arc, Edge& edge) {
   const double t = edge.piece_count++;
   arc.piece = to_int(pieces_.size());
   EdgePiece piece;
-  piece.bezier = sides_[to_size(joins_[to_size(arc.join)].uses.front().side)].curve;
+  piece.bezier = sides_[to_size(joins_[to_size(arc.join)].front().side)].curve;
   piece.t = {t, t + 1};
   piece.edge = to_int(edges_.size());
   pieces_.push_back(std::move(piece));
 }
 
+/// Their pieces come after those of all edges.
+void Connector::make_seams() {
+  for (Arc& arc : arcs_) {
+    if (!arc.seam) continue;
+    arc.piece = to_int(pieces_.size());
+    EdgePiece piece;
+    piece.bezier = sides_[to_size(joins_[to_size(arc.join)].front().side)].curve;
+    pieces_.push_back(std::move(piece));
+  }
+}
+
+void Connector::fill_ends() {
+  for (const Arc& arc : arcs_) {
+    EdgePiece& piece = pieces_[to_size(arc.piece)];
+    for (const std::size_t e : {0u, 1u}) {
+      piece.end_vertex[e] = vertex_of_[to_size(arc.point[e])];
+      if (piece.end_vertex[e] < 0) {
+        piece.end_neighbor[e] = arcs_[to_size(arc.neighbor[e] / 2)].piece;
+      }
+    }
+  }
+}
+
 void Connector::fill_borders() {
-  for (const Join& join : joins_) {
-    for (const Use& use : join.uses) {
+  for (std::size_t j = 0; j < joins_.size(); ++j) {
+    const Join& join = joins_[j];
+    for (const Use& use : join) {
       Border& border = border_of(use.side);
-      border.kind = join.smooth ? BorderKind::smooth : BorderKind::edge;
-      if (join.uses.size() != 2) continue;
-      const Use& other = &use == &join.uses[0] ? join.uses[1] : join.uses[0];
+      border.kind = smooth_[j] ? BorderKind::smooth : BorderKind::edge;
+      if (join.size() != 2) continue;
+      const Use& other = &use == &join[0] ? join[1] : join[0];
       border.neighbor = other.side / 4;
       border.neighbor_side = all_sides[to_size(other.side % 4)];
       border.reversed = use.reversed != other.reversed;
     }
   }
   for (std::size_t a = to_size(free_piece_count_); a < arcs_.size(); ++a) {
-    for (const Use& use : joins_[to_size(arcs_[a].join)].uses) {
+    for (const Use& use : joins_[to_size(arcs_[a].join)]) {
       Border& border = border_of(use.side);
       border.piece = arcs_[a].piece;
       border.edge = pieces_[to_size(border.piece)].edge;
@@ -558,6 +479,28 @@ void Connector::fill_borders() {
   }
 }
 
+/// What has no join of its own is as in the patch that is repeated.
+void Connector::fill_repeated() {
+  for (Patch& patch : patches_) {
+    if (patch.repeats < 0) continue;
+    for (const Side side : all_sides) {
+      const RepeatedSide there = side_in_repeated(patch, side);
+      Border copy = patches_[to_size(patch.repeats)].borders[to_size(int(there.side))];
+      copy.reversed = copy.reversed != there.reversed;
+      copy.piece_reversed = copy.piece_reversed != there.reversed;
+      patch.borders[to_size(int(side))] = copy;
+    }
+  }
+}
+
+void find_rulings(std::vector<Patch>& patches) {
+  for (Patch& patch : patches) {
+    const bool plane = is_plane(patch.bezier);
+    patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
+    patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
+  }
+}
+
 }  // namespace
 
 void Part::connect(double smooth_angle) {
@@ -567,7 +510,12 @@ void Part::connect(double smooth_angle) {
                        " is not between 0 and pi/2");
   }
   point_count_ = to_int(vertices_.size());
-  Connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle).run();
+  find_rulings(patches_);
+  split_crests(faces_, patches_, box_);
+  find_repeated_patches(patches_, box_);
+  Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle);
+  connector.run();
+  seam_vertex_count_ = connector.seam_vertex_count();
   connected_ = true;
 }
 

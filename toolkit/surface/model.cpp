@@ -56,8 +56,13 @@ Box with(Box box, const Part& part, const RigidMotion& pose) {
 
 std::size_t face_count_of(const Part& part) { return part.faces().size() + part.polygons().size(); }
 
+/// Those of seams are no sources.
+std::size_t vertex_count_of(const Part& part) {
+  return part.vertices().size() - to_size(part.seam_vertex_count());
+}
+
 std::size_t source_count_of(const Part& part) {
-  return face_count_of(part) + part.edges().size() + part.vertices().size();
+  return face_count_of(part) + part.edges().size() + vertex_count_of(part);
 }
 
 template <class Count>
@@ -276,7 +281,7 @@ int Model::edge_count() const {
   return sum_over_instances(*this, [](const Part& part) { return part.edges().size(); });
 }
 int Model::vertex_count() const {
-  return sum_over_instances(*this, [](const Part& part) { return part.vertices().size(); });
+  return sum_over_instances(*this, [](const Part& part) { return vertex_count_of(part); });
 }
 int Model::patch_count() const { return patch_count_; }
 

@@ -43,11 +43,21 @@ struct Patch {
   BezierPatch bezier;
   Interval u, v;
   int face = -1;
-  /// Parameters along which it is a straight segment for every value of the other one: no point
-  /// inside of such a segment is extreme. Both of a plane patch.
+  /// Parameters along which it is a straight segment for every value of the other one, up to
+  /// rounding: no point inside of such a segment is extreme. Both of a plane patch, whatever its
+  /// parameters.
   bool ruled_u = false;
   bool ruled_v = false;
   bool ruled() const { return ruled_u || ruled_v; }
+  /// The first patch of the part with the same control points, which lies before this one, or -1.
+  /// A patch that repeats one takes no part in joins; its borders and corners are those of the
+  /// other.
+  int repeats = -1;
+  /// How: its point (u, v) is the other's point (u, v) with the two exchanged if `swapped`, and
+  /// then the first replaced by 1 - u if `reversed_u`, the second by 1 - v if `reversed_v`.
+  bool swapped = false;
+  bool reversed_u = false;
+  bool reversed_v = false;
   /// Indexed by Side.
   std::array<Border, 4> borders;
   /// Vertex at the corners (u0,v0), (u0,v1), (u1,v0), (u1,v1), or -1 where the corner is none.
@@ -114,6 +124,10 @@ class Part {
 
   /// Finds how the patches meet: fills borders, edges and vertices. Call once after the last add.
   ///
+  /// Before that, faces are split into more patches, exactly, along crests inside of patches:
+  /// curves u = const or v = const, not straight, on which the surface has one tangent plane (as on
+  /// top of a torus).
+  ///
   /// Two sides meet if their curves agree, parameter by parameter in either direction, within
   /// join_distance of the part's diagonal; the join of exactly two is smooth if the one surface
   /// continues the other with tangent planes that agree within `smooth_angle` everywhere along it
@@ -125,6 +139,13 @@ class Part {
   /// one straight-on continuation (so also at a kink inside a free curve, which stays one edge),
   /// and at a collapsed side that has no common normal. The points of an edge's pieces and of the
   /// vertices are those of the first side that is there.
+  ///
+  /// Seams are the smooth joins that get pieces too, for supporting planes can leave a surface
+  /// there though it has no edge: those of a ruled patch with one that is not, those of ruled
+  /// patches that are not straight, and crests. Their ends are as those of edges, except that edges
+  /// do not see them: an edge goes on where a seam ends beside it, though its pieces end in a
+  /// vertex there. Seams are no edges; vertices that stand at their ends alone, and their pieces,
+  /// come last.
   /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]
   void connect(double smooth_angle);
   bool connected() const { return connected_; }
@@ -134,13 +155,15 @@ class Part {
   /// Corners as indices into vertices(). As sources of contacts they are numbered behind faces().
   const std::vector<std::vector<int>>& polygons() const { return polygons_; }
   const std::vector<Edge>& edges() const { return edges_; }
-  /// Points that were added, alone or with polygons, and behind these the corners of surfaces and
-  /// the ends of edges.
+  /// Points that were added, alone or with polygons, behind these the corners of surfaces and the
+  /// ends of edges, and last those that stand at the ends of seams alone.
   const std::vector<dvec3>& vertices() const { return vertices_; }
+  int seam_vertex_count() const { return seam_vertex_count_; }
   int point_count() const { return connected_ ? point_count_ : int(vertices_.size()); }
   /// Points and polygons are all there is, so that its hull is a polytope.
   bool polyhedral() const { return patches_.empty() && pieces_.empty(); }
   const std::vector<Patch>& patches() const { return patches_; }
+  /// Those of the edges, in their order, and behind them those of seams.
   const std::vector<EdgePiece>& pieces() const { return pieces_; }
   /// Box of the control points, which contains the geometry.
   const Box& control_box() const { return box_; }
@@ -151,6 +174,7 @@ class Part {
   std::vector<Edge> edges_;
   std::vector<dvec3> vertices_;
   int point_count_ = 0;
+  int seam_vertex_count_ = 0;
   std::vector<Patch> patches_;
   std::vector<EdgePiece> pieces_;
   Box box_;
@@ -173,7 +197,7 @@ struct Source {
 /// Faces, edges and vertices, in parts that are placed by instances.
 ///
 /// Sources are numbered through: per instance, in order, its faces, then its edges, then its
-/// vertices.
+/// vertices; vertices of seams have no numbers, and count nowhere.
 class Model {
  public:
   /// Adds the part, which is connected now if it was not yet, and one instance of it at rest.

@@ -39,6 +39,7 @@ Contents contents(Input& input) {
       contents.rational += is_polynomial(patch.bezier.points) ? 0 : 1;
     }
     for (const EdgePiece& piece : part.pieces()) {
+      if (piece.edge < 0) break;  // seams
       if (!part.edges()[std::size_t(piece.edge)].faces.empty()) continue;
       ++contents.free_pieces[{piece.bezier.degree(), 0}];
       contents.rational += is_polynomial(piece.bezier.points) ? 0 : 1;

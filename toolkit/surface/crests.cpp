@@ -1,0 +1,140 @@
+#include "taut/surface/crests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "taut/core/tolerances.h"
+#include "taut/surface/flatness.h"
+
+namespace taut {
+namespace {
+
+/// The patch with the curves across the crests' direction seen as curves u = s.
+struct Across {
+  const BezierPatch& patch;
+  Direction direction;
+
+  dvec2 uv(double s, double t) const {
+    return direction == Direction::u ? dvec2(s, t) : dvec2(t, s);
+  }
+  int degree_across() const { return direction == Direction::u ? patch.degree_u : patch.degree_v; }
+  int degree_along() const { return direction == Direction::u ? patch.degree_v : patch.degree_u; }
+
+  dvec3 normal(double s, double t) const {
+    const dvec2 at = uv(s, t);
+    const PatchJet1 j = jet1(patch, at.x, at.y);
+    return glm::cross(j.Su, j.Sv);
+  }
+
+  /// Sine of the angle between the normals at two places of the curve s, about the axis of which
+  /// it turns: zero at a crest, and of either sign in all coordinates beside most.
+  dvec3 turn(double s) const {
+    // Away from the borders, where patches collapse, and not at each other's mirror images.
+    return glm::cross(unit(normal(s, 0.21)), unit(normal(s, 0.73)));
+  }
+};
+
+/// Whether all of `turn` seems to vanish where the coordinate does, between parameters at which its
+/// signs differ: most signs change where the others stay. At a crest what is left is of second
+/// order in the step.
+bool may_vanish(const Across& across, int axis, double a, const dvec3& fa, double b,
+                const dvec3& fb) {
+  const double s = (a * fb[axis] - b * fa[axis]) / (fb[axis] - fa[axis]);
+  return glm::length(across.turn(s)) <= 0.5 * std::max(glm::length(fa), glm::length(fb));
+}
+
+/// Root of a coordinate of `turn` between parameters where its signs differ, to the last bits
+/// (false position, Illinois' variant).
+double turn_root(const Across& across, int axis, double a, double fa, double b, double fb) {
+  constexpr int step_limit = 60;
+  double s = a;
+  for (int k = 0; k < step_limit && b - a > rounding_unit; ++k) {
+    s = (a * fb - b * fa) / (fb - fa);
+    if (!(s > a && s < b)) s = 0.5 * (a + b);
+    if (s == a || s == b) break;
+    const double fs = across.turn(s)[axis];
+    if (std::abs(fs) <= rounding_unit) break;
+    if ((fs > 0) == (fb > 0)) {
+      b = s;
+      fb = fs;
+      fa *= 0.5;
+    } else {
+      a = s;
+      fa = fs;
+      fb *= 0.5;
+    }
+  }
+  return s;
+}
+
+/// Roots of one coordinate of `turn`, given at equally spaced parameters; values that may be
+/// rounding have no sign.
+void add_roots(const Across& across, const std::vector<dvec3>& turns, int axis,
+               std::vector<double>& roots) {
+  const double step = 1.0 / double(turns.size() - 1);
+  std::optional<std::size_t> before;
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const double f = turns[k][axis];
+    if (std::abs(f) <= crest_angle) continue;
+    // More than one value without a sign between two of them is a coordinate that vanishes.
+    const bool crossed = before && k - *before <= 2 && (f > 0) != (turns[*before][axis] > 0);
+    if (crossed && may_vanish(across, axis, double(*before) * step, turns[*before],
+                              double(k) * step, turns[k])) {
+      roots.push_back(turn_root(across, axis, double(*before) * step, turns[*before][axis],
+                                double(k) * step, f));
+    }
+    before = k;
+  }
+}
+
+double size_of(const std::vector<dvec4>& points) {
+  Box box;
+  for (const dvec4& p : points) box.include(euclidean(p));
+  return diagonal(box);
+}
+
+}  // namespace
+
+bool is_crest(const BezierPatch& patch, Direction direction, double s) {
+  const Across across{patch, direction};
+  const double size = size_of(patch.points);
+  const double rounding = coordinate_rounding * largest_coordinate(patch.points);
+  const double height = crest_height * size + rounding;
+  const double angle = crest_angle + across.degree_across() * rounding / size;
+  const auto at = [&](double t) { return across.uv(s, t); };
+  const dvec2 middle = at(0.5);
+  const dvec3 n = unit_normal(patch, middle.x, middle.y);
+  const double h = glm::dot(n, point(patch, middle.x, middle.y));
+  if (n == dvec3(0.0)) return false;
+  // As many places as determine the polynomials that the rational ones have as numerators, all of
+  // them inside: at its ends the curve may run into a pole.
+  const int m = 4 * across.degree_along() + 2;
+  for (int k = 0; k < m; ++k) {
+    const dvec2 uv = at(0.5 - 0.5 * std::cos(std::numbers::pi * (k + 0.5) / m));
+    if (glm::length(unit_normal(patch, uv.x, uv.y) - n) > angle) return false;
+    if (std::abs(glm::dot(n, point(patch, uv.x, uv.y)) - h) > height) return false;
+  }
+  return !is_straight(parameter_curve(patch, direction, s));
+}
+
+std::vector<double> inner_crests(const BezierPatch& patch, Direction direction) {
+  const Across across{patch, direction};
+  const int count = 4 * across.degree_across() + 8;
+  std::vector<dvec3> turns;
+  turns.reserve(std::size_t(count) + 1);
+  for (int k = 0; k <= count; ++k) turns.push_back(across.turn(double(k) / count));
+  std::vector<double> roots;
+  for (const int axis : {0, 1, 2}) add_roots(across, turns, axis, roots);
+  std::sort(roots.begin(), roots.end());
+  std::vector<double> crests;
+  for (const double s : roots) {
+    const double from = crests.empty() ? 0 : crests.back();
+    if (s - from <= least_crest_share || 1 - s <= least_crest_share) continue;
+    if (is_crest(patch, direction, s)) crests.push_back(s);
+  }
+  return crests;
+}
+
+}  // namespace taut

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/surface/bezier.h"
+
+namespace taut {
+
+/// @name Crests
+/// A crest is a curve u = const or v = const of a patch that is not straight and along which the
+/// surface has one tangent plane: the top circle of a torus, the rim of a crater. One direction
+/// supports all of it at once.
+/// @{
+
+/// Whether the curve u = s (direction u) or v = s is one: normals agree within crest_angle, heights
+/// over their plane within crest_height of the patch's size, rounding apart.
+bool is_crest(const BezierPatch& patch, Direction direction, double s);
+
+/// Parameters inside of ]0, 1[, ascending, of the crests across which the slope over their plane
+/// changes its sign; others (the flat circle of z = r^3) carry no support points of a ridge.
+/// Nearer to a border than least_crest_share of the patch there is none.
+std::vector<double> inner_crests(const BezierPatch& patch, Direction direction);
+/// @}
+
+}  // namespace taut

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "taut/surface/bezier.h"
+
+namespace taut {
+
+/// @name Where a surface or curve is straight, up to the rounding of its control points
+/// The tolerance is ruled_rounding of the largest coordinate (and of the largest weight).
+/// @{
+
+/// The curve lies on a line. So does one that is a single point.
+bool is_straight(const BezierCurve& curve);
+
+/// For every value of the other parameter the patch is a straight segment, or a point, along this
+/// one: its homogeneous control points are affine in it. Raising the degree changes nothing.
+bool is_ruled(const BezierPatch& patch, Direction direction);
+
+/// All control points lie in one plane.
+bool is_plane(const BezierPatch& patch);
+/// @}
+
+/// Control points of the curve u = s (direction u) or v = s of the patch.
+BezierCurve parameter_curve(const BezierPatch& patch, Direction direction, double s);
+
+/// Largest absolute coordinate of the Euclidean control points.
+double largest_coordinate(const std::vector<dvec4>& points);
+
+}  // namespace taut

@@ -1,0 +1,103 @@
+#include "taut/surface/side_joins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "taut/core/tolerances.h"
+#include "taut/surface/point_grid.h"
+
+namespace taut {
+namespace {
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+int to_int(std::size_t n) { return static_cast<int>(n); }
+
+/// Curve b, run backwards if `reversed`, is curve a.
+///
+/// They are compared as points at equal parameters rather than by control points, since that is the
+/// distance which the tolerance means, for any weights and degrees. Two rational curves of degrees
+/// p and q that agree at p + q + 1 parameters are the same.
+bool agree(const BezierCurve& a, const BezierCurve& b, bool reversed, double tolerance) {
+  const auto same = [&](const dvec4& p, const dvec4& q) {
+    return same_point(euclidean(p), euclidean(q), tolerance);
+  };
+  if (!same(a.points.front(), reversed ? b.points.back() : b.points.front()) ||
+      !same(a.points.back(), reversed ? b.points.front() : b.points.back())) {
+    return false;
+  }
+  const int m = a.degree() + b.degree();
+  for (int k = 1; k < m; ++k) {
+    const double t = sample_parameter(k, m);
+    if (!same_point(point(a, t), point(b, reversed ? 1 - t : t), tolerance)) return false;
+  }
+  return true;
+}
+
+/// A point that curves have in common if they agree, in either direction, within twice the
+/// tolerance. The middle alone would do, but not where very many curves cross in theirs.
+dvec3 place_of(const BezierCurve& curve) {
+  const dvec3 chord = euclidean(curve.points.back()) - euclidean(curve.points.front());
+  return point(curve, 0.5) + 0.5 * glm::abs(chord);
+}
+
+}  // namespace
+
+double join_tolerance(const Box& box) {
+  return std::max(join_distance * diagonal(box), std::numeric_limits<double>::min());
+}
+
+double sample_parameter(int k, int m) { return 0.5 - 0.5 * std::cos(std::numbers::pi * k / m); }
+
+bool is_collapsed(const BezierCurve& curve, double tolerance) {
+  const dvec3 start = euclidean(curve.points.front());
+  return std::all_of(curve.points.begin(), curve.points.end(),
+                     [&](const dvec4& p) { return same_point(euclidean(p), start, tolerance); });
+}
+
+std::vector<SideCurve> side_curves(const std::vector<Patch>& patches, double tolerance) {
+  std::vector<SideCurve> sides;
+  sides.reserve(4 * patches.size());
+  for (const Patch& patch : patches) {
+    for (const Side side : all_sides) {
+      BezierCurve curve = border(patch.bezier, side);
+      const bool collapsed = is_collapsed(curve, tolerance);
+      sides.push_back({std::move(curve), collapsed});
+    }
+  }
+  return sides;
+}
+
+std::vector<Join> match_sides(const std::vector<Patch>& patches,
+                              const std::vector<SideCurve>& sides, const Box& box,
+                              double tolerance) {
+  std::vector<Join> joins;
+  PointGrid places(box, 2 * tolerance);
+  for (int side = 0; side < to_int(sides.size()); ++side) {
+    const SideCurve& s = sides[to_size(side)];
+    if (s.collapsed || patches[to_size(side / 4)].repeats >= 0) continue;
+    const dvec3 place = place_of(s.curve);
+    Use use{side, false};
+    int found = to_int(joins.size());
+    places.visit_near(place, [&](int join) {
+      if (join > found) return;
+      const BezierCurve& first = sides[to_size(joins[to_size(join)].front().side)].curve;
+      for (const bool reversed : {false, true}) {
+        if (!agree(first, s.curve, reversed, tolerance)) continue;
+        found = join;
+        use.reversed = reversed;
+        return;
+      }
+    });
+    if (found == to_int(joins.size())) {
+      joins.emplace_back();
+      places.insert(place, found);
+    }
+    joins[to_size(found)].push_back(use);
+  }
+  return joins;
+}
+
+}  // namespace taut

@@ -1,0 +1,248 @@
+#include "taut/surface/split_crests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "taut/core/tolerances.h"
+#include "taut/surface/crests.h"
+#include "taut/surface/side_joins.h"
+
+namespace taut {
+namespace {
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+int to_int(std::size_t n) { return static_cast<int>(n); }
+
+/// Cuts of one row, beyond which its crests are taken to wind without end.
+constexpr std::size_t cut_limit = 16;
+
+/// A face's grid of patches. Its rows are numbered: the patches of an interval of u, then of v.
+struct FaceGrid {
+  int first_patch = 0;
+  int count_u = 0, count_v = 0;
+  int first_row = 0;
+
+  FaceGrid(const Face& face, const std::vector<Patch>& patches, int row)
+      : first_patch(face.first_patch), first_row(row) {
+    const Patch* const first = patches.data() + face.first_patch;
+    while (count_v < face.patch_count && first[count_v].u.lower == first[0].u.lower) ++count_v;
+    count_u = count_v == 0 ? 0 : face.patch_count / count_v;
+  }
+  int row_count() const { return count_u + count_v; }
+  int patch(int i, int j) const { return first_patch + i * count_v + j; }
+  /// The row that a curve u = const (direction u) or v = const of the patch runs through.
+  int row_of(int patch, Direction direction) const {
+    const int k = patch - first_patch;
+    return first_row + (direction == Direction::u ? k / count_v : count_u + k % count_v);
+  }
+  Direction direction_of(int row) const {
+    return row - first_row < count_u ? Direction::u : Direction::v;
+  }
+  std::vector<int> patches_of(int row) const {
+    std::vector<int> result;
+    result.reserve(to_size(std::max(count_u, count_v)));
+    const int k = row - first_row;
+    if (k < count_u) {
+      for (int j = 0; j < count_v; ++j) result.push_back(patch(k, j));
+    } else {
+      for (int i = 0; i < count_u; ++i) result.push_back(patch(i, k - count_u));
+    }
+    return result;
+  }
+};
+
+/// A curve across all patches of a row.
+struct Cut {
+  int row = -1;
+  double s = 0;
+};
+
+class CrestSplitter {
+ public:
+  CrestSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box)
+      : faces_(faces), patches_(patches), box_(box), tolerance_(join_tolerance(box)) {}
+
+  void run() {
+    find_grids();
+    const std::vector<Cut> crests = find_crests();
+    if (crests.empty()) return;
+    sides_ = side_curves(patches_, tolerance_);
+    joins_ = match_sides(patches_, sides_, box_, tolerance_);
+    join_of_.assign(sides_.size(), -1);
+    for (std::size_t j = 0; j < joins_.size(); ++j) {
+      for (const Use& use : joins_[j]) join_of_[to_size(use.side)] = to_int(j);
+    }
+    for (const Cut& crest : crests) add_with_continuations(crest);
+    for (std::vector<double>& row : cuts_) std::sort(row.begin(), row.end());
+    split();
+  }
+
+ private:
+  void find_grids();
+  std::vector<Cut> find_crests() const;
+  void add_with_continuations(const Cut& crest);
+  bool add(const Cut& cut, std::vector<Cut>& added);
+  bool too_thin(const Cut& cut) const;
+  void push_continuations(const Cut& cut, std::vector<Cut>& next) const;
+  std::array<int, 2> crossed_sides(int patch, Direction direction) const;
+  const FaceGrid& grid_of(int patch) const {
+    return grids_[to_size(patches_[to_size(patch)].face)];
+  }
+  const FaceGrid& grid_of_row(int row) const { return grids_[to_size(face_of_row_[to_size(row)])]; }
+  void split();
+  void split_face(std::size_t f, std::vector<Patch>& result) const;
+
+  std::vector<Face>& faces_;
+  std::vector<Patch>& patches_;
+  const Box& box_;
+  const double tolerance_;
+  std::vector<FaceGrid> grids_;  // per face
+  std::vector<int> face_of_row_;
+  std::vector<std::vector<double>> cuts_;  // per row
+  std::vector<SideCurve> sides_;
+  std::vector<Join> joins_;
+  std::vector<int> join_of_;  // per side
+};
+
+void CrestSplitter::find_grids() {
+  grids_.reserve(faces_.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const FaceGrid grid(faces_[f], patches_, to_int(face_of_row_.size()));
+    face_of_row_.insert(face_of_row_.end(), to_size(grid.row_count()), to_int(f));
+    grids_.push_back(grid);
+  }
+  cuts_.resize(face_of_row_.size());
+}
+
+std::vector<Cut> CrestSplitter::find_crests() const {
+  std::vector<Cut> result;
+  for (int p = 0; p < to_int(patches_.size()); ++p) {
+    const Patch& patch = patches_[to_size(p)];
+    if (patch.ruled()) continue;
+    for (const Direction direction : {Direction::u, Direction::v}) {
+      for (const double s : inner_crests(patch.bezier, direction)) {
+        result.push_back({grid_of(p).row_of(p, direction), s});
+      }
+    }
+  }
+  return result;
+}
+
+/// The sides that curves u = const (direction u) or v = const of the patch end at.
+std::array<int, 2> CrestSplitter::crossed_sides(int patch, Direction direction) const {
+  const bool u = direction == Direction::u;
+  return {4 * patch + int(u ? Side::v0 : Side::u0), 4 * patch + int(u ? Side::v1 : Side::u1)};
+}
+
+bool CrestSplitter::too_thin(const Cut& cut) const {
+  const FaceGrid& grid = grid_of_row(cut.row);
+  const double share = std::min(cut.s, 1 - cut.s);
+  for (const int patch : grid.patches_of(cut.row)) {
+    for (const int side : crossed_sides(patch, grid.direction_of(cut.row))) {
+      const SideCurve& s = sides_[to_size(side)];
+      if (s.collapsed) continue;
+      // A strip is about as wide as its share of the side; some tolerances keep it from collapsing.
+      Box box;
+      for (const dvec4& p : s.curve.points) box.include(euclidean(p));
+      if (share * diagonal(box) <= 16 * tolerance_) return true;
+    }
+  }
+  return false;
+}
+
+/// False if the row has too many.
+bool CrestSplitter::add(const Cut& cut, std::vector<Cut>& added) {
+  if (cuts_[to_size(cut.row)].size() >= cut_limit || too_thin(cut)) return false;
+  cuts_[to_size(cut.row)].push_back(cut.s);
+  added.push_back(cut);
+  return true;
+}
+
+void CrestSplitter::push_continuations(const Cut& cut, std::vector<Cut>& next) const {
+  const FaceGrid& grid = grid_of_row(cut.row);
+  for (const int patch : grid.patches_of(cut.row)) {
+    for (const int side : crossed_sides(patch, grid.direction_of(cut.row))) {
+      const int j = join_of_[to_size(side)];
+      if (j < 0) continue;
+      const Join& join = joins_[to_size(j)];
+      const auto own =
+          std::find_if(join.begin(), join.end(), [&](const Use& use) { return use.side == side; });
+      for (const Use& use : join) {
+        if (use.side == side) continue;
+        const int p = use.side / 4;
+        const bool along = along_v(all_sides[to_size(use.side % 4)]);
+        next.push_back({grid_of(p).row_of(p, along ? Direction::v : Direction::u),
+                        use.reversed == own->reversed ? cut.s : 1 - cut.s});
+      }
+    }
+  }
+}
+
+/// All of the crest's cuts or, if they cannot all be made, none.
+void CrestSplitter::add_with_continuations(const Cut& crest) {
+  std::vector<Cut> added;
+  std::vector<Cut> next = {crest};
+  while (!next.empty()) {
+    const Cut cut = next.back();
+    next.pop_back();
+    const std::vector<double>& there = cuts_[to_size(cut.row)];
+    if (std::any_of(there.begin(), there.end(),
+                    [&](double s) { return std::abs(s - cut.s) <= least_crest_share; })) {
+      continue;
+    }
+    if (!add(cut, added)) {
+      // The latest of a row's cuts stand at its end.
+      for (const Cut& a : added) cuts_[to_size(a.row)].pop_back();
+      return;
+    }
+    push_continuations(cut, next);
+  }
+}
+
+/// The ends of the parts into which cuts divide [0, 1].
+std::vector<double> with_ends(std::vector<double> cuts) {
+  cuts.insert(cuts.begin(), 0.0);
+  cuts.push_back(1.0);
+  return cuts;
+}
+
+void CrestSplitter::split_face(std::size_t f, std::vector<Patch>& result) const {
+  const FaceGrid& grid = grids_[f];
+  for (int i = 0; i < grid.count_u; ++i) {
+    const std::vector<double> u = with_ends(cuts_[to_size(grid.first_row + i)]);
+    for (std::size_t k = 0; k + 1 < u.size(); ++k) {
+      for (int j = 0; j < grid.count_v; ++j) {
+        const std::vector<double> v = with_ends(cuts_[to_size(grid.first_row + grid.count_u + j)]);
+        const Patch& whole = patches_[to_size(grid.patch(i, j))];
+        for (std::size_t l = 0; l + 1 < v.size(); ++l) {
+          Patch part = whole;
+          part.bezier = restricted(whole.bezier, {u[k], u[k + 1]}, {v[l], v[l + 1]});
+          part.u = {whole.u.at(u[k]), whole.u.at(u[k + 1])};
+          part.v = {whole.v.at(v[l]), whole.v.at(v[l + 1])};
+          result.push_back(std::move(part));
+        }
+      }
+    }
+  }
+}
+
+void CrestSplitter::split() {
+  std::vector<Patch> result;
+  result.reserve(patches_.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const int first = to_int(result.size());
+    split_face(f, result);
+    faces_[f].first_patch = first;
+    faces_[f].patch_count = to_int(result.size()) - first;
+  }
+  patches_ = std::move(result);
+}
+
+}  // namespace
+
+void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
+  CrestSplitter(faces, patches, box).run();
+}
+
+}  // namespace taut

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/surface/model.h"
+
+namespace taut {
+
+/// Splits patches along the crests inside of them, exactly, so that crests lie on borders alone.
+///
+/// A face is split along a whole row of its grid of patches, and so are those of other faces
+/// that a row ends at, as far as the row goes on: every side still meets whole ones. A crest from
+/// which the rows would wind without end, or that would leave strips as thin as what counts as one
+/// point, stays where it is.
+/// @pre every face's patches are a grid, v within u; rulings are found. The box contains them.
+void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
+
+}  // namespace taut
