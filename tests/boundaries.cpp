@@ -344,6 +344,10 @@ KnownBoundary half_torus_boundary(double R, double r) {
   return outer_torus_boundary({{revolved(profile)}, {}, {}}, R, r, HullCurveKind::edge);
 }
 
+KnownBoundary torus_boundary(double R, double r) {
+  return outer_torus_boundary(torus(R, r), R, r, HullCurveKind::bitangent);
+}
+
 namespace {
 
 /// Between two facets, along a segment between vertices.

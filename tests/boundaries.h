@@ -33,6 +33,9 @@ KnownBoundary cap_boundary(double height, const taut::dmat3& rotation = taut::dm
 /// The outer half of a torus, 1 patch, and the 2 facets that touch it along its rims.
 KnownBoundary half_torus_boundary(double R, double r);
 
+/// The same of all of it, with seams for the rims.
+KnownBoundary torus_boundary(double R, double r);
+
 /// z = x^2 + y^2 over [-1, 1]^2: 1 patch, 4 facets between a parabola and its chord, and a square.
 KnownBoundary paraboloid_boundary();
 

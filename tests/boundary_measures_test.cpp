@@ -743,14 +743,16 @@ TEST(BoundaryMeasures, SphericalCaps) {
 }
 
 /// Facets that a patch is tangent to: its border is no crease.
-TEST(BoundaryMeasures, HalfATorusAndItsDiscs) {
-  const BoundaryMeasures m = measured(half_torus_boundary(2, 0.5));
-  EXPECT_NEAR(m.volume / 18.02477159050215, 1, 1e-14);
-  EXPECT_NEAR(m.area / 48.01354268448686, 1, 1e-14);
-  // That of a disc of radius R, pi R / 2, and that of a ball.
-  EXPECT_NEAR(m.mean_width / (pi + 1), 1, 1e-14);
-  EXPECT_LT(glm::length(m.centroid), 1e-14);
-  EXPECT_LT(m.accuracy, 1e-13);
+TEST(BoundaryMeasures, TorusAndItsDiscs) {
+  for (const KnownBoundary& known : {half_torus_boundary(2, 0.5), torus_boundary(2, 0.5)}) {
+    const BoundaryMeasures m = measured(known);
+    EXPECT_NEAR(m.volume / 18.02477159050215, 1, 1e-14);
+    EXPECT_NEAR(m.area / 48.01354268448686, 1, 1e-14);
+    // That of a disc of radius R, pi R / 2, and that of a ball.
+    EXPECT_NEAR(m.mean_width / (pi + 1), 1, 1e-14);
+    EXPECT_LT(glm::length(m.centroid), 1e-14);
+    EXPECT_LT(m.accuracy, 1e-13);
+  }
 }
 
 /// A facet of one contact, whose side is a closed piece.

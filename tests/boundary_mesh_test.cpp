@@ -271,10 +271,12 @@ std::vector<KnownHull> hulls_with_curved_facets() {
                      {2 * pi * 0.6, pi * 0.6 * 1.4}});
   }
   const double discs = 2 * pi * 4;
-  hulls.push_back({"half torus",
-                   half_torus_boundary(2, 0.5),
-                   {18.02477159050215, 48.01354268448686},
-                   {48.01354268448686 - discs, discs / 2, discs / 2}});
+  for (const bool whole : {false, true}) {
+    hulls.push_back({whole ? "torus" : "half torus",
+                     whole ? torus_boundary(2, 0.5) : half_torus_boundary(2, 0.5),
+                     {18.02477159050215, 48.01354268448686},
+                     {48.01354268448686 - discs, discs / 2, discs / 2}});
+  }
   const double wall = 4.0 / 3;
   hulls.push_back({"paraboloid",
                    paraboloid_boundary(),

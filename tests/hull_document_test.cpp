@@ -222,6 +222,25 @@ TEST(HullDocument, CapClosedByItsDisc) {
   expect_round_trip(hull);
 }
 
+TEST(HullDocument, SidesAlongSeams) {
+  const HullDocument hull = document(torus_boundary(2, 0.5));
+  ASSERT_EQ(hull.sources.size(), 1U);
+  for (const std::size_t f : {1, 2}) {
+    const HullDocument::Face& disc = hull.faces[f];
+    EXPECT_EQ(disc.outline.size(), 1U);
+    for (const HullDocument::Contact& c : disc.contacts) {
+      EXPECT_EQ(c.uv.size(), 2U);
+      EXPECT_LE(error_of(hull, c), 1e-15);
+    }
+    expect_sides(hull, disc);
+  }
+  for (const HullDocument::Curve& curve : hull.curves) {
+    EXPECT_EQ(curve.kind, HullCurveKind::bitangent);
+    EXPECT_EQ(curve.source, -1);
+  }
+  expect_round_trip(hull);
+}
+
 TEST(HullDocument, FacetsOfTwoContacts) {
   const HullDocument hull = document(paraboloid_boundary());
   ASSERT_EQ(hull.faces.size(), 6U);

@@ -41,7 +41,7 @@ TEST(VerifyHull, ExactBoundariesPass) {
 TEST(VerifyHull, FacetsWithCurvedSidesPass) {
   for (const KnownBoundary& known :
        {cylinder_boundary(), cylinder_boundary(skew_rotation(), dvec3(3, -2, 1)), cap_boundary(0.6),
-        half_torus_boundary(2, 0.5), paraboloid_boundary()}) {
+        half_torus_boundary(2, 0.5), torus_boundary(2, 0.5), paraboloid_boundary()}) {
     const HullVerification found = verified(known);
     EXPECT_TRUE(found.is_hull(exact)) << found.euler << " " << found.uncovered;
     EXPECT_EQ(found.euler, 2);
