@@ -19,9 +19,24 @@ KnownBoundary tetrahedron_boundary(const taut::dvec3& shift = taut::dvec3(0.0));
 KnownBoundary two_spheres_boundary(const taut::dmat3& rotation = taut::dmat3(1.0),
                                    const taut::dvec3& shift = taut::dvec3(0.0));
 
-/// The lateral surface of a cylinder of radius 1 and height 2: 2 facets, 1 closed scroll on the
-/// surface, with contacts on its borders; the lower circle is two curves, the upper one a single
-/// closed one.
-KnownBoundary cylinder_boundary();
+/// The lateral surface of a cylinder of radius 1 and height 2: 2 facets bounded by circles, 1
+/// closed scroll on the surface, with contacts on its borders; the lower circle is two curves, the
+/// upper one a single closed one.
+KnownBoundary cylinder_boundary(const taut::dmat3& rotation = taut::dmat3(1.0),
+                                const taut::dvec3& shift = taut::dvec3(0.0));
+
+/// The part of the unit sphere above z = 1 - height, at most half of it: 1 patch, 1 facet bounded
+/// by its rim, an edge; no arcs.
+KnownBoundary cap_boundary(double height, const taut::dmat3& rotation = taut::dmat3(1.0),
+                           const taut::dvec3& shift = taut::dvec3(0.0));
+
+/// The outer half of a torus, 1 patch, and the 2 facets that touch it along its rims.
+KnownBoundary half_torus_boundary(double R, double r);
+
+/// The same of all of it, with seams for the rims.
+KnownBoundary torus_boundary(double R, double r);
+
+/// z = x^2 + y^2 over [-1, 1]^2: 1 patch, 4 facets between a parabola and its chord, and a square.
+KnownBoundary paraboloid_boundary();
 
 }  // namespace taut_test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <ostream>
 
 #include "models.h"
@@ -14,6 +15,7 @@ namespace {
 
 using taut::Contact;
 using taut::dvec2;
+using taut::EdgeStretch;
 using taut::FaceKind;
 using taut::HullBoundary;
 using taut::HullCurve;
@@ -102,6 +104,8 @@ class BoundaryCheck {
 
   BoundaryFacts run(int directions) {
     check_curves();
+    check_facet_outlines();
+    check_sides();
     check_regions();
     check_residuals();
     check_directions(directions);
@@ -172,6 +176,60 @@ class BoundaryCheck {
           const dvec3& end = direction > 0 ? curve.points.back() : curve.points.front();
           const dvec3& begin = next_direction > 0 ? next.points.front() : next.points.back();
           raise(facts_.loop_gap, glm::distance(end, begin));
+        }
+      }
+    }
+  }
+
+  void check_facet_outlines() {
+    std::vector<std::map<int, int>> balance(boundary_.faces.size());
+    std::vector<bool> has_curves(boundary_.faces.size(), false);
+    for (const HullCurve& curve : boundary_.curves) {
+      if (curve.points.empty()) continue;
+      for (const std::size_t k : {0, 1}) {
+        if (curve.faces[k] < 0) continue;
+        const auto f = std::size_t(curve.faces[k]);
+        has_curves[f] = true;
+        if (curve.closed) continue;
+        ++balance[f][vertex_number(k == 0 ? curve.points.front() : curve.points.back())];
+        --balance[f][vertex_number(k == 0 ? curve.points.back() : curve.points.front())];
+      }
+    }
+    for (std::size_t f = 0; f < boundary_.faces.size(); ++f) {
+      if (boundary_.faces[f].kind != FaceKind::facet) continue;
+      const bool closes = std::all_of(balance[f].begin(), balance[f].end(),
+                                      [](const auto& b) { return b.second == 0; });
+      if (!has_curves[f] || !closes) ++facts_.open_facets;
+    }
+  }
+
+  static bool is_curved(const EdgeStretch& side) { return side.piece >= 0; }
+
+  dvec3 point_on(const EdgeStretch& side, double s) const {
+    const double t = taut::Interval{side.from, side.to}.at(s);
+    return geometry_.point({side.instance, SourceKind::edge, side.piece, t, 0});
+  }
+
+  void check_sides() {
+    constexpr int parts = 8;
+    for (const HullFace& face : boundary_.faces) {
+      if (face.kind != FaceKind::facet) continue;
+      const std::size_t count = face.contacts.size();
+      const bool curved = std::any_of(face.sides.begin(), face.sides.end(), is_curved);
+      const bool fits = face.sides.empty() || face.sides.size() == count;
+      if (!fits || (count < 3 && !curved)) {
+        ++facts_.open_facets;
+        continue;
+      }
+      for (std::size_t k = 0; k < face.sides.size(); ++k) {
+        const EdgeStretch& side = face.sides[k];
+        if (!is_curved(side)) continue;
+        raise(facts_.side, glm::distance(point_on(side, 0), face.points.at(k)));
+        raise(facts_.side, glm::distance(point_on(side, 1), face.points.at((k + 1) % count)));
+        for (int i = 0; i <= parts; ++i) {
+          const dvec3 x = point_on(side, double(i) / parts);
+          raise(facts_.tie, glm::dot(x, face.n) - face.offset);
+          points_.push_back(x);
         }
       }
     }
@@ -277,6 +335,13 @@ class BoundaryCheck {
       for (const Contact& other : face.contacts) {
         const Contact own = geometry_.canonical(other);
         if (is_same(own) && std::abs(own.u - c.u) <= undecided) return true;
+      }
+      for (const EdgeStretch& side : face.sides) {
+        if (c.kind != SourceKind::edge || side.instance != c.instance || side.piece != c.element) {
+          continue;
+        }
+        const auto [low, high] = std::minmax(side.from, side.to);
+        if (low - undecided <= c.u && c.u <= high + undecided) return true;
       }
       for (const PatchRegion& region : face.regions) {
         if (region.instance == c.instance && borders_on(region, c)) return true;

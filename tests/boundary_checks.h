@@ -18,6 +18,9 @@ struct BoundaryFacts {
   int bare_scrolls = 0;   ///< scrolls that name no curve along a contact that is no vertex
   double loop_gap = 0;    ///< largest distance between consecutive curves of a patch's loop
   double region_gap = 0;  ///< the same of stretches of a region's outline, in (u, v)
+  /// Facets whose curves, with the facet to the left, do not begin as often in each point as they
+  /// end there, or whose sides are not as many as contacts, or bound nothing.
+  int open_facets = 0;
   /// V - E + sum of the faces' Euler characteristics; 2.
   long euler = 0;
   /// @}
@@ -26,7 +29,8 @@ struct BoundaryFacts {
   /// @{
   double point = 0;       ///< a contact's point as stored against the model's
   double stationary = 0;  ///< |dx/da . n| over the larger |dx/da|
-  double tie = 0;         ///< |(x_0 - x_1) . n|, of facets |x . n - offset|
+  double tie = 0;         ///< |(x_0 - x_1) . n|, of facets |x . n - offset|, along their sides too
+  double side = 0;        ///< distance of a facet's curved side's ends from its contacts
   double support = 0;     ///< |h(n) - x . n|
   taut::dvec3 worst_support = taut::dvec3(0.0);
   /// @}
@@ -52,9 +56,9 @@ struct BoundaryFacts {
   /// Nothing is wrong, to within these shares of the scene's size.
   bool sound(double residual = 1e-12, double gap = 1e-9) const {
     return open_curves == 0 && misplaced == 0 && bare_scrolls == 0 && loop_gap <= gap &&
-           region_gap <= gap && euler == 2 && point <= residual && stationary <= residual &&
-           tie <= residual && support <= residual && misses == 0 && overshoot <= residual &&
-           mismatches == 0 && flat == 0;
+           region_gap <= gap && open_facets == 0 && euler == 2 && point <= residual &&
+           stationary <= residual && tie <= residual && side <= residual && support <= residual &&
+           misses == 0 && overshoot <= residual && mismatches == 0 && flat == 0;
   }
 };
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "boundaries.h"
 #include "models.h"
 #include "reference.h"
 #include "taut/bounds/support_query.h"
@@ -694,6 +695,134 @@ TEST(BoundaryMeasures, TwistedCubic) {
   };
   EXPECT_NEAR(m.mean_width, mean_width_of(h, 1500), 1e-6);
   EXPECT_LT(m.accuracy, 1e-11);
+}
+
+BoundaryMeasures measured(const KnownBoundary& known) {
+  return measure(known.scene, ContactGeometry(known.scene), known.boundary);
+}
+
+dmat3 diagonal_matrix(double xx, double yy, double zz) { return {xx, 0, 0, 0, yy, 0, 0, 0, zz}; }
+
+TEST(BoundaryMeasures, Cylinder) {
+  const dmat3 R = skew_rotation();
+  const dvec3 shift(0.4, -2, 3);
+  const BoundaryMeasures m = measured(cylinder_boundary(R, shift));
+  EXPECT_NEAR(m.volume / (2 * pi), 1, 3e-15);
+  EXPECT_NEAR(m.area / (6 * pi), 1, 3e-15);
+  EXPECT_NEAR(m.mean_width / (1 + pi / 2), 1, 3e-15);
+  EXPECT_LT(glm::length(m.centroid - R * dvec3(0, 0, 1) - shift), 3e-15);
+  // m (3 r^2 + h^2) / 12 across and m r^2 / 2 along the axis.
+  expect_near(glm::transpose(R) * m.inertia * R, diagonal_matrix(7 * pi / 6, 7 * pi / 6, pi),
+              3e-14);
+  EXPECT_LT(m.accuracy, 1e-13);
+}
+
+/// Moments are those of the discs of radius^2 1 - z^2 from z = 1 - height to 1.
+TEST(BoundaryMeasures, SphericalCaps) {
+  for (const double h : {1.0, 0.6, 0.01}) {
+    SCOPED_TRACE(h);
+    const dmat3 R = skew_rotation();
+    const dvec3 shift(0.1, 0.7, -0.2);
+    const BoundaryMeasures m = measured(cap_boundary(h, R, shift));
+    const double volume = pi * h * h * (3 - h) / 3;
+    // Far thinner than wide, it is known to less.
+    const double exact = 1e-14 / h;
+    EXPECT_NEAR(m.volume / volume, 1, exact);
+    EXPECT_NEAR(m.area / (2 * pi * h + pi * h * (2 - h)), 1, exact);
+    // The rim's normals turn from the sphere's to -z.
+    const double angle = std::acos(h - 1);
+    const double curvature = 2 * pi * h + pi * std::sqrt(h * (2 - h)) * angle;
+    EXPECT_NEAR(m.mean_width / (curvature / (2 * pi)), 1, exact);
+    const double center = 3 * (2 - h) * (2 - h) / (4 * (3 - h));
+    EXPECT_LT(glm::length(m.centroid - R * dvec3(0, 0, center) - shift), exact);
+    // int r^4 / 2 dz, with r^4 = (1 - z^2)^2 written in 1 - z from 0 to h.
+    const double axial = pi / 2 * (4 * h * h * h / 3 - h * h * h * h + std::pow(h, 5) / 5);
+    EXPECT_NEAR((glm::transpose(R) * m.inertia * R)[2][2] / axial, 1, exact);
+    EXPECT_LT(m.accuracy, 1e-11);
+  }
+}
+
+/// Facets that a patch is tangent to: its border is no crease.
+TEST(BoundaryMeasures, TorusAndItsDiscs) {
+  for (const KnownBoundary& known : {half_torus_boundary(2, 0.5), torus_boundary(2, 0.5)}) {
+    const BoundaryMeasures m = measured(known);
+    EXPECT_NEAR(m.volume / 18.02477159050215, 1, 1e-14);
+    EXPECT_NEAR(m.area / 48.01354268448686, 1, 1e-14);
+    // That of a disc of radius R, pi R / 2, and that of a ball.
+    EXPECT_NEAR(m.mean_width / (pi + 1), 1, 1e-14);
+    EXPECT_LT(glm::length(m.centroid), 1e-14);
+    EXPECT_LT(m.accuracy, 1e-13);
+  }
+}
+
+/// A facet of one contact, whose side is a closed piece.
+TEST(BoundaryMeasures, DiscOfOneSide) {
+  // The unit circle by s = tan(angle / 4) from -1 to 1, a quartic, raised by one degree for
+  // positive weights; and a tip above.
+  const BezierCurve circle{{{-1, 0, 0, 1},
+                            {-0.2, -0.8, 0, 0.2},
+                            {0.6, -0.4, 0, 0.2},
+                            {0.6, 0.4, 0, 0.2},
+                            {-0.2, 0.8, 0, 0.2},
+                            {-1, 0, 0, 1}}};
+  const Stage stage(Shape{{}, {as_nurbs(circle)}, {{0, 0, 1}}});
+  ASSERT_EQ(stage.part().pieces().size(), 1U);
+  HullBoundary boundary;
+  SeparatingArc arc;
+  arc.closed = true;
+  ArcPiece piece;
+  const Contact tip = stage.at_vertex(dvec3(0, 0, 1));
+  constexpr int count = 32;
+  for (int k = 0; k <= count; ++k) {
+    const Contact c = stage.on_piece(0, double(k) / count);
+    const dvec3 x = stage.scene.frame().to_model(stage.geometry.point(c));
+    piece.rulings.push_back(stage.ruling({x.x, x.y, 1}, c, tip));
+  }
+  arc.pieces.push_back(piece);
+  boundary.arcs.push_back(arc);
+  HullFace cone;
+  cone.kind = FaceKind::scroll;
+  cone.scroll = {0, 0, 1};
+  HullFace disc;
+  disc.n = dvec3(0, 0, -1);
+  disc.contacts = {stage.on_piece(0, 1)};
+  disc.points = {stage.geometry.point(disc.contacts[0])};
+  disc.offset = glm::dot(disc.n, disc.points[0]);
+  disc.sides = {{0, 0, 1, 0}};
+  boundary.faces = {cone, disc};
+  const BoundaryMeasures m = stage.measured(boundary);
+  EXPECT_NEAR(m.volume / (pi / 3), 1, 1e-14);
+  EXPECT_NEAR(m.area / (pi + pi * std::numbers::sqrt2), 1, 1e-14);
+  // h(n) = max(n.z, sqrt(1 - n.z^2)) over the sphere.
+  EXPECT_NEAR(m.mean_width, 0.5 + 3 * pi / 8, 1e-14);
+  EXPECT_LT(glm::length(m.centroid - dvec3(0, 0, 0.25)), 1e-14);
+  EXPECT_LT(m.accuracy, 1e-12);
+}
+
+/// Simpson's rule.
+double integral(const std::function<double(double)>& f, double a, double b, int count) {
+  double sum = f(a) + f(b);
+  for (int k = 1; k < count; ++k) sum += (k % 2 == 1 ? 4 : 2) * f(a + (b - a) * k / count);
+  return sum * (b - a) / (3 * count);
+}
+
+TEST(BoundaryMeasures, ParaboloidWithItsWalls) {
+  const BoundaryMeasures m = measured(paraboloid_boundary());
+  EXPECT_NEAR(m.volume / (16.0 / 3), 1, 1e-14);
+  EXPECT_NEAR(m.area / 16.7795900563457, 1, 1e-14);
+  // int (4 - (x^2 + y^2)^2) / 2 over the square.
+  const double moment = 8 - 56.0 / 45;
+  EXPECT_LT(glm::length(m.centroid - dvec3(0, 0, moment / (16.0 / 3))), 1e-14);
+  const auto bend = [](double x) {
+    return integral([x](double y) { return 1 + 1 / (1 + 4 * x * x + 4 * y * y); }, -1, 1, 400);
+  };
+  const auto along_wall = [](double y) {
+    return std::acos(2 / std::sqrt(5 + 4 * y * y)) * std::sqrt(1 + 4 * y * y);
+  };
+  const double curvature = integral(bend, -1, 1, 400) + 4 * 0.5 * integral(along_wall, -1, 1, 400) +
+                           4 * 0.5 * pi / 2 * 2;
+  EXPECT_NEAR(m.mean_width / (curvature / (2 * pi)), 1, 1e-9);
+  EXPECT_LT(m.accuracy, 1e-12);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "boundaries.h"
 #include "boundary_checks.h"
 #include "hull_checks.h"
 #include "taut/hull/contact_system.h"
@@ -245,6 +246,87 @@ TEST(BoundaryMesh, TwoSpheres) {
   }
 }
 
+/// Closed forms of a boundary by hand, the areas per face of it.
+struct KnownHull {
+  const char* name;
+  KnownBoundary known;
+  Known measures;
+  std::vector<double> areas;
+};
+
+std::vector<KnownHull> hulls_with_curved_facets() {
+  const dmat3 R = skew_rotation();
+  const dvec3 shift(0.3, -1, 2);
+  std::vector<KnownHull> hulls;
+  for (const bool turned : {false, true}) {
+    const dmat3 pose = turned ? R : dmat3(1.0);
+    const dvec3 place = turned ? shift : dvec3(0.0);
+    hulls.push_back({"cylinder",
+                     cylinder_boundary(pose, place),
+                     {6.283185307179586, 18.84955592153876},
+                     {pi, pi, 4 * pi}});
+    hulls.push_back({"cap",
+                     cap_boundary(0.6, pose, place),
+                     {0.9047786842338605, 6.408849013323178},
+                     {2 * pi * 0.6, pi * 0.6 * 1.4}});
+  }
+  const double discs = 2 * pi * 4;
+  for (const bool whole : {false, true}) {
+    hulls.push_back({whole ? "torus" : "half torus",
+                     whole ? torus_boundary(2, 0.5) : half_torus_boundary(2, 0.5),
+                     {18.02477159050215, 48.01354268448686},
+                     {48.01354268448686 - discs, discs / 2, discs / 2}});
+  }
+  const double wall = 4.0 / 3;
+  hulls.push_back({"paraboloid",
+                   paraboloid_boundary(),
+                   {16.0 / 3, 16.7795900563457},
+                   {16.7795900563457 - 4 - 4 * wall, wall, wall, wall, wall, 4}});
+  return hulls;
+}
+
+/// Corners of the mesh's faces on facets lie in the facets' planes.
+double off_their_planes(const Scene& scene, const Hull& hull) {
+  double largest = 0;
+  for (const auto f : hull.mesh.faces()) {
+    const HullFace& face = hull.boundary->faces[std::size_t(hull.mesh.data(f).hull_face)];
+    if (face.kind != FaceKind::facet) continue;
+    for (const auto v : hull.mesh.fv_range(f)) {
+      const dvec3 x = scene.frame().to_frame(position(hull.mesh, v));
+      largest = std::max(largest, std::abs(glm::dot(face.n, x) - face.offset));
+    }
+  }
+  return largest;
+}
+
+TEST(BoundaryMesh, FacetsWithCurvedSides) {
+  for (const KnownHull& hull_of : hulls_with_curved_facets()) {
+    const Scene& scene = hull_of.known.scene;
+    const ContactGeometry geometry(scene);
+    const auto boundary = std::make_shared<const HullBoundary>(hull_of.known.boundary);
+    // Finer ones take long to check where patches are meshed.
+    const bool patches = boundary->count(FaceKind::patch) > 0;
+    for (const double tolerance : {1e-3, patches ? 2e-4 : 1e-5}) {
+      SCOPED_TRACE(testing::Message() << hull_of.name << " at " << tolerance);
+      std::vector<Sample> strays;
+      const Hull hull =
+          boundary_mesh(scene, geometry, boundary,
+                        {.relative = tolerance, .threads = 1, .progress = {}}, &strays);
+      expect_certified(scene, hull, tolerance, hull_of.measures, 300);
+      expect_labelled(hull);
+      EXPECT_TRUE(strays.empty());
+      EXPECT_LT(off_their_planes(scene, hull), 1e-14);
+      const std::map<int, double> found = areas(hull);
+      EXPECT_EQ(found.size(), hull_of.areas.size());
+      for (const auto& [face, area] : found) {
+        // What the chords of its outline cut off.
+        const double slack = 10 * hull.distance_bound * scene.diagonal();
+        EXPECT_NEAR(area, hull_of.areas.at(std::size_t(face)), slack) << face;
+      }
+    }
+  }
+}
+
 TEST(BoundaryMesh, WholeEllipsoid) {
   const Scene scene = make_scene(ellipsoid(3, 2, 1));
   const ContactGeometry geometry(scene);
@@ -358,6 +440,49 @@ TEST(BoundaryChecks, WholeEllipsoidIsSound) {
   hull.boundary = whole_surface(geometry, dvec3(0.0), 8);
   const BoundaryFacts facts = boundary_facts(scene, hull, 300);
   EXPECT_TRUE(facts.sound()) << facts;
+}
+
+TEST(BoundaryChecks, FacetsWithCurvedSidesAreSound) {
+  for (const KnownHull& hull_of : hulls_with_curved_facets()) {
+    Hull hull;
+    hull.boundary = std::make_shared<const HullBoundary>(hull_of.known.boundary);
+    const BoundaryFacts facts = boundary_facts(hull_of.known.scene, hull, 300);
+    EXPECT_TRUE(facts.sound()) << hull_of.name << ": " << facts;
+  }
+}
+
+TEST(BoundaryChecks, FindWhatIsWrongWithSides) {
+  const auto facts_of = [](KnownBoundary known, auto change) {
+    change(known.boundary);
+    Hull hull;
+    hull.boundary = std::make_shared<const HullBoundary>(std::move(known.boundary));
+    return boundary_facts(known.scene, hull, 10);
+  };
+  const auto none = [](HullBoundary&) {};
+  EXPECT_EQ(facts_of(cap_boundary(0.6), none).open_facets, 0);
+  EXPECT_EQ(
+      facts_of(cap_boundary(0.6), [](HullBoundary& b) { b.faces[1].sides.pop_back(); }).open_facets,
+      1);
+  EXPECT_EQ(facts_of(cap_boundary(0.6),
+                     [](HullBoundary& b) {
+                       b.curves[0].faces = {0, 0};
+                     })
+                .open_facets,
+            1);
+  EXPECT_EQ(facts_of(paraboloid_boundary(), [](HullBoundary& b) { b.faces[2].sides.clear(); })
+                .open_facets,
+            1);
+  EXPECT_EQ(facts_of(paraboloid_boundary(), [](HullBoundary& b) { b.curves[1].faces[1] = 0; })
+                .open_facets,
+            1);
+  EXPECT_GT(facts_of(cap_boundary(0.6), [](HullBoundary& b) { b.faces[1].sides[2].to = 0.1; }).side,
+            0.01);
+  EXPECT_GT(facts_of(cap_boundary(0.6),
+                     [](HullBoundary& b) {
+                       b.faces[1].n = unit({0, 0.1, -1});
+                     })
+                .tie,
+            0.01);
 }
 
 TEST(BoundaryChecks, FindFlatPatches) {

@@ -51,6 +51,26 @@ double error_of(const HullDocument& hull, const HullDocument::Contact& c) {
   return double(glm::length(rebuilt(hull, c) - rvec3(c.p))) / hull.diagonal;
 }
 
+/// The sides of a facet lead from contact to contact within its plane.
+void expect_sides(const HullDocument& hull, const HullDocument::Face& facet) {
+  ASSERT_EQ(facet.sides.size(), facet.contacts.size());
+  for (std::size_t k = 0; k < facet.sides.size(); ++k) {
+    const HullDocument::Side& side = facet.sides[k];
+    if (side.source < 0) continue;
+    const dvec3& begin = facet.contacts[k].p;
+    const dvec3& end = facet.contacts[(k + 1) % facet.contacts.size()].p;
+    EXPECT_LE(error_of(hull, {side.source, side.from, begin}), 1e-15);
+    EXPECT_LE(error_of(hull, {side.source, side.to, end}), 1e-15);
+    std::vector<double> between;
+    for (std::size_t i = 0; i < side.from.size(); ++i) {
+      between.push_back(0.3 * side.from[i] + 0.7 * side.to[i]);
+    }
+    const dvec3 x(rebuilt(hull, {side.source, between, dvec3(0.0)}));
+    EXPECT_NEAR(glm::dot(x, facet.normal), facet.offset, 1e-15);
+    EXPECT_LT(glm::dot(glm::cross(end - begin, x - begin), facet.normal), 0) << "to the right";
+  }
+}
+
 /// Through both encodings: the same text, and the same bytes once written again (zeros of a report
 /// may have become integers).
 void expect_round_trip(const HullDocument& hull) {
@@ -179,7 +199,65 @@ TEST(HullDocument, Cylinder) {
       area += 0.5 * glm::cross(facet.boundary[i], facet.boundary[(i + 1) % 64]);
     }
     EXPECT_NEAR(glm::dot(area, facet.normal), 3.14, 0.01);
+    EXPECT_EQ(facet.sides.size(), 4U);
+    expect_sides(hull, facet);
   }
+  expect_round_trip(hull);
+}
+
+TEST(HullDocument, CapClosedByItsDisc) {
+  const HullDocument hull = document(cap_boundary(0.6));
+  ASSERT_EQ(hull.faces.size(), 2U);
+  ASSERT_EQ(hull.curves.size(), 1U);
+  EXPECT_EQ(hull.curves[0].faces, (std::array<int, 2>{0, 1}));
+  EXPECT_EQ(hull.sources[std::size_t(hull.curves[0].source)].kind, SourceKind::edge);
+  using Curves = std::vector<HullDocument::DirectedCurve>;
+  EXPECT_EQ(hull.faces[0].loops.at(0).curves, (Curves{{0, 1}}));
+  const HullDocument::Face& disc = hull.faces[1];
+  EXPECT_EQ(disc.outline, (Curves{{0, -1}}));
+  EXPECT_EQ(disc.contacts.size(), 4U);
+  EXPECT_EQ(disc.boundary.size(), 64U);
+  EXPECT_NEAR(disc.offset, -0.4, 1e-15);
+  expect_sides(hull, disc);
+  expect_round_trip(hull);
+}
+
+TEST(HullDocument, SidesAlongSeams) {
+  const HullDocument hull = document(torus_boundary(2, 0.5));
+  ASSERT_EQ(hull.sources.size(), 1U);
+  for (const std::size_t f : {1, 2}) {
+    const HullDocument::Face& disc = hull.faces[f];
+    EXPECT_EQ(disc.outline.size(), 1U);
+    for (const HullDocument::Contact& c : disc.contacts) {
+      EXPECT_EQ(c.uv.size(), 2U);
+      EXPECT_LE(error_of(hull, c), 1e-15);
+    }
+    expect_sides(hull, disc);
+  }
+  for (const HullDocument::Curve& curve : hull.curves) {
+    EXPECT_EQ(curve.kind, HullCurveKind::bitangent);
+    EXPECT_EQ(curve.source, -1);
+  }
+  expect_round_trip(hull);
+}
+
+TEST(HullDocument, FacetsOfTwoContacts) {
+  const HullDocument hull = document(paraboloid_boundary());
+  ASSERT_EQ(hull.faces.size(), 6U);
+  for (std::size_t f = 1; f < 5; ++f) {
+    const HullDocument::Face& wall = hull.faces[f];
+    EXPECT_EQ(wall.contacts.size(), 2U);
+    EXPECT_EQ(wall.outline.size(), 2U);
+    EXPECT_EQ(wall.boundary.size(), 17U);
+    expect_sides(hull, wall);
+    EXPECT_GE(wall.sides[0].source, 0);
+    EXPECT_EQ(wall.sides[1].source, -1);
+    const HullDocument back =
+        read_hull(to_document(hull, DocumentEncoding::cbor), "f", DocumentEncoding::cbor);
+    EXPECT_EQ(back.faces[f].sides[0].to, wall.sides[0].to);
+    EXPECT_EQ(back.faces[f].sides[1].source, -1);
+  }
+  EXPECT_TRUE(hull.faces[5].sides.empty());
   expect_round_trip(hull);
 }
 
@@ -283,14 +361,17 @@ TEST_F(HullDocumentFile, IsWrittenWholeOrNotAtAll) {
   EXPECT_EQ(file_count(), 3U);
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  return at == text.npos ? text : text.replace(at, from.size(), to);
+}
+
 /// The document of two spheres with a piece of its text replaced.
 std::string damaged(const std::string& from, const std::string& to) {
   static const std::string whole =
       to_document(document(two_spheres_boundary()), DocumentEncoding::json);
-  std::string text = whole;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, text.npos) << from;
-  return at == text.npos ? text : text.replace(at, from.size(), to);
+  return replaced(whole, from, to);
 }
 
 TEST(HullDocument, WhatIsWrongIsSaidWithItsPlace) {
@@ -335,6 +416,17 @@ TEST(HullDocument, WhatIsWrongIsSaidWithItsPlace) {
     const std::string message = c.io ? message_of<IoError>(read) : message_of<InvalidInput>(read);
     EXPECT_TRUE(message.starts_with(c.message)) << c.to << ": " << message;
   }
+  const std::string walls = to_document(document(paraboloid_boundary()), DocumentEncoding::json);
+  const auto read_walls = [&](const char* from, const char* to) {
+    read_hull(replaced(walls, from, to), "f", DocumentEncoding::json);
+  };
+  const std::string two = message_of<IoError>([&] { read_walls("\"to\": [", "\"to\": [0, "); });
+  EXPECT_TRUE(two.starts_with("f: faces[1].sides[0].to: 2 elements where 1")) << two;
+  const std::string key = message_of<IoError>([&] { read_walls("\"from\": [", "\"of\": ["); });
+  EXPECT_TRUE(key.starts_with("f: faces[1].sides[0]")) << key;
+  const std::string few =
+      message_of<IoError>([&] { read_walls("\"sides\": [", "\"sides\": [null, "); });
+  EXPECT_TRUE(few.starts_with("f: faces[1].sides: 3 elements where 2")) << few;
   // Missing faces are no error, and sides may have several curves.
   read_hull(damaged("\"faces\": [2, 0]", "\"faces\": [2, -1]"), "f", DocumentEncoding::json);
   const HullDocument several = read_hull(

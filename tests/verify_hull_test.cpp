@@ -38,9 +38,30 @@ TEST(VerifyHull, ExactBoundariesPass) {
   }
 }
 
-TEST(VerifyHull, FacetsWithinCirclesPass) {
-  const HullVerification found = verified(cylinder_boundary());
-  EXPECT_TRUE(found.is_hull(exact)) << found.euler << " " << found.uncovered;
+TEST(VerifyHull, FacetsWithCurvedSidesPass) {
+  for (const KnownBoundary& known :
+       {cylinder_boundary(), cylinder_boundary(skew_rotation(), dvec3(3, -2, 1)), cap_boundary(0.6),
+        half_torus_boundary(2, 0.5), torus_boundary(2, 0.5), paraboloid_boundary()}) {
+    const HullVerification found = verified(known);
+    EXPECT_TRUE(found.is_hull(exact)) << found.euler << " " << found.uncovered;
+    EXPECT_EQ(found.euler, 2);
+  }
+}
+
+TEST(VerifyHull, DamagedSidesAreFound) {
+  const KnownBoundary known = cap_boundary(0.6);
+  const auto damaged = [&](auto damage) {
+    HullDocument hull = hull_document(known.scene, known.boundary);
+    damage(hull.faces[1].sides[1]);
+    return verify(hull, known.scene, quick());
+  };
+  EXPECT_GT(damaged([](HullDocument::Side& side) { side.to = side.from; }).off_source, 0.1);
+  EXPECT_GT(damaged([](HullDocument::Side& side) { side.from[0] = -1; }).off_source, 0.1);
+  EXPECT_GT(damaged([](HullDocument::Side& side) {
+              side.source = 0;
+              side.from = side.to = {0.5, 0.5};
+            }).flatness,
+            0.1);
 }
 
 TEST(VerifyHull, PolyhedralHullsPass) {

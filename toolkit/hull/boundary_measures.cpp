@@ -327,6 +327,11 @@ class RulingInterval {
   RulingPolynomial polynomial_;
 };
 
+/// The contact at a share of the way along a stretch of an edge.
+Contact contact_on(const EdgeStretch& side, double s) {
+  return {side.instance, SourceKind::edge, side.piece, Interval{side.from, side.to}.at(s), 0};
+}
+
 /// The integrals over a whole boundary, in the scene's frame.
 class Summation {
  public:
@@ -358,8 +363,11 @@ class Summation {
   double base(const PatchRegion& region) const;
 
   void add_piece(std::size_t arc, std::size_t piece);
+  bool bounds_normals(const Region& region, const TrimStretch& stretch) const;
   void add_border(const Region& region, const TrimStretch& stretch);
   void add_facet(const HullFace& face);
+  void add_polygon(const HullFace& face);
+  void add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side);
 
   void add_scroll(const Moving& m, Sample& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
@@ -393,6 +401,11 @@ dvec3 Summation::interior_point() const {
   }
   for (const HullFace& face : boundary_.faces) {
     for (const dvec3& x : face.points) add(x);
+    // A disc's one contact spans nothing.
+    for (const EdgeStretch& side : face.sides) {
+      if (side.piece < 0) continue;
+      for (const double s : {0.25, 0.5, 0.75}) add(geometry_.point(contact_on(side, s)));
+    }
     for (const PatchRegion& region : face.regions) {
       for (const std::vector<TrimStretch>& loop : region.loops) {
         for (const TrimStretch& stretch : loop) {
@@ -555,13 +568,23 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
   }
 }
 
+/// Whether the stretch runs along an edge, or along a seam at which another face ends: contacts
+/// there are the edge's, and so the other face's share is that of an edge.
+bool Summation::bounds_normals(const Region& region, const TrimStretch& stretch) const {
+  if (stretch.curve < 0) return false;
+  const HullCurveKind kind = boundary_.curves[std::size_t(stretch.curve)].kind;
+  if (kind != HullCurveKind::bitangent) return kind == HullCurveKind::edge;
+  const Contact c = region.contact(0, 0);
+  const Patch& patch = geometry_.part(c).patches()[std::size_t(c.element)];
+  return patch.borders[std::size_t(stretch.side)].piece >= 0;
+}
+
 /// Along a stretch of a patch's border, and where that is an edge, its crease: the normals of the
 /// edge lie beyond the patch's own n, away from the patch. With the patch to the left of the
 /// direction T of travel seen from outside (positive sign), they have larger phi: its lower end.
 void Summation::add_border(const Region& region, const TrimStretch& stretch) {
   const bool of_v = along_v(stretch.side);
-  const bool edge = stretch.curve >= 0 &&
-                    boundary_.curves[std::size_t(stretch.curve)].kind == HullCurveKind::edge;
+  const bool edge = bounds_normals(region, stretch);
   if (!of_v && !edge) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
   const auto f = [&](double t, double weight, Sample& sample) {
@@ -577,9 +600,38 @@ void Summation::add_border(const Region& region, const TrimStretch& stretch) {
   integrate<16>(f, tolerances, stretch.from, stretch.to, sums_);
 }
 
+/// The polygon of its contacts and what lies between this one's sides and the curved ones.
+void Summation::add_facet(const HullFace& face) {
+  add_polygon(face);
+  for (std::size_t k = 0; k < face.sides.size(); ++k) {
+    if (face.sides[k].piece >= 0) add_side(face, face.points[k], face.sides[k]);
+  }
+}
+
+/// The segment between a curved side and its chord, as the triangles between neighbouring rays from
+/// where the side begins: begin + r (x - begin) has the area element r (x - begin) x dx/dt dr dt.
+/// Two nodes in r are exact for its third degree. Of the side's normals the facet's own is the
+/// lower end, as add_border() has it.
+void Summation::add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side) {
+  const dvec3 tip = begin - origin_;
+  const double sense = side.to < side.from ? -1 : 1;
+  const double offset = std::sqrt(1.0 / 12);
+  const auto f = [&](double t, double, Sample& sample) {
+    const ContactJet j = geometry_.jet({side.instance, SourceKind::edge, side.piece, t, 0});
+    const dvec3 ray = j.x - begin;
+    const dvec3 element = glm::cross(ray, j.dx[0]);
+    for (const double r : {0.5 - offset, 0.5 + offset}) {
+      const dvec3 A = r * element;
+      add_element(sample, tip + r * ray, A, glm::dot(A, face.n), 0.5);
+    }
+    sample[curvature] -= sense * crease(j.x, sense * j.dx[0], face.n);
+  };
+  integrate<16>(f, tolerances, side.from, side.to, sums_);
+}
+
 /// A plane polygon, by the tetrahedra over a fan of triangles with the interior point as tip: the
 /// integral of x_i x_j over one is det / 120 ((sum of x)_i (sum of x)_j + sum of x_i x_j).
-void Summation::add_facet(const HullFace& face) {
+void Summation::add_polygon(const HullFace& face) {
   using Vector = glm::vec<3, long double>;
   const auto at = [&](std::size_t k) {
     return Vector(face.points[k % face.points.size()]) - Vector(origin_);

@@ -104,9 +104,18 @@ void ContactFaces::add_arcs() {
   }
 }
 
+void ContactFaces::add_stretch(const EdgeStretch& stretch, int face) {
+  const auto [low, high] = std::minmax(stretch.from, stretch.to);
+  stretches_.push_back({stretch.instance, stretch.piece, low, high, {face, 0}});
+}
+
 void ContactFaces::add_facets() {
   for (int f = 0; f < int(boundary_.faces.size()); ++f) {
-    for (const Contact& c : boundary_.faces[std::size_t(f)].contacts) add_corner(c, {f, 0});
+    const HullFace& face = boundary_.faces[std::size_t(f)];
+    for (const Contact& c : face.contacts) add_corner(c, {f, 0});
+    for (const EdgeStretch& side : face.sides) {
+      if (side.piece >= 0) add_stretch(side, f);
+    }
   }
 }
 
@@ -125,14 +134,9 @@ void ContactFaces::add_border(const PatchRegion& region, int face, const TrimStr
     if (f < 0) continue;
     add_corner(contact(stretch.from), {f, 0});
     add_corner(contact(stretch.to), {f, 0});
-    if (border.kind != BorderKind::edge || border.piece < 0) continue;
-    const auto [low, high] = std::minmax(stretch.from, stretch.to);
-    const bool reversed = border.piece_reversed;
-    stretches_.push_back({region.instance,
-                          border.piece,
-                          reversed ? 1 - high : low,
-                          reversed ? 1 - low : high,
-                          {f, 0}});
+    if (border.piece < 0) continue;
+    const auto along = [&](double t) { return border.piece_reversed ? 1 - t : t; };
+    add_stretch({region.instance, border.piece, along(stretch.from), along(stretch.to)}, f);
   }
 }
 
@@ -205,13 +209,27 @@ TouchedFaces ContactFaces::on_patch(const Contact& c) const {
   const dvec2 uv(c.u, c.v);
   for (const Side side : all_sides) {
     const Border& border = patches[std::size_t(c.element)].borders[std::size_t(side)];
-    if (!lies_on(uv, side) || border.kind != BorderKind::smooth || border.neighbor < 0) continue;
+    if (!lies_on(uv, side) || border.kind != BorderKind::smooth) continue;
     const double t = along_v(side) ? c.v : c.u;
+    if (border.piece >= 0) {
+      touch_stretches(c.instance, border.piece, border.piece_reversed ? 1 - t : t, faces);
+    }
+    if (border.neighbor < 0) continue;
     touch_regions(c.instance, border.neighbor,
                   on_side(border.neighbor_side, border.reversed ? 1 - t : t), true, faces);
   }
   touch_regions(c.instance, c.element, uv, !faces.empty(), faces);
   return faces;
+}
+
+void ContactFaces::touch_stretches(int instance, int piece, double t, TouchedFaces& faces) const {
+  const auto place = std::pair(instance, piece);
+  const auto before = [](const Stretch& s) { return std::pair(s.instance, s.piece); };
+  auto s = std::lower_bound(stretches_.begin(), stretches_.end(), place,
+                            [&](const Stretch& a, const auto& p) { return before(a) < p; });
+  for (; s != stretches_.end() && before(*s) == place; ++s) {
+    if (s->from <= t && t <= s->to) touch(faces, s->face);
+  }
 }
 
 TouchedFaces ContactFaces::touched(const Contact& contact) const {
@@ -221,12 +239,7 @@ TouchedFaces ContactFaces::touched(const Contact& contact) const {
   TouchedFaces faces;
   const auto place = std::pair(c.instance, c.element);
   if (c.kind == SourceKind::edge) {
-    auto s = std::lower_bound(
-        stretches_.begin(), stretches_.end(), place,
-        [](const Stretch& a, const auto& p) { return std::pair(a.instance, a.piece) < p; });
-    for (; s != stretches_.end() && std::pair(s->instance, s->piece) == place; ++s) {
-      if (s->from <= c.u && c.u <= s->to) touch(faces, s->face);
-    }
+    touch_stretches(c.instance, c.element, c.u, faces);
   } else {
     auto s = std::lower_bound(
         corners_.begin(), corners_.end(), place,

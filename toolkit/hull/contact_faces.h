@@ -38,7 +38,7 @@ class ContactFaces {
 
   /// The faces that a point of the hull touches as far as its contact tells: inside a patch the
   /// one of its regions that holds the contact or, within what the outlines' chords leave open,
-  /// comes nearest; on edges and smooth borders both sides' faces, at vertices all. None if
+  /// comes nearest; on edges, seams and smooth borders both sides' faces, at vertices all. None if
   /// nothing is known. Of curves inside patches the contact does not tell.
   TouchedFaces touched(const Contact& contact) const;
 
@@ -52,7 +52,7 @@ class ContactFaces {
     int face;
     std::vector<std::vector<dvec2>> outline;  // in (u, v), as polygons
   };
-  /// A face along part of an edge's piece.
+  /// A face along part of an edge's or seam's piece.
   struct Stretch {
     int instance, piece;
     double from, to;
@@ -68,10 +68,12 @@ class ContactFaces {
   void add_facets();
   void add_border(const PatchRegion& region, int face, const TrimStretch& stretch);
   void add_corner(const Contact& contact, const TouchedFace& face);
+  void add_stretch(const EdgeStretch& stretch, int face);
   void add_to_outline(const PatchRegion& region, const TrimStretch& stretch,
                       std::vector<dvec2>& outline) const;
   void touch_regions(int instance, int patch, const dvec2& uv, bool inside_only,
                      TouchedFaces& faces) const;
+  void touch_stretches(int instance, int piece, double t, TouchedFaces& faces) const;
   TouchedFaces on_patch(const Contact& c) const;
   double deepest(int instance, int patch, const dvec2& uv) const;
 

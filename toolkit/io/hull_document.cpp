@@ -42,6 +42,10 @@ SourceContact place_of(const Scene& scene, const Contact& c) {
   return made(patch.face, patch.u.at(c.u), patch.v.at(c.v));
 }
 
+Contact on_edge(const EdgeStretch& side, double t) {
+  return {side.instance, SourceKind::edge, side.piece, t, 0};
+}
+
 /// A stretch of a patch's outline, in the direction in which the hull's outlines run: with the
 /// patch to the left seen from outside.
 struct Stretch {
@@ -69,6 +73,7 @@ class DocumentMaker {
   void for_each_piece(const ArcRange& range, Visit visit) const;
   void collect_sources();
   HullDocument::Contact contact(const Contact& c, const dvec3& point) const;
+  HullDocument::Side side(const EdgeStretch& stretch) const;
   dvec2 uv(const Contact& c) const;
   /// The contacts along a stretch of a region's outline, as it is directed there.
   std::vector<Contact> contacts(const PatchRegion& region, const TrimStretch& stretch) const;
@@ -134,6 +139,9 @@ void DocumentMaker::collect_sources() {
   for (const HullFace& face : boundary_.faces) {
     sources_.add(face.source);
     for (const Contact& c : face.contacts) add(c);
+    for (const EdgeStretch& side : face.sides) {
+      if (side.piece >= 0) add(on_edge(side, side.from));
+    }
     if (face.kind != FaceKind::scroll) continue;
     for_each_piece(face.scroll, [&](const ArcPiece& piece) {
       for (const Ruling& r : piece.rulings) {
@@ -151,6 +159,13 @@ HullDocument::Contact DocumentMaker::contact(const Contact& c, const dvec3& poin
   if (place.kind == SourceKind::face) result.uv = {place.u, place.v};
   if (place.kind == SourceKind::edge) result.uv = {place.u};
   return result;
+}
+
+HullDocument::Side DocumentMaker::side(const EdgeStretch& stretch) const {
+  if (stretch.piece < 0) return {};
+  const HullDocument::Contact from = contact(on_edge(stretch, stretch.from), dvec3(0.0));
+  const HullDocument::Contact to = contact(on_edge(stretch, stretch.to), dvec3(0.0));
+  return {from.source, from.uv, to.uv};
 }
 
 dvec2 DocumentMaker::uv(const Contact& c) const {
@@ -294,6 +309,8 @@ void DocumentMaker::make_facet(int index, HullDocument::Face& result) const {
   for (std::size_t i = 0; i < face.contacts.size(); ++i) {
     result.contacts.push_back(contact(face.contacts[i], face.points[i]));
   }
+  result.sides.reserve(face.sides.size());
+  for (const EdgeStretch& stretch : face.sides) result.sides.push_back(side(stretch));
   result.outline = facet_outline(index);
   if (result.outline.empty()) {
     result.boundary = to_model(face.points);

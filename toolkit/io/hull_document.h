@@ -49,6 +49,12 @@ struct HullDocument {
     dvec3 n = dvec3(0.0);
     Contact a, b;
   };
+  /// A curve within one of a source's Bezier patches, along which the source's parameters run
+  /// straight from one place to another; source -1: a segment.
+  struct Side {
+    int source = -1;
+    std::vector<double> from, to;
+  };
   /// A curve's number, and +1 if passed along it, -1 if against it.
   using DirectedCurve = std::pair<int, int>;
   /// An outline of a patch, seen from outside with the patch to the left.
@@ -84,6 +90,10 @@ struct HullDocument {
     double offset = 0;
     /// facet: counter-clockwise from outside.
     std::vector<Contact> contacts;
+    /// facet: per contact the side from it to the next one (the same one again where there is but
+    /// one): along an edge, or where it is a seam, along a border of a patch. Empty where all are
+    /// segments.
+    std::vector<Side> sides;
     /// facet: its outline as curves, the facet to the left seen from outside; none where curves are
     /// missing.
     std::vector<DirectedCurve> outline;

@@ -91,6 +91,9 @@ class HullReader {
   void read_scroll(const DocumentNode& node, HullDocument::Face& face) const;
   void read_facet(const DocumentNode& node, HullDocument::Face& face) const;
   HullDocument::Contact read_contact(const DocumentNode& node) const;
+  /// A source's parameters.
+  std::vector<double> read_place(const DocumentNode& list, int source) const;
+  HullDocument::Side read_facet_side(const DocumentNode& node) const;
   HullDocument::Curve read_curve(const DocumentNode& node) const;
   std::vector<HullDocument::DirectedCurve> read_curves(const DocumentNode& list) const;
   std::vector<int> read_side(const DocumentNode& node) const;
@@ -260,13 +263,19 @@ void HullReader::read_scroll(const DocumentNode& node, HullDocument::Face& face)
 }
 
 void HullReader::read_facet(const DocumentNode& node, HullDocument::Face& face) const {
-  node.expect_keys("facet",
-                   {"id", "kind", "source", "normal", "offset", "contacts", "curves", "boundary"});
+  node.expect_keys("facet", {"id", "kind", "source", "normal", "offset", "contacts", "sides",
+                             "curves", "boundary"});
   face.normal = node.at("normal").vector();
   face.offset = node.at("offset").number();
   const DocumentNode contacts = node.at("contacts");
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     face.contacts.push_back(read_contact(contacts[i]));
+  }
+  if (const auto sides = node.find("sides")) {
+    sides->expect_size(face.contacts.size());
+    for (std::size_t i = 0; i < sides->size(); ++i) {
+      face.sides.push_back(read_facet_side((*sides)[i]));
+    }
   }
   if (const auto curves = node.find("curves")) face.outline = read_curves(*curves);
   face.boundary = read_points(node.at("boundary"));
@@ -276,11 +285,27 @@ HullDocument::Contact HullReader::read_contact(const DocumentNode& node) const {
   node.expect_keys("contact", {"source", "uv", "p"});
   HullDocument::Contact contact;
   contact.source = reference(node.at("source"), sources_, "source");
-  const DocumentNode uv = node.at("uv");
-  uv.expect_size(2 - std::size_t(hull_.sources[std::size_t(contact.source)].kind));
-  for (std::size_t i = 0; i < uv.size(); ++i) contact.uv.push_back(uv[i].number());
+  contact.uv = read_place(node.at("uv"), contact.source);
   contact.p = node.at("p").vector();
   return contact;
+}
+
+std::vector<double> HullReader::read_place(const DocumentNode& list, int source) const {
+  list.expect_size(2 - std::size_t(hull_.sources[std::size_t(source)].kind));
+  std::vector<double> parameters;
+  for (std::size_t i = 0; i < list.size(); ++i) parameters.push_back(list[i].number());
+  return parameters;
+}
+
+HullDocument::Side HullReader::read_facet_side(const DocumentNode& node) const {
+  if (node.is_null()) return {};
+  node.expect_keys("side", {"source", "from", "to"});
+  HullDocument::Side side;
+  side.source = reference(node.at("source"), sources_, "source");
+  side.from = read_place(node.at("from"), side.source);
+  side.to = read_place(node.at("to"), side.source);
+  if (side.from.empty()) node.at("source").refuse("a vertex has no curves");
+  return side;
 }
 
 HullDocument::Curve HullReader::read_curve(const DocumentNode& node) const {

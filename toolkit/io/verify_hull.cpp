@@ -46,6 +46,7 @@ class HullVerifier {
  private:
   std::vector<SourceJet> jets(const HullDocument::Contact& c) const;
   void check_contact(const HullDocument::Contact& c, const dvec3& n);
+  void check_side(const HullDocument::Face& facet, std::size_t k);
   void check_geometry();
   void check_support();
   void check_cover();
@@ -154,6 +155,30 @@ void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n)
   raise(result_.tangency, slope);
 }
 
+/// The side runs from its contact to the next one and in the facet's plane.
+void HullVerifier::check_side(const HullDocument::Face& facet, std::size_t k) {
+  constexpr int parts = 4;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const HullDocument::Side& side = facet.sides[k];
+  if (side.source < 0) return;
+  for (int i = 0; i <= parts; ++i) {
+    HullDocument::Contact c = {side.source, {}, dvec3(0.0)};
+    for (std::size_t p = 0; p < side.from.size(); ++p) {
+      c.uv.push_back(Interval{side.from[p], side.to[p]}.at(double(i) / parts));
+    }
+    const std::vector<SourceJet> found = jets(c);
+    if (found.empty()) {
+      raise(result_.off_source, infinity);
+      return;
+    }
+    const dvec3& x = found[0].x;
+    raise(result_.flatness, relative(glm::dot(x, facet.normal) - facet.offset));
+    if (i > 0 && i < parts) continue;
+    const std::size_t end = (k + (i == 0 ? 0 : 1)) % facet.contacts.size();
+    raise(result_.off_source, relative(glm::distance(x, facet.contacts[end].p)));
+  }
+}
+
 void HullVerifier::check_geometry() {
   for (const HullDocument::Face& face : hull_.faces) {
     for (const HullDocument::Ruling& r : face.rulings) {
@@ -166,6 +191,7 @@ void HullVerifier::check_geometry() {
       check_contact(c, face.normal);
       raise(result_.flatness, relative(glm::dot(c.p, face.normal) - face.offset));
     }
+    for (std::size_t k = 0; k < face.sides.size(); ++k) check_side(face, k);
     for (const dvec3& p : face.boundary) {
       raise(result_.flatness, relative(glm::dot(p, face.normal) - face.offset));
     }

@@ -28,6 +28,7 @@ class HullWriter {
   void write(const HullDocument::Region& region);
   void write(const HullDocument::Ruling& ruling);
   void write(const HullDocument::Contact& contact);
+  void write(const HullDocument::Side& side);
   void write(const HullDocument::Curve& curve, int id);
   void write(const std::vector<HullDocument::DirectedCurve>& curves);
   void write(const std::vector<int>& side);
@@ -153,6 +154,7 @@ void HullWriter::write(const HullDocument::Face& face, int id) {
     out_.key("offset");
     out_.number(face.offset);
     list("contacts", face.contacts);
+    if (!face.sides.empty()) list("sides", face.sides);
     out_.line();
     out_.key("curves");
     write(face.outline);
@@ -198,6 +200,20 @@ void HullWriter::write(const HullDocument::Contact& contact) {
   numbers(contact.uv);
   out_.key("p");
   vector(contact.p);
+  out_.end_object();
+}
+
+void HullWriter::write(const HullDocument::Side& side) {
+  if (side.source < 0) {
+    out_.null();
+    return;
+  }
+  out_.begin_object();
+  source_of(side.source);
+  out_.key("from");
+  numbers(side.from);
+  out_.key("to");
+  numbers(side.to);
   out_.end_object();
 }
 
