@@ -552,8 +552,9 @@ bool Trace::merge() {
   return true;
 }
 
-/// Where a contact moves along a smooth join, it is told as one of the patch into which its region
-/// extends. Sets the tangent anew; false if there is none.
+/// Where a contact moves along an edge or a seam, it is told as one of that; along another smooth
+/// join, as one of the patch into which its region extends. Sets the tangent anew; false if there
+/// is none.
 bool Trace::settle() {
   const CurveTangent* before = tangent_.n == dvec3(0.0) ? nullptr : &tangent_;
   const std::optional<CurveTangent> t = system_.tangent(at_, before);
@@ -570,12 +571,14 @@ bool Trace::settle() {
       const Side side = all_sides[std::size_t(exit.index)];
       const double size = std::min(1.0, glm::length(at_.jet[i].dx[along_v(side) ? 0 : 1]));
       if (std::max(std::abs(e.residual), std::abs(along)) * size > border_slack) continue;
-      // How the contact moves where the direction turns into its own region.
-      const dvec3 inward = i == 0 ? at_.d() : -at_.d();
-      const std::optional<dvec2> rate = parameter_rate(at_.jet[i], at_.n, inward);
-      if (!rate || glm::dot(e.parameter[i], *rate) >= 0) continue;
       const std::optional<Contact> over = beyond(geometry_, c, exit);
-      if (!over || over->kind != SourceKind::face) continue;
+      if (!over || over->kind == SourceKind::vertex) continue;
+      if (over->kind == SourceKind::face) {
+        // How the contact moves where the direction turns into its own region.
+        const dvec3 inward = i == 0 ? at_.d() : -at_.d();
+        const std::optional<dvec2> rate = parameter_rate(at_.jet[i], at_.n, inward);
+        if (!rate || glm::dot(e.parameter[i], *rate) >= 0) continue;
+      }
       at_.contact[i] = *over;
       changed = true;
       break;
