@@ -494,6 +494,17 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
   return own;
 }
 
+Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
+  const ContactJet j = geometry.jet(c);
+  const auto snap = [&](double& t, const dvec3& dx) {
+    const double nearest = std::round(std::clamp(t, 0.0, 1.0));
+    if (std::abs(t - nearest) * glm::length(dx) <= distance) t = nearest;
+  };
+  if (j.dimension == 2) snap(c.v, j.dx[1]);
+  if (j.dimension >= 1) snap(c.u, j.dx[0]);
+  return geometry.canonical(c);
+}
+
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other) {
   if (c.instance != other.instance) return std::nullopt;

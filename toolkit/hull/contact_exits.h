@@ -61,6 +61,10 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 /// higher of these ends.
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n);
 
+/// The contact in its canonical form where it lies within rounding of a border, an end or a pole:
+/// no farther than `distance`.
+Contact snapped(const ContactGeometry& geometry, Contact c, double distance);
+
 /// The point of `c` as a contact of the element of `other`, in whose border it lies; at a collapsed
 /// side at the parameter of `other`. None if it does not.
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,

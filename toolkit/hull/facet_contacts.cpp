@@ -37,6 +37,10 @@ Contact clamped(Contact c) {
   return c;
 }
 
+/// Corners of facets are on a border or at a vertex that is no farther: Newton's method leaves them
+/// so near to it.
+constexpr double corner_distance = 1e-9;
+
 /// Directions in which a curved side is asked for contacts beyond it differ by no more, in radians.
 constexpr double side_angle = 0.2;
 
@@ -77,7 +81,7 @@ class ContactSet {
   }
 
   void add(const Contact& c) {
-    contacts_.push_back(clamped(c));
+    contacts_.push_back(snapped(geometry_, clamped(c), corner_distance));
     points_.push_back(geometry_.point(contacts_.back()));
   }
   std::optional<FacetContacts> complete();
