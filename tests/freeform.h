@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "models.h"
+
+namespace taut_test {
+
+/// Curves and bodies whose hulls each show certain events. Bodies are closed, one surface each
+/// unless said otherwise.
+
+/// (cos t, sin 2t, cos 3t), 0 <= t <= 2 pi: four rational pieces of degree 6, joined at `start`
+/// and every quarter turn from there. Its hull touches z = 1 and z = -1 in three points each, and
+/// two contacts merge at t = 0 and t = pi, where its torsion vanishes.
+Shape tied_curve(double start);
+
+/// z = -(a x^4 - b x^2 y + c y^2) over [-1, 1]^2 as one patch of degree (4, 2).
+/// @pre a > b^2 / (4 c): the origin is a godron on the hull, and planes touch in the pairs
+/// y = (2 a / b) x^2.
+Shape godron(double a, double b, double c);
+
+/// An ellipsoid's control net pressed in about a direction, over a radius that goes up and down as
+/// 1 + 0.3 cos(lobes t) around it.
+struct Dent {
+  dvec3 direction = dvec3(1, 0, 0);
+  int lobes = 2;
+  double turn = 0;       ///< of the first lobe from a fixed tangent, in radians
+  double radius = 0.45;  ///< in radians
+  double depth = 0.35;   ///< as a share of the ellipsoid's radius
+};
+
+/// An ellipsoid-like body with dents: bicubic, C2 but for its two poles on the z axis, at which it
+/// is G1; 24 spans around, the first from the angle `start`, 20 from pole to pole.
+Shape dented_body(const std::vector<Dent>& dents, double start = 0);
+
+/// A rational ellipsoid of which one patch, an eighth, is pressed in over all of its inside: times
+/// 1 - (4 u (1 - u))^m (4 v (1 - v))^n / 2.
+Shape ellipsoid_with_a_dented_patch(int m, int n);
+
+/// The ellipsoid with half axes 2, 1, 0.6 bent upwards: z grows by 0.4 x^2 + 0.1 x y. Rational of
+/// degree (4, 4).
+Shape bean();
+
+/// @name Bodies of revolution about the z axis
+/// @{
+/// Two bulges of different radius and a waist.
+Shape dumbbell();
+/// An arc of 2 acos(0.6) about its chord, the tips in (0, 0, -1) and (0, 0, 1).
+Shape lemon();
+/// The arc from (1, 0, 0), where it is upright, to the tip (0, 0, sqrt 2), without its base.
+Shape ogive();
+/// The half y >= 0 of a torus, open at its two ends.
+Shape half_torus(double R, double r);
+/// @}
+
+}  // namespace taut_test
