@@ -109,11 +109,9 @@ TEST(Events, Godron) {
 /// do that fit into it: their centres form a tree with an end at each of the rim's lobes. A valley
 /// has one scroll across it, which dies at both ends.
 TEST(Events, DentAcrossPatches) {
-  for (const double start : {0.0, 0.2}) {
-    for (const double turn : {0.0, 0.7, 1.4}) {
-      SCOPED_TRACE(turn);
-      expect_smooth(dented_body({{{0.8, 0.5, 0.2}, 2, turn}}, start), {{1, 1, 0}, 0, 2});
-    }
+  for (const double turn : {0.0, 0.7, 1.4}) {
+    SCOPED_TRACE(turn);
+    expect_smooth(dented_body({{{0.8, 0.5, 0.2}, 2, turn}}, 0.2 * turn), {{1, 1, 0}, 0, 2});
   }
 }
 
@@ -130,15 +128,12 @@ TEST(Events, TwoDents) {
   expect_smooth(body, {{1, 4, 1}, 1, 5});
 }
 
-/// Much narrower across the patch than along it, a valley.
-TEST(Events, DentWithinAPatch) {
-  expect_smooth(ellipsoid_with_a_dented_patch(12, 8), {{1, 1, 0}, 0, 2});
-}
+TEST(Events, DentWithinAPatch) { expect_smooth(ellipsoid_with_a_valley(), {{1, 1, 0}, 0, 2}); }
 
 /// The patch is the affine image of an equilateral triangle on the sphere: its rim is nearest, and
 /// so highest, in the middle of three sides.
 TEST(Events, ThreefoldDentWithinAPatch) {
-  expect_smooth(ellipsoid_with_a_dented_patch(3, 3), {{1, 3, 1}, 1, 3});
+  expect_smooth(ellipsoid_with_a_threefold_dent(), {{1, 3, 1}, 1, 3});
 }
 
 /// It is hollow along x above its middle, and bends away across and at its sides.

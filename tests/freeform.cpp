@@ -157,26 +157,60 @@ std::vector<dvec4> tied_piece(double t) {
   return points;
 }
 
-/// The angle between the dent's direction and d, as a share of its radius there.
-double distance_from(const Dent& dent, const dvec3& d) {
+/// How deep the dent is in a direction on the unit sphere.
+double depth_at(const Dent& dent, const dvec3& d) {
   const dvec3 n = glm::normalize(dent.direction);
+  if (glm::dot(n, d) <= 0) return 0;
   const dvec3 side = glm::normalize(glm::cross(n, dvec3(0.36, 0.48, 0.8)));
-  const double angle = std::acos(glm::clamp(glm::dot(n, d), -1.0, 1.0));
-  const double turn = std::atan2(glm::dot(glm::cross(n, side), d), glm::dot(side, d)) - dent.turn;
-  return angle / (dent.radius * (1 + 0.3 * std::cos(dent.lobes * turn)));
+  const double x = glm::dot(side, d);
+  const double y = glm::dot(glm::cross(n, side), d);
+  const double turn = std::atan2(y, x) - dent.turn;
+  const double radius_squared = 0.14 * (1 + 0.35 * std::cos(dent.lobes * turn));
+  return dent.depth * std::exp(-(x * x + y * y) / radius_squared);
 }
 
 dvec3 pressed(const std::vector<Dent>& dents, dvec3 d) {
   constexpr dvec3 half(1.3, 1.15, 1);
   double factor = 1;
-  for (const Dent& dent : dents) {
-    const double off = distance_from(dent, d);
-    factor *= 1 - dent.depth * std::exp(-off * off);
-  }
+  for (const Dent& dent : dents) factor *= 1 - depth_at(dent, d);
   return factor * half * d;
 }
 
 Shape turned(const BezierCurve& profile) { return {{revolved(taut::as_nurbs(profile))}, {}, {}}; }
+
+dmat3 half_axes() { return {1.6, 0, 0, 0, 1.3, 0, 0, 0, 1}; }
+
+/// The unit circle's arc between two angles from the z axis.
+BezierCurve meridian(double from, double to) {
+  const double weight = std::cos(0.5 * (to - from));
+  const auto at = [](double s) { return dvec3(std::sin(s), 0, std::cos(s)); };
+  const dvec3 middle = at(0.5 * (from + to)) / weight;
+  return {{homogeneous(at(from)), homogeneous(middle, weight), homogeneous(at(to))}};
+}
+
+/// Pressed in times 1 - depth (4 u (1 - u))^m (4 v (1 - v))^n.
+struct Press {
+  int m, n;
+  double depth;
+};
+
+/// One surface of patches, `down` of them along v, of which one is pressed in; turned.
+Shape with_dent(std::vector<BezierPatch> patches, int down, std::size_t dented,
+                const Press& press) {
+  const int m = press.m;
+  const int n = press.n;
+  const Polynomial one = constant(2 * m, 2 * n, 1);
+  // The powers have a middle coefficient alone.
+  Polynomial factor = one;
+  factor.at[index(factor, m, n)] -=
+      press.depth * std::pow(4, m + n) / (binomial(2 * m, m) * binomial(2 * n, n));
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    const Coordinates c = coordinates(patches[k]);
+    const Polynomial& f = k == dented ? factor : one;
+    patches[k] = patch_of({c.x * f, c.y * f, c.z * f, c.w * one});
+  }
+  return mapped({{assembled(patches, down)}, {}, {}}, skew_rotation());
+}
 
 }  // namespace
 
@@ -223,18 +257,21 @@ Shape dented_body(const std::vector<Dent>& dents, double start) {
   return {{surface}, {}, {}};
 }
 
-Shape ellipsoid_with_a_dented_patch(int m, int n) {
-  // 1 - (4 u (1 - u))^m (4 v (1 - v))^n / 2; the powers have a middle coefficient alone.
-  Polynomial factor = constant(2 * m, 2 * n, 1);
-  factor.at[index(factor, m, n)] -=
-      0.5 * std::pow(4, m + n) / (binomial(2 * m, m) * binomial(2 * n, n));
-  std::vector<BezierPatch> patches = patches_of(ellipsoid(1.6, 1.3, 1).surfaces[0]);
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    const Coordinates c = coordinates(patches[k]);
-    const Polynomial f = k == 0 ? factor : constant(2 * m, 2 * n, 1);
-    patches[k] = patch_of({c.x * f, c.y * f, c.z * f, c.w * constant(2 * m, 2 * n, 1)});
+Shape ellipsoid_with_a_valley() {
+  // Of three rows of patches the middle one reaches 45 degrees to either side of the equator.
+  std::vector<BezierPatch> patches(12);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::array<double, 4> polar = {0, pi / 4, 3 * pi / 4, pi};
+    const Shape zone = turned(meridian(polar[row], polar[row + 1]));
+    const std::vector<BezierPatch> around = patches_of(mapped(zone, half_axes()).surfaces[0]);
+    for (std::size_t k = 0; k < 4; ++k) patches[3 * k + row] = around[k];
   }
-  return mapped({{assembled(patches, 2)}, {}, {}}, skew_rotation());
+  return with_dent(patches, 3, 1, {14, 6, 0.3});
+}
+
+Shape ellipsoid_with_a_threefold_dent() {
+  const std::vector<BezierPatch> patches = patches_of(mapped(sphere(), half_axes()).surfaces[0]);
+  return with_dent(patches, 2, 0, {3, 3, 0.5});
 }
 
 Shape bean() {

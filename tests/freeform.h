@@ -19,23 +19,26 @@ Shape tied_curve(double start);
 /// y = (2 a / b) x^2.
 Shape godron(double a, double b, double c);
 
-/// An ellipsoid's control net pressed in about a direction, over a radius that goes up and down as
-/// 1 + 0.3 cos(lobes t) around it.
+/// An ellipsoid's control net pressed in about a direction by a Gaussian whose width goes up and
+/// down as often as there are lobes.
 struct Dent {
   dvec3 direction = dvec3(1, 0, 0);
   int lobes = 2;
-  double turn = 0;       ///< of the first lobe from a fixed tangent, in radians
-  double radius = 0.45;  ///< in radians
-  double depth = 0.35;   ///< as a share of the ellipsoid's radius
+  double turn = 0;      ///< of the first lobe from a fixed tangent, in radians
+  double depth = 0.35;  ///< as a share of the ellipsoid's radius
 };
 
 /// An ellipsoid-like body with dents: bicubic, C2 but for its two poles on the z axis, at which it
 /// is G1; 24 spans around, the first from the angle `start`, 20 from pole to pole.
 Shape dented_body(const std::vector<Dent>& dents, double start = 0);
 
-/// A rational ellipsoid of which one patch, an eighth, is pressed in over all of its inside: times
-/// 1 - (4 u (1 - u))^m (4 v (1 - v))^n / 2.
-Shape ellipsoid_with_a_dented_patch(int m, int n);
+/// @name Rational ellipsoids of which the inside of one patch is pressed in
+/// @{
+/// A patch about the equator, with a dent that is longer than wide.
+Shape ellipsoid_with_a_valley();
+/// An eighth, pressed in up to its three sides.
+Shape ellipsoid_with_a_threefold_dent();
+/// @}
 
 /// The ellipsoid with half axes 2, 1, 0.6 bent upwards: z grows by 0.4 x^2 + 0.1 x y. Rational of
 /// degree (4, 4).
