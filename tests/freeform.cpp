@@ -121,6 +121,14 @@ std::vector<BezierPatch> patches_of(const NurbsSurface& surface) {
   return result;
 }
 
+/// How many patches a surface has along v.
+int patches_down(const NurbsSurface& surface) {
+  const std::vector<PatchPiece> pieces = taut::decompose(surface);
+  return int(std::count_if(pieces.begin(), pieces.end(), [&](const PatchPiece& piece) {
+    return piece.u.lower == pieces.front().u.lower;
+  }));
+}
+
 using Complex = std::complex<double>;
 
 /// Bernstein coefficients of the product of (1 + i s)^m (1 - i s)^n over -half <= s <= half.
@@ -160,13 +168,15 @@ std::vector<dvec4> tied_piece(double t) {
 /// How deep the dent is in a direction on the unit sphere.
 double depth_at(const Dent& dent, const dvec3& d) {
   const dvec3 n = glm::normalize(dent.direction);
-  if (glm::dot(n, d) <= 0) return 0;
+  const double z = glm::dot(n, d);
+  if (z <= 0) return 0;
   const dvec3 side = glm::normalize(glm::cross(n, dvec3(0.36, 0.48, 0.8)));
   const double x = glm::dot(side, d);
   const double y = glm::dot(glm::cross(n, side), d);
   const double turn = std::atan2(y, x) - dent.turn;
-  const double radius_squared = 0.14 * (1 + 0.35 * std::cos(dent.lobes * turn));
-  return dent.depth * std::exp(-(x * x + y * y) / radius_squared);
+  // Of two lobes exactly an ellipse's.
+  const double steepness = 7 * (1 - 0.35 * std::cos(dent.lobes * turn));
+  return dent.depth * std::exp(-steepness * (x * x + y * y) / (z * z));
 }
 
 dvec3 pressed(const std::vector<Dent>& dents, dvec3 d) {
@@ -233,9 +243,28 @@ Shape godron(double a, double b, double c) {
   return of_patch(patch_of({raised(x, 4, 2), raised(y, 4, 2), z, constant(4, 2, 1)}));
 }
 
+Shape split(const Shape& shape, double u, double v) {
+  Shape result = shape;
+  for (NurbsSurface& surface : result.surfaces) {
+    const std::vector<BezierPatch> patches = patches_of(surface);
+    const int down = patches_down(surface);
+    std::vector<BezierPatch> finer(4 * patches.size());
+    for (int k = 0; k < int(finer.size()); ++k) {
+      const int i = k / (2 * down);
+      const int j = k % (2 * down);
+      const taut::Interval in_u = i % 2 == 0 ? taut::Interval{0, u} : taut::Interval{u, 1};
+      const taut::Interval in_v = j % 2 == 0 ? taut::Interval{0, v} : taut::Interval{v, 1};
+      const auto whole = std::size_t((i / 2) * down + j / 2);
+      finer[std::size_t(k)] = taut::restricted(patches[whole], in_u, in_v);
+    }
+    surface = assembled(finer, 2 * down);
+  }
+  return result;
+}
+
 Shape dented_body(const std::vector<Dent>& dents, double start) {
-  constexpr int around = 24;
-  constexpr int down = 20;
+  constexpr int around = 16;
+  constexpr int down = 12;
   NurbsSurface surface{3, 3, {}, {0, 0, 0}, {}};
   for (int k = -3; k <= around + 3; ++k) surface.knots_u.push_back(k);
   for (int k = 0; k <= down; ++k) surface.knots_v.push_back(k);
@@ -266,7 +295,7 @@ Shape ellipsoid_with_a_valley() {
     const std::vector<BezierPatch> around = patches_of(mapped(zone, half_axes()).surfaces[0]);
     for (std::size_t k = 0; k < 4; ++k) patches[3 * k + row] = around[k];
   }
-  return with_dent(patches, 3, 1, {14, 6, 0.3});
+  return with_dent(patches, 3, 1, {14, 4, 0.08});
 }
 
 Shape ellipsoid_with_a_threefold_dent() {

@@ -19,6 +19,10 @@ Shape tied_curve(double start);
 /// y = (2 a / b) x^2.
 Shape godron(double a, double b, double c);
 
+/// Each Bezier patch of each surface in four, split at the parameters u and v of its unit square:
+/// the same surfaces, of one source face each as before.
+Shape split(const Shape& shape, double u, double v);
+
 /// An ellipsoid's control net pressed in about a direction by a Gaussian whose width goes up and
 /// down as often as there are lobes.
 struct Dent {
@@ -29,7 +33,7 @@ struct Dent {
 };
 
 /// An ellipsoid-like body with dents: bicubic, C2 but for its two poles on the z axis, at which it
-/// is G1; 24 spans around, the first from the angle `start`, 20 from pole to pole.
+/// is G1; 16 spans around, the first from the angle `start`, 12 from pole to pole.
 Shape dented_body(const std::vector<Dent>& dents, double start = 0);
 
 /// @name Rational ellipsoids of which the inside of one patch is pressed in
