@@ -129,6 +129,27 @@ int patches_down(const NurbsSurface& surface) {
   }));
 }
 
+NurbsCurve assembled(const std::vector<BezierCurve>& pieces) {
+  const int degree = pieces.front().degree();
+  NurbsCurve curve{degree, piecewise_knots(int(pieces.size()), degree), pieces.front().points};
+  for (std::size_t k = 1; k < pieces.size(); ++k) {
+    const std::vector<dvec4>& points = pieces[k].points;
+    curve.points.insert(curve.points.end(), points.begin() + 1, points.end());
+  }
+  return curve;
+}
+
+/// The part of [0, 1] below the parameter, or that above.
+taut::Interval half(int side, double at) {
+  return side == 0 ? taut::Interval{0, at} : taut::Interval{at, 1};
+}
+
+void reverse_knots(std::vector<double>& knots) {
+  const double sum = knots.front() + knots.back();
+  std::reverse(knots.begin(), knots.end());
+  for (double& knot : knots) knot = sum - knot;
+}
+
 using Complex = std::complex<double>;
 
 /// Bernstein coefficients of the product of (1 + i s)^m (1 - i s)^n over -half <= s <= half.
@@ -252,12 +273,69 @@ Shape split(const Shape& shape, double u, double v) {
     for (int k = 0; k < int(finer.size()); ++k) {
       const int i = k / (2 * down);
       const int j = k % (2 * down);
-      const taut::Interval in_u = i % 2 == 0 ? taut::Interval{0, u} : taut::Interval{u, 1};
-      const taut::Interval in_v = j % 2 == 0 ? taut::Interval{0, v} : taut::Interval{v, 1};
       const auto whole = std::size_t((i / 2) * down + j / 2);
-      finer[std::size_t(k)] = taut::restricted(patches[whole], in_u, in_v);
+      finer[std::size_t(k)] = taut::restricted(patches[whole], half(i % 2, u), half(j % 2, v));
     }
     surface = assembled(finer, 2 * down);
+  }
+  for (NurbsCurve& curve : result.curves) {
+    std::vector<BezierCurve> finer;
+    for (const taut::CurvePiece& piece : taut::decompose(curve)) {
+      for (const int side : {0, 1}) finer.push_back(taut::restricted(piece.bezier, half(side, u)));
+    }
+    curve = assembled(finer);
+  }
+  return result;
+}
+
+Shape with_higher_degrees(const Shape& shape) {
+  Shape result = shape;
+  for (NurbsSurface& surface : result.surfaces) {
+    std::vector<BezierPatch> patches = patches_of(surface);
+    for (BezierPatch& patch : patches) {
+      patch = taut::elevated(patch, patch.degree_u + 1, patch.degree_v + 2);
+    }
+    surface = assembled(patches, patches_down(surface));
+  }
+  for (NurbsCurve& curve : result.curves) {
+    std::vector<BezierCurve> pieces;
+    for (const taut::CurvePiece& piece : taut::decompose(curve)) {
+      pieces.push_back(taut::elevated(piece.bezier, curve.degree + 1));
+    }
+    curve = assembled(pieces);
+  }
+  return result;
+}
+
+Shape with_reversed_parameters(const Shape& shape) {
+  Shape result = shape;
+  for (NurbsSurface& surface : result.surfaces) {
+    reverse_knots(surface.knots_u);
+    const int rows = surface.count_u();
+    const auto row = std::ptrdiff_t(surface.count_v());
+    for (int i = 0; i < rows / 2; ++i) {
+      const auto first = surface.points.begin() + i * row;
+      std::swap_ranges(first, first + row, surface.points.begin() + (rows - 1 - i) * row);
+    }
+  }
+  for (NurbsCurve& curve : result.curves) {
+    reverse_knots(curve.knots);
+    std::reverse(curve.points.begin(), curve.points.end());
+  }
+  return result;
+}
+
+Shape with_exchanged_parameters(const Shape& shape) {
+  Shape result = shape;
+  for (NurbsSurface& surface : result.surfaces) {
+    const NurbsSurface old = surface;
+    std::swap(surface.degree_u, surface.degree_v);
+    std::swap(surface.knots_u, surface.knots_v);
+    const auto rows = std::size_t(surface.count_u());
+    const auto columns = std::size_t(surface.count_v());
+    for (std::size_t k = 0; k < old.points.size(); ++k) {
+      surface.points[k] = old.points[(k % columns) * rows + k / columns];
+    }
   }
   return result;
 }

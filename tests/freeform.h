@@ -19,9 +19,18 @@ Shape tied_curve(double start);
 /// y = (2 a / b) x^2.
 Shape godron(double a, double b, double c);
 
-/// Each Bezier patch of each surface in four, split at the parameters u and v of its unit square:
-/// the same surfaces, of one source face each as before.
+/// @name The same surfaces and curves, written differently; of one source each as before
+/// @{
+/// Each Bezier patch in four, split at the parameters u and v of its unit square, and each Bezier
+/// piece of a curve in two, at u.
 Shape split(const Shape& shape, double u, double v);
+/// Degrees raised by one along u and by two along v.
+Shape with_higher_degrees(const Shape& shape);
+/// Parameters reversed: u of surfaces and that of curves.
+Shape with_reversed_parameters(const Shape& shape);
+/// u and v of surfaces exchanged.
+Shape with_exchanged_parameters(const Shape& shape);
+/// @}
 
 /// An ellipsoid's control net pressed in about a direction by a Gaussian whose width goes up and
 /// down as often as there are lobes.
