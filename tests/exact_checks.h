@@ -32,7 +32,7 @@ inline FaceCounts face_counts(const taut::HullBoundary& boundary) {
 
 /// Where separating curves end on the sphere of directions.
 struct CurveEnds {
-  int triple_points = 0;  ///< facets with three contacts
+  int triple_points = 0;  ///< facets with three contacts and straight sides
   int free_ends = 0;
   /// Over all nodes, facets and free ends, the sum of the curves that end there less two.
   int surplus = 0;
@@ -42,7 +42,7 @@ inline CurveEnds curve_ends(const taut::HullBoundary& boundary) {
   CurveEnds ends;
   for (const taut::HullFace& face : boundary.faces) {
     if (face.kind != taut::FaceKind::facet) continue;
-    ends.triple_points += face.contacts.size() == 3 ? 1 : 0;
+    ends.triple_points += face.contacts.size() == 3 && face.sides.empty() ? 1 : 0;
     ends.surplus -= 2;
   }
   for (const taut::SeparatingArc& arc : boundary.arcs) {
