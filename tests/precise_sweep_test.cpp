@@ -78,6 +78,52 @@ TEST_P(Blobs, AreExact) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
 
+/// Of so many scenes at least 99% are exact. Those that are not say so: of all of them the
+/// certificate is true.
+class ManyScenes {
+ public:
+  void add(const Scene& scene, const std::string& name) {
+    SCOPED_TRACE(name);
+    const Hull hull = precise_hull(scene, {.relative = 1e-3, .threads = 1, .progress = {}});
+    const GapRange range = gaps(scene, polygons(hull.mesh), 100);
+    EXPECT_LE(hull.distance_bound, 1e-3 * scene.diagonal());
+    EXPECT_LE(range.highest, hull.distance_bound);
+    EXPECT_GE(range.lowest, -hull.distance_bound);
+    ++count_;
+    if (hull.boundary->unresolved.empty()) {
+      const BoundaryFacts facts = boundary_facts(scene, hull, 100);
+      EXPECT_TRUE(facts.sound()) << facts;
+    } else {
+      unresolved_ += name + ": " + hull.boundary->unresolved.front().reason + "\n";
+      ++failed_;
+    }
+  }
+  void expect_most_exact() const { EXPECT_LE(100 * failed_, count_) << unresolved_; }
+
+ private:
+  int count_ = 0;
+  int failed_ = 0;
+  std::string unresolved_;
+};
+
+TEST(PreciseSweep, DISABLED_TwoHundredBlobs) {
+  ManyScenes scenes;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    scenes.add(make_scene(blob(seed)), "blob " + std::to_string(seed));
+  }
+  scenes.expect_most_exact();
+}
+
+TEST(PreciseSweep, HundredPosedTeapots) {
+  ManyScenes scenes;
+  for (unsigned seed = 1001; seed <= 1100; ++seed) {
+    Model one = posed_teapots(seed, 1);
+    const Scene scene(std::move(one), {.threads = 1, .progress = {}});
+    scenes.add(scene, "teapot " + std::to_string(seed));
+  }
+  scenes.expect_most_exact();
+}
+
 /// Two to eight spheres of any size and place.
 TEST(PreciseSweep, RandomSpheres) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
