@@ -1,0 +1,494 @@
+#include "taut/hull/free_ends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "taut/bounds/patch_nets.h"
+#include "taut/hull/contact_bends.h"
+#include "taut/hull/contact_exits.h"
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+namespace {
+
+using Kind = FreeEnd::Kind;
+
+/// Cells that may hold a parabolic point are split down to this level.
+constexpr int finest_level = 6;
+/// Intervals of a border or piece whose ends are compared by sign.
+constexpr int samples_along = 64;
+/// Bisections after which an interval of a 64th is down to rounding.
+constexpr int bisection_limit = 60;
+
+constexpr int newton_limit = 20;
+/// Steps of a parameter below this end Newton's method; below the second one, if they do not get
+/// shorter, they are rounding.
+constexpr double converged_step = 1e-14;
+constexpr double noise_step = 1e-8;
+/// Of central difference quotients: their error slows Newton's method by its square.
+constexpr double difference = 1e-4;
+/// How far rounding may put a root beyond the border on which it lies.
+constexpr double parameter_slack = 1e-11;
+/// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
+/// rounding on a circle of flat points.
+constexpr double least_change = 1e-5;
+/// A curvature or twist that stays below this everywhere vanishes.
+constexpr double least_extent = 1e-9;
+/// Third derivatives below this, relative to the unit or the square of the curvature, may be zero.
+constexpr double cubic_slack = 1e-9;
+/// The same of a curvature on the other side of a join, relative to the principal one.
+constexpr double flat_slack = 1e-7;
+/// What is nearer to a collapsed side is at it.
+constexpr double pole_distance = 1e-6;
+/// Elements over a border that is no farther are searched too.
+constexpr double beside_border = 0.1;
+
+bool within(double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; }
+
+Contact clamped(Contact c) {
+  c.u = std::clamp(c.u, 0.0, 1.0);
+  c.v = std::clamp(c.v, 0.0, 1.0);
+  return c;
+}
+
+double distance_from(const Contact& c, Side side) {
+  const double t = along_v(side) ? c.u : c.v;
+  return at_upper_end(side) ? 1 - t : t;
+}
+
+const Border& border_at(const ContactGeometry& geometry, const Contact& c, Side side) {
+  return geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+}
+
+bool near_pole(const ContactGeometry& geometry, const Contact& c) {
+  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    return border_at(geometry, c, side).kind == BorderKind::collapsed &&
+           distance_from(c, side) < pole_distance;
+  });
+}
+
+/// @name Roots
+/// @{
+
+/// Newton's method with difference quotients; within [-reach, reach] of the start.
+template <class Function>
+std::optional<double> root_near(const Function& f, double start, double reach) {
+  double t = start;
+  double last = reach;
+  for (int k = 0; k < newton_limit; ++k) {
+    const double slope = (f(t + difference) - f(t - difference)) / (2 * difference);
+    const double step = -f(t) / slope;
+    t += step;
+    if (!(std::abs(t - start) <= reach)) return std::nullopt;
+    const double length = std::abs(step);
+    if (length < converged_step || (length < noise_step && length > 0.5 * last)) return t;
+    last = length;
+  }
+  return std::nullopt;
+}
+
+/// Where a function over [0, 1] changes sign between samples; none if it vanishes throughout.
+template <class Function>
+std::vector<double> sign_changes(const Function& f) {
+  std::vector<double> values(samples_along + 1);
+  double extent = 0;
+  for (int k = 0; k <= samples_along; ++k) {
+    values[std::size_t(k)] = f(double(k) / samples_along);
+    extent = std::max(extent, std::abs(values[std::size_t(k)]));
+  }
+  std::vector<double> roots;
+  if (!(extent > least_extent)) return roots;
+  for (int k = 0; k < samples_along; ++k) {
+    const bool negative = values[std::size_t(k)] < 0;
+    if ((values[std::size_t(k) + 1] < 0) == negative) continue;
+    double a = double(k) / samples_along;
+    double b = double(k + 1) / samples_along;
+    for (int i = 0; i < bisection_limit; ++i) {
+      const double middle = 0.5 * (a + b);
+      ((f(middle) < 0) == negative ? a : b) = middle;
+    }
+    roots.push_back(0.5 * (a + b));
+  }
+  return roots;
+}
+
+/// The cusp's two equations: the flat curvature vanishes, and so does the cubic along it. Its sense
+/// is that of `along`.
+std::optional<dvec2> cusp_residual(const ContactGeometry& geometry, const Contact& c,
+                                   const dvec3& along) {
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b) return std::nullopt;
+  return dvec2(b->flat, glm::dot(b->along, along) < 0 ? -b->cubic : b->cubic);
+}
+
+/// Newton's method onto a cusp; its parameters may lie out of the patch. None if it goes farther
+/// than `reach` or if the root is not a simple one.
+std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, double reach) {
+  const dvec2 start(c.u, c.v);
+  double last = reach;
+  for (int k = 0; k < newton_limit; ++k) {
+    const std::optional<SurfaceBend> here = surface_bend(geometry, c);
+    if (!here) return std::nullopt;
+    const auto residual = [&](double du, double dv) {
+      Contact moved = c;
+      moved.u += du;
+      moved.v += dv;
+      return cusp_residual(geometry, moved, here->along);
+    };
+    const auto u0 = residual(-difference, 0), u1 = residual(difference, 0);
+    const auto v0 = residual(0, -difference), v1 = residual(0, difference);
+    if (!u0 || !u1 || !v0 || !v1) return std::nullopt;
+    const dvec2 by_u = (*u1 - *u0) / (2 * difference);
+    const dvec2 by_v = (*v1 - *v0) / (2 * difference);
+    const dvec2 f(here->flat, here->cubic);
+    const double det = by_u.x * by_v.y - by_v.x * by_u.y;
+    const dvec2 step = dvec2(by_v.x * f.y - by_v.y * f.x, by_u.y * f.x - by_u.x * f.y) / det;
+    c.u += step.x;
+    c.v += step.y;
+    if (!(glm::distance(dvec2(c.u, c.v), start) <= reach)) return std::nullopt;
+    const double length = glm::length(step);
+    if (length < converged_step || (length < noise_step && length > 0.5 * last)) {
+      if (std::abs(det) < least_change * here->area) return std::nullopt;
+      return c;
+    }
+    last = length;
+  }
+  return std::nullopt;
+}
+
+/// @}
+/// @name Candidates
+/// @{
+
+/// From where a cusp was found.
+std::optional<FreeEnd> cusp(const ContactGeometry& geometry, const Contact& root) {
+  if (!within(root.u) || !within(root.v)) return std::nullopt;
+  const Contact c = clamped(root);
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b || near_pole(geometry, c)) return std::nullopt;
+  return FreeEnd{b->n, c, Kind::face, b->along};
+}
+
+/// Into the patch, along the flat direction at a side, the surface stays below the plane across n:
+/// to third order.
+bool falls_inward(const SurfaceBend& b, Side side) {
+  const double across = along_v(side) ? b.rate.x : b.rate.y;
+  const double inward = at_upper_end(side) ? -across : across;
+  const double slack = cubic_slack * (1 + b.steep * b.steep);
+  return (inward < 0 ? -b.cubic : b.cubic) <= slack;
+}
+
+/// The side over a smooth join where the contact lies.
+struct Beyond {
+  Contact contact;
+  Side side = Side::u0;
+};
+std::optional<Beyond> beyond_join(const ContactGeometry& geometry, const Contact& c, Side side) {
+  const Border& border = border_at(geometry, c, side);
+  if (border.kind != BorderKind::smooth) return std::nullopt;
+  const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::side, int(side)});
+  if (!over) return std::nullopt;
+  return Beyond{*over, border.neighbor_side};
+}
+
+double curvature_on(const ContactGeometry& geometry, Contact c, Side side, double t) {
+  const dvec2 uv = on_side(side, t);
+  c.u = uv.x;
+  c.v = uv.y;
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  return b ? b->gauss_curvature() : 0;
+}
+
+/// From where the parabolic curve was found to meet a side: B3, or on a smooth join an end that the
+/// jump of derivatives makes.
+std::optional<FreeEnd> border_end(const ContactGeometry& geometry, Contact c, Side side, double t) {
+  if (!within(t)) return std::nullopt;
+  const dvec2 uv = on_side(side, std::clamp(t, 0.0, 1.0));
+  c.u = uv.x;
+  c.v = uv.y;
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b || near_pole(geometry, c) || !falls_inward(*b, side)) return std::nullopt;
+  if (const std::optional<Beyond> over = beyond_join(geometry, c, side)) {
+    const std::optional<SurfaceBend> other = surface_bend(geometry, over->contact);
+    if (!other) return std::nullopt;
+    const bool flat = other->flat >= flat_slack * other->steep;
+    if (flat && !falls_inward(*other, over->side)) return std::nullopt;
+  }
+  const double across = (along_v(side) ? b->rate.x : b->rate.y) * (at_upper_end(side) ? -1 : 1);
+  const Contact own = geometry.canonical(c);
+  const Kind kind = own.kind == SourceKind::face ? Kind::face : Kind::border;
+  return FreeEnd{b->n, own, kind, across < 0 ? -b->along : b->along};
+}
+
+double twist_at(const ContactGeometry& geometry, Contact c, double t) {
+  c.u = t;
+  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  return b ? b->twist : 0;
+}
+
+/// From where the torsion was found to vanish; n is the binormal times the sign.
+std::optional<FreeEnd> edge_end(const ContactGeometry& geometry, Contact c, double t, double sign) {
+  if (!within(t)) return std::nullopt;
+  c.u = std::clamp(t, 0.0, 1.0);
+  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  if (!b || b->binormal == dvec3(0.0)) return std::nullopt;
+  return FreeEnd{sign * b->binormal, c, Kind::edge, b->along};
+}
+
+/// From its end on, the piece stays below the plane across n: to third order.
+bool falls_inward(const CurveBend& b, int end, const dvec3& n) {
+  const double cubic = glm::dot(b.third, n);
+  return (end == 0 ? cubic : -cubic) <= cubic_slack * std::max(1.0, glm::length(b.third));
+}
+
+/// At the end of a piece, in its osculating plane: B3 at a vertex, or where pieces join an end that
+/// the jump of derivatives makes.
+std::optional<FreeEnd> piece_end(const ContactGeometry& geometry, Contact c, int end, double sign) {
+  c.u = end;
+  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  if (!b || b->binormal == dvec3(0.0)) return std::nullopt;
+  const dvec3 n = sign * b->binormal;
+  if (!falls_inward(*b, end, n)) return std::nullopt;
+  const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::end, end});
+  if (!over) return std::nullopt;
+  const dvec3 along = end == 0 ? b->along : -b->along;
+  if (over->kind == SourceKind::vertex) return FreeEnd{n, *over, Kind::end, along};
+  const std::optional<CurveBend> other = curve_bend(geometry, *over);
+  if (!other) return std::nullopt;
+  const bool flat = glm::dot(other->second, n) >= -flat_slack * other->curvature;
+  if (flat && !falls_inward(*other, int(over->u), n)) return std::nullopt;
+  return FreeEnd{n, c, Kind::edge, along};
+}
+
+/// @}
+
+/// Gathers what supports the model.
+class FreeEndSearch {
+ public:
+  FreeEndSearch(const ContactGeometry& geometry, SupportQuery& query)
+      : geometry_(geometry), query_(query) {}
+
+  void search_cells(const std::vector<CulledCell>& cells);
+  void search_borders(const std::vector<CulledCell>& cells);
+  void search_edges();
+  std::vector<FreeEnd> result() { return std::move(ends_); }
+
+ private:
+  void search_cell(const PatchNets& nets, const CellNets& cell, const Contact& c, PatchCell at);
+  void search_piece(const Contact& c);
+  void offer(const std::optional<FreeEnd>& end);
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  std::vector<FreeEnd> ends_;
+};
+
+/// Takes the candidate if it supports the model and is new.
+void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
+  if (!end) return;
+  const dvec3 x = geometry_.point(end->contact);
+  const bool known = std::any_of(ends_.begin(), ends_.end(), [&](const FreeEnd& other) {
+    return glm::distance(geometry_.point(other.contact), x) <= same_contact &&
+           glm::distance(other.n, end->n) <= same_contact;
+  });
+  if (known || query_(end->n, end->contact).h > glm::dot(x, end->n) + support_tie) return;
+  ends_.push_back(*end);
+}
+
+void FreeEndSearch::search_cell(const PatchNets& nets, const CellNets& cell, const Contact& c,
+                                PatchCell at) {
+  const NormalBounds bounds = nets.bounds(cell, at.level);
+  if (bounds.definite || !bounds.signs.any()) return;
+  if (at.level < finest_level) {
+    std::array<CellNets, 4> quarters;
+    nets.quarter_points(cell.points, quarters);
+    nets.quarter_normals(cell.normals, quarters);
+    for (std::uint32_t k = 0; k < 4; ++k) search_cell(nets, quarters[k], c, at.child(k));
+    return;
+  }
+  const double size = at.u().upper - at.u().lower;
+  Contact middle = c;
+  middle.u = at.u().at(0.5);
+  middle.v = at.v().at(0.5);
+  if (const auto root = cusp_near(geometry_, middle, 2 * size)) offer(cusp(geometry_, *root));
+}
+
+void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
+  const Scene::Content& content = geometry_.scene().content();
+  std::optional<PatchNets> nets;  // of the last cell's element
+  const SceneElement* element = nullptr;
+  for (const CulledCell& cell : cells) {
+    if (cell.state != CellState::mixed) continue;
+    const Contact c{cell.instance, SourceKind::face, cell.patch, 0, 0};
+    const ScenePart& part = content.part_of(c.instance);
+    const int index = part.element_of_patch[std::size_t(c.element)];
+    if (index < 0) continue;
+    if (element != &part.elements[std::size_t(index)]) {
+      element = &part.elements[std::size_t(index)];
+      nets.emplace(*element);
+    }
+    const CellNets own{nets->points(cell.cell.u(), cell.cell.v()), nets->normals(cell.cell)};
+    search_cell(*nets, own, c, cell.cell);
+  }
+}
+
+void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
+  std::set<std::pair<int, int>> patches;
+  for (const CulledCell& cell : cells) {
+    if (cell.state == CellState::mixed) patches.emplace(cell.instance, cell.patch);
+  }
+  for (const auto& [instance, patch] : patches) {
+    const Contact c{instance, SourceKind::face, patch, 0, 0};
+    for (const Side side : all_sides) {
+      if (border_at(geometry_, c, side).kind == BorderKind::collapsed) continue;
+      const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
+      for (const double t : sign_changes(curvature)) offer(border_end(geometry_, c, side, t));
+    }
+  }
+}
+
+void FreeEndSearch::search_piece(const Contact& c) {
+  const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
+  double extent = 0;
+  for (int k = 0; k <= samples_along; ++k) {
+    extent = std::max(extent, std::abs(twist(double(k) / samples_along)));
+  }
+  if (extent <= least_extent) return;  // planar
+  for (const double sign : {1.0, -1.0}) {
+    for (const double t : sign_changes(twist)) offer(edge_end(geometry_, c, t, sign));
+    for (int end = 0; end < 2; ++end) offer(piece_end(geometry_, c, end, sign));
+  }
+}
+
+void FreeEndSearch::search_edges() {
+  const std::vector<Instance>& instances = geometry_.scene().model().instances();
+  for (int i = 0; i < int(instances.size()); ++i) {
+    const std::vector<EdgePiece>& pieces = geometry_.part({i}).pieces();
+    for (int k = 0; k < int(pieces.size()); ++k) {
+      const Contact c{i, SourceKind::edge, k, 0, 0};
+      // Seams are no edges.
+      if (pieces[std::size_t(k)].edge >= 0 && !geometry_.is_straight(c)) search_piece(c);
+    }
+  }
+}
+
+/// Roots about a contact: the one nearest to a free end that is known roughly.
+class Polish {
+ public:
+  Polish(const ContactGeometry& geometry, const FreeEnd& near)
+      : geometry_(geometry), near_(near), x_(geometry.point(near.contact)) {}
+
+  std::optional<FreeEnd> run() {
+    const Contact& c = near_.contact;
+    if (near_.kind == Kind::face && c.kind == SourceKind::face) face();
+    if (near_.kind == Kind::edge && c.kind == SourceKind::edge) edge();
+    if (near_.kind == Kind::border && c.kind == SourceKind::edge) border();
+    if (near_.kind == Kind::end && c.kind == SourceKind::vertex) end();
+    return best_;
+  }
+
+ private:
+  void face() {
+    for (const Contact& c : contacts_around()) {
+      if (const auto root = cusp_near(geometry_, c, reach)) keep(cusp(geometry_, *root));
+      for (const Side side : all_sides) {
+        if (distance_from(c, side) > beside_border) continue;
+        if (border_at(geometry_, c, side).kind == BorderKind::smooth) on_border(c, side);
+      }
+    }
+  }
+  void edge() {
+    for (const Contact& c : contacts_around()) {
+      const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
+      const std::optional<double> t = root_near(twist, c.u, reach);
+      for (const double sign : {1.0, -1.0}) {
+        if (t) keep(edge_end(geometry_, c, *t, sign));
+        for (int end = 0; end < 2; ++end) {
+          if (std::abs(c.u - end) <= beside_border) keep(piece_end(geometry_, c, end, sign));
+        }
+      }
+    }
+  }
+  void border() {
+    for (const Contact& c : contacts_around()) {
+      for (const ContactGeometry::PieceSide& side : geometry_.sides(c)) {
+        const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
+        on_border({c.instance, SourceKind::face, side.patch, uv.x, uv.y}, side.side);
+      }
+    }
+  }
+  void end() {
+    for (const ContactGeometry::PieceEnd& own : geometry_.ends(near_.contact)) {
+      const Contact c{near_.contact.instance, SourceKind::edge, own.piece, 0, 0};
+      for (const double sign : {1.0, -1.0}) keep(piece_end(geometry_, c, own.end, sign));
+    }
+  }
+  void on_border(const Contact& c, Side side) {
+    const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
+    const auto t = root_near(curvature, along_v(side) ? c.v : c.u, reach);
+    if (t) keep(border_end(geometry_, c, side, *t));
+  }
+
+  /// The contact, and those on neighbouring elements over smooth joins nearby.
+  std::vector<Contact> contacts_around() const;
+  void keep(const std::optional<FreeEnd>& end);
+
+  /// In parameters.
+  static constexpr double reach = 0.5;
+  static constexpr std::size_t most_around = 8;
+
+  const ContactGeometry& geometry_;
+  FreeEnd near_;
+  dvec3 x_;
+  std::optional<FreeEnd> best_;
+  double least_ = free_end_reach;
+};
+
+std::vector<Contact> Polish::contacts_around() const {
+  std::vector<Contact> found = {near_.contact};
+  const auto add = [&](const std::optional<Contact>& c) {
+    if (!c || c->kind != near_.contact.kind) return;
+    const bool known = std::any_of(found.begin(), found.end(),
+                                   [&](const Contact& other) { return same_element(*c, other); });
+    if (!known && found.size() < most_around) found.push_back(*c);
+  };
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Contact c = found[k];
+    const bool face = c.kind == SourceKind::face;
+    for (int i = 0; i < (face ? 4 : 2); ++i) {
+      const Side side = all_sides[std::size_t(i)];
+      const double distance = face ? distance_from(c, side) : std::abs(c.u - i);
+      if (distance > beside_border) continue;
+      add(beyond(geometry_, c, {face ? ContactExit::Kind::side : ContactExit::Kind::end, i}));
+    }
+  }
+  return found;
+}
+
+void Polish::keep(const std::optional<FreeEnd>& end) {
+  if (!end) return;
+  const double distance =
+      std::max(glm::distance(geometry_.point(end->contact), x_), glm::distance(end->n, near_.n));
+  if (distance > least_) return;
+  least_ = distance;
+  best_ = end;
+}
+
+}  // namespace
+
+std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& query,
+                               const std::vector<CulledCell>& cells) {
+  FreeEndSearch search(geometry, query);
+  search.search_cells(cells);
+  search.search_borders(cells);
+  search.search_edges();
+  return search.result();
+}
+
+std::optional<FreeEnd> polished(const ContactGeometry& geometry, const FreeEnd& near) {
+  return Polish(geometry, near).run();
+}
+
+}  // namespace taut
