@@ -5,6 +5,7 @@
 
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/free_ends.h"
 
 namespace taut {
 namespace {
@@ -415,6 +416,68 @@ dvec3 limit_normal(const std::array<ContactJet, 2>& jet, const dvec3& near) {
   return glm::dot(normal, near) < 0 ? -normal : normal;
 }
 
+/// What kind of free end two contacts that merge make, and in which element it is told; none where
+/// it is of no generic kind.
+std::optional<FreeEnd> kind_of_end(const ContactGeometry& geometry, const Ruling& ruling) {
+  const std::array<Contact, 2>& c = ruling.contact;
+  const auto is = [&](std::size_t i, SourceKind kind) { return c[i].kind == kind; };
+  FreeEnd end{ruling.n, c[0], FreeEnd::Kind::face, dvec3(0.0)};
+  if (continues(geometry, c[0], c[1])) {
+    if (is(0, SourceKind::edge)) end.kind = FreeEnd::Kind::edge;
+    return end;
+  }
+  if (is(0, SourceKind::edge) && is(1, SourceKind::edge)) {
+    end.contact = geometry.canonical(c[0]);
+    end.kind = FreeEnd::Kind::corner;
+    return end;
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    end.contact = c[i];
+    if (is(i, SourceKind::edge) && is(1 - i, SourceKind::face)) {
+      end.kind = FreeEnd::Kind::border;
+      return end;
+    }
+    if (is(i, SourceKind::vertex) && is(1 - i, SourceKind::edge)) {
+      end.kind = FreeEnd::Kind::end;
+      return end;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The contact told in the element of another one, in which it lies too; none if it does not.
+std::optional<Contact> told_in(const ContactGeometry& geometry, const Contact& c,
+                               const Contact& other) {
+  if (same_element(c, other)) return c;
+  for (const ContactExit& exit : exits(geometry, c)) {
+    Contact a = c;
+    if (exit.kind == ContactExit::Kind::side) a = at_pole(c, all_sides[std::size_t(exit.index)]);
+    if (exit.kind == ContactExit::Kind::end) a.u = exit.index;
+    if (a.u != c.u || a.v != c.v) continue;
+    const std::optional<Contact> over = beyond(geometry, c, exit);
+    if (over && same_element(*over, other)) return over;
+  }
+  return std::nullopt;
+}
+
+/// The ruling of length zero in the free end near the one given, exactly; none where that is not
+/// in the same elements.
+std::optional<Ruling> exact_end(const ContactGeometry& geometry, const Ruling& near) {
+  const std::optional<FreeEnd> kind = kind_of_end(geometry, near);
+  const std::optional<FreeEnd> end = kind ? polished(geometry, *kind) : std::nullopt;
+  if (!end) return std::nullopt;
+  Ruling result;
+  result.n = end->n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<Contact> own = told_in(geometry, end->contact, near.contact[i]);
+    if (!own) return std::nullopt;
+    result.contact[i] = *own;
+  }
+  const dvec3 x = geometry.point(end->contact);
+  result.point = {x, x};
+  return result;
+}
+
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
 /// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
 /// are in one element, the parameters' mean are smooth functions of its square.
@@ -443,6 +506,14 @@ bool Trace::merge() {
     c.v = std::clamp(at.y, 0.0, 1.0);
   }
   move_together(geometry_, end.contact[0], end.contact[1]);
+  if (const std::optional<Ruling> exact = exact_end(geometry_, end)) {
+    const dvec3& at = exact->point[0];
+    if (glm::distance(at, last.point[0]) < 2 * std::abs(linear) &&
+        query_(exact->n, exact->contact[0]).h <= glm::dot(at, exact->n) + support_tie) {
+      arc_.pieces.back().rulings.push_back(*exact);
+      return true;
+    }
+  }
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;

@@ -64,8 +64,10 @@ std::optional<SurfaceBend> surface_bend(const ContactGeometry& geometry, const C
   bend.along = unit(bend.rate.x * j.Su + bend.rate.y * j.Sv);
   const double u = bend.rate.x;
   const double v = bend.rate.y;
-  bend.cubic = glm::dot(
-      u * u * u * j.Suuu + 3 * u * v * (u * j.Suuv + v * j.Suvv) + v * v * v * j.Svvv, bend.n);
+  const dvec3 third =
+      u * u * u * j.Suuu + 3 * u * v * (u * j.Suuv + v * j.Suvv) + v * v * v * j.Svvv;
+  bend.cubic = glm::dot(third, bend.n);
+  bend.third = glm::length(third);
   return bend;
 }
 

@@ -22,6 +22,8 @@ struct SurfaceBend {
   dvec2 rate = dvec2(0.0);
   /// Third derivative of S . n along `rate`. On the parabolic curve it vanishes in cusps of Gauss.
   double cubic = 0;
+  /// Length of the third derivative of S itself, to which the rounding of `cubic` is relative.
+  double third = 0;
   /// |Su x Sv|
   double area = 0;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "taut/bounds/patch_nets.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
@@ -36,10 +37,13 @@ constexpr double parameter_slack = 1e-11;
 constexpr double least_change = 1e-5;
 /// A curvature or twist that stays below this everywhere vanishes.
 constexpr double least_extent = 1e-9;
-/// Third derivatives below this, relative to the unit or the square of the curvature, may be zero.
+/// Third derivatives across a plane that are below this, relative to the whole ones or the unit,
+/// may be zero.
 constexpr double cubic_slack = 1e-9;
 /// The same of a curvature on the other side of a join, relative to the principal one.
 constexpr double flat_slack = 1e-7;
+/// Where a departure is level for a cusp or a zero of the torsion, that is no farther.
+constexpr double level_reach = 1e-6;
 /// What is nearer to a collapsed side is at it.
 constexpr double pole_distance = 1e-6;
 /// Elements over a border that is no farther are searched too.
@@ -171,13 +175,24 @@ std::optional<FreeEnd> cusp(const ContactGeometry& geometry, const Contact& root
   return FreeEnd{b->n, c, Kind::face, b->along};
 }
 
-/// Into the patch, along the flat direction at a side, the surface stays below the plane across n:
-/// to third order.
-bool falls_inward(const SurfaceBend& b, Side side) {
+/// How the surface or curve leaves the plane across n at a border, where it is flat to second
+/// order.
+enum class Departure { below, level, above };
+
+Departure departure(double cubic, double slack) {
+  return cubic < -slack ? Departure::below : cubic > slack ? Departure::above : Departure::level;
+}
+
+/// Rate into the patch at a side.
+double inward_rate(const SurfaceBend& b, Side side) {
   const double across = along_v(side) ? b.rate.x : b.rate.y;
-  const double inward = at_upper_end(side) ? -across : across;
-  const double slack = cubic_slack * (1 + b.steep * b.steep);
-  return (inward < 0 ? -b.cubic : b.cubic) <= slack;
+  return at_upper_end(side) ? -across : across;
+}
+
+/// Into the patch along the flat direction, to third order.
+Departure inward_departure(const SurfaceBend& b, Side side) {
+  const double cubic = inward_rate(b, side) < 0 ? -b.cubic : b.cubic;
+  return departure(cubic, cubic_slack * std::max(1.0, b.third));
 }
 
 /// The side over a smooth join where the contact lies.
@@ -201,25 +216,32 @@ double curvature_on(const ContactGeometry& geometry, Contact c, Side side, doubl
   return b ? b->gauss_curvature() : 0;
 }
 
+/// Beyond a smooth join, where there is one, the surface leaves the plane as it does on this side;
+/// or it bends away.
+bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side, Departure own) {
+  const std::optional<Beyond> over = beyond_join(geometry, c, side);
+  if (!over) return true;
+  const std::optional<SurfaceBend> b = surface_bend(geometry, over->contact);
+  if (!b) return false;
+  return b->flat < flat_slack * b->steep || inward_departure(*b, over->side) == own;
+}
+
 /// From where the parabolic curve was found to meet a side: B3, or on a smooth join an end that the
-/// jump of derivatives makes.
+/// jump of derivatives makes. A level departure is that of a cusp just there, or of a whole circle
+/// of flat points, which is none.
 std::optional<FreeEnd> border_end(const ContactGeometry& geometry, Contact c, Side side, double t) {
   if (!within(t)) return std::nullopt;
   const dvec2 uv = on_side(side, std::clamp(t, 0.0, 1.0));
   c.u = uv.x;
   c.v = uv.y;
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
-  if (!b || near_pole(geometry, c) || !falls_inward(*b, side)) return std::nullopt;
-  if (const std::optional<Beyond> over = beyond_join(geometry, c, side)) {
-    const std::optional<SurfaceBend> other = surface_bend(geometry, over->contact);
-    if (!other) return std::nullopt;
-    const bool flat = other->flat >= flat_slack * other->steep;
-    if (flat && !falls_inward(*other, over->side)) return std::nullopt;
-  }
-  const double across = (along_v(side) ? b->rate.x : b->rate.y) * (at_upper_end(side) ? -1 : 1);
-  const Contact own = geometry.canonical(c);
-  const Kind kind = own.kind == SourceKind::face ? Kind::face : Kind::border;
-  return FreeEnd{b->n, own, kind, across < 0 ? -b->along : b->along};
+  if (!b || near_pole(geometry, c)) return std::nullopt;
+  const Departure own = inward_departure(*b, side);
+  if (own == Departure::above || !agrees_beyond(geometry, c, side, own)) return std::nullopt;
+  if (own == Departure::level && !cusp_near(geometry, c, level_reach)) return std::nullopt;
+  const Contact place = geometry.canonical(c);
+  const Kind kind = place.kind == SourceKind::face ? Kind::face : Kind::border;
+  return FreeEnd{b->n, place, kind, inward_rate(*b, side) < 0 ? -b->along : b->along};
 }
 
 double twist_at(const ContactGeometry& geometry, Contact c, double t) {
@@ -237,10 +259,10 @@ std::optional<FreeEnd> edge_end(const ContactGeometry& geometry, Contact c, doub
   return FreeEnd{sign * b->binormal, c, Kind::edge, b->along};
 }
 
-/// From its end on, the piece stays below the plane across n: to third order.
-bool falls_inward(const CurveBend& b, int end, const dvec3& n) {
+/// From an end of the piece on, to third order.
+Departure inward_departure(const CurveBend& b, int end, const dvec3& n) {
   const double cubic = glm::dot(b.third, n);
-  return (end == 0 ? cubic : -cubic) <= cubic_slack * std::max(1.0, glm::length(b.third));
+  return departure(end == 0 ? cubic : -cubic, cubic_slack * std::max(1.0, glm::length(b.third)));
 }
 
 /// At the end of a piece, in its osculating plane: B3 at a vertex, or where pieces join an end that
@@ -248,18 +270,78 @@ bool falls_inward(const CurveBend& b, int end, const dvec3& n) {
 std::optional<FreeEnd> piece_end(const ContactGeometry& geometry, Contact c, int end, double sign) {
   c.u = end;
   const std::optional<CurveBend> b = curve_bend(geometry, c);
-  if (!b || b->binormal == dvec3(0.0)) return std::nullopt;
-  const dvec3 n = sign * b->binormal;
-  if (!falls_inward(*b, end, n)) return std::nullopt;
   const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::end, end});
-  if (!over) return std::nullopt;
+  if (!b || b->binormal == dvec3(0.0) || !over) return std::nullopt;
+  const dvec3 n = sign * b->binormal;
+  const Departure own = inward_departure(*b, end, n);
+  if (own == Departure::above) return std::nullopt;
+  if (own == Departure::level) {
+    const auto twist = [&](double t) { return twist_at(geometry, c, t); };
+    if (!root_near(twist, double(end), level_reach)) return std::nullopt;
+  }
   const dvec3 along = end == 0 ? b->along : -b->along;
   if (over->kind == SourceKind::vertex) return FreeEnd{n, *over, Kind::end, along};
-  const std::optional<CurveBend> other = curve_bend(geometry, *over);
-  if (!other) return std::nullopt;
-  const bool flat = glm::dot(other->second, n) >= -flat_slack * other->curvature;
-  if (flat && !falls_inward(*other, int(over->u), n)) return std::nullopt;
+  const std::optional<CurveBend> next = curve_bend(geometry, *over);
+  if (!next) return std::nullopt;
+  const bool bends_away = glm::dot(next->second, n) < -flat_slack * next->curvature;
+  if (!bends_away && inward_departure(*next, int(over->u), n) != own) return std::nullopt;
   return FreeEnd{n, c, Kind::edge, along};
+}
+
+/// The face between two pieces that end in a common vertex, if a patch has both for sides, is a
+/// saddle there.
+bool parts_at_corner(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
+  for (const ContactGeometry::PieceSide& s : geometry.sides(a)) {
+    for (const ContactGeometry::PieceSide& t : geometry.sides(b)) {
+      if (s.patch != t.patch || along_v(s.side) == along_v(t.side)) continue;
+      const dvec2 uv = on_side(s.side, at_upper_end(t.side) ? 1 : 0);
+      const std::optional<SurfaceBend> bend =
+          surface_bend(geometry, {a.instance, SourceKind::face, s.patch, uv.x, uv.y});
+      if (!bend || bend->flat <= 0) return false;
+    }
+  }
+  return true;
+}
+
+/// At a vertex, in the plane of two edges that end there: above it both edges' contacts compete,
+/// unless a face's takes over between them.
+std::optional<FreeEnd> corner_end(const ContactGeometry& geometry, const Contact& vertex,
+                                  const std::array<ContactGeometry::PieceEnd, 2>& ends,
+                                  double sign) {
+  std::array<Contact, 2> c;
+  std::array<CurveBend, 2> bend;
+  std::array<dvec3, 2> away;
+  for (std::size_t i = 0; i < 2; ++i) {
+    c[i] = {vertex.instance, SourceKind::edge, ends[i].piece, double(ends[i].end), 0};
+    const std::optional<CurveBend> b = curve_bend(geometry, c[i]);
+    if (!b || geometry.is_straight(c[i])) return std::nullopt;
+    bend[i] = *b;
+    away[i] = ends[i].end == 0 ? b->along : -b->along;
+  }
+  const dvec3 cross = glm::cross(away[0], away[1]);
+  if (glm::length(cross) < smooth_join_angle) return std::nullopt;
+  const dvec3 n = sign * unit(cross);
+  dvec3 along(0.0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double falls = -glm::dot(bend[i].second, n);
+    if (falls <= flat_slack * bend[i].curvature) return std::nullopt;
+    along += (i == 0 ? -1 : 1) / std::sqrt(falls) * away[i];
+  }
+  if (!parts_at_corner(geometry, c[0], c[1])) return std::nullopt;
+  return FreeEnd{n, vertex, Kind::corner, unit(along)};
+}
+
+/// Calls visit with the candidates at a vertex between any two of its edges.
+template <class Visit>
+void each_corner_end(const ContactGeometry& geometry, const Contact& vertex, const Visit& visit) {
+  const std::vector<ContactGeometry::PieceEnd>& ends = geometry.ends(vertex);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (std::size_t j = i + 1; j < ends.size(); ++j) {
+      for (const double sign : {1.0, -1.0}) {
+        visit(corner_end(geometry, vertex, {ends[i], ends[j]}, sign));
+      }
+    }
+  }
 }
 
 /// @}
@@ -273,6 +355,7 @@ class FreeEndSearch {
   void search_cells(const std::vector<CulledCell>& cells);
   void search_borders(const std::vector<CulledCell>& cells);
   void search_edges();
+  void search_corners();
   std::vector<FreeEnd> result() { return std::move(ends_); }
 
  private:
@@ -374,6 +457,17 @@ void FreeEndSearch::search_edges() {
   }
 }
 
+void FreeEndSearch::search_corners() {
+  const std::vector<Instance>& instances = geometry_.scene().model().instances();
+  for (int i = 0; i < int(instances.size()); ++i) {
+    const int vertices = int(geometry_.part({i}).vertices().size());
+    for (int k = 0; k < vertices; ++k) {
+      each_corner_end(geometry_, {i, SourceKind::vertex, k, 0, 0},
+                      [&](const std::optional<FreeEnd>& end) { offer(end); });
+    }
+  }
+}
+
 /// Roots about a contact: the one nearest to a free end that is known roughly.
 class Polish {
  public:
@@ -386,6 +480,9 @@ class Polish {
     if (near_.kind == Kind::edge && c.kind == SourceKind::edge) edge();
     if (near_.kind == Kind::border && c.kind == SourceKind::edge) border();
     if (near_.kind == Kind::end && c.kind == SourceKind::vertex) end();
+    if (near_.kind == Kind::corner && c.kind == SourceKind::vertex) {
+      each_corner_end(geometry_, c, [&](const std::optional<FreeEnd>& found) { keep(found); });
+    }
     return best_;
   }
 
@@ -484,6 +581,7 @@ std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& qu
   search.search_cells(cells);
   search.search_borders(cells);
   search.search_edges();
+  search.search_corners();
   return search.result();
 }
 

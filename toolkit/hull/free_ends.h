@@ -20,19 +20,22 @@ struct FreeEnd {
     edge,  ///< A3 on an edge: the torsion vanishes, or changes sign where pieces join
     border,  ///< B3 on an edge: the parabolic curve of a face meets it
     end,     ///< B3 at a vertex: an edge's contact runs into its end along its osculating plane
+    corner,  ///< two edges' contacts run into the vertex between them, n normal to both: where no
+             ///< face is between them, or one that is a saddle there
   };
   dvec3 n = dvec3(0.0);  ///< unit, outward, in the scene's frame
   Contact contact;       ///< the merged one: on a patch, an edge's piece or at a vertex
   Kind kind = Kind::face;
   /// Unit tangent along which the contacts part: in both senses from an A3, from a border into the
-  /// face and from a vertex along the edge.
+  /// face, from a vertex along the edge, at a corner from one edge to the other.
   dvec3 along = dvec3(0.0);
 };
 
 /// All free ends of the scene's hull: those in the mixed cells, on the borders of their patches, on
 /// all edges' pieces and at their ends. Each supports the model to within support_tie, by a support
 /// query, and is a simple root: where a whole curve of contacts shares one direction (the circle on
-/// which a torus lies) there is none. Collapsed sides are left out, and edges that are planar.
+/// which a torus lies) there is none, nor where an edge is straight. Collapsed sides are left out,
+/// and edges that are planar.
 ///
 /// Cells whose Bernstein nets prove that the second form is singular nowhere are excluded; from
 /// each of the others, a 64th of the patch wide, Newton's method starts once. So none is missed
