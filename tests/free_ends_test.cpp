@@ -283,9 +283,11 @@ TEST(FreeEnds, AtTheCornerOfASaddle) {
     const dmat3 turn = skew_rotation();
     Setting own(mapped(of_patch(patch), turn, dvec3(1, 2, 3)));
     const std::vector<FreeEnd> ends = own.ends();
-    EXPECT_EQ(count(ends, FreeEnd::Kind::corner), b > 1 ? 1 : 0);
+    // The one on the other side of the surface is in the corner across.
+    EXPECT_EQ(count(ends, FreeEnd::Kind::corner), b > 1 ? 2 : 0);
     for (const FreeEnd& end : ends) {
       if (end.kind != FreeEnd::Kind::corner) continue;
+      if (glm::distance(own.point(end), dvec3(1, 2, 3)) > 1) continue;
       EXPECT_LT(glm::distance(own.point(end), dvec3(1, 2, 3)), 1e-13);
       EXPECT_LT(glm::distance(end.n, turn * dvec3(0, 0, 1)), 1e-13);
       const dvec3 diagonal = turn * glm::normalize(dvec3(1, -1, 0));
@@ -340,8 +342,8 @@ std::vector<TracedEnd> traced_ends(const HullBoundary& boundary) {
 }
 
 /// As many as the arcs' ends, each of which lies in one of them. Some hulls of wild patches are not
-/// resolved; arcs are missing there.
-void expect_those_of_arcs(const Shape& shape) {
+/// resolved; arcs are missing there. `extrapolation_error`: of ends from the arcs' other rulings.
+void expect_those_of_arcs(const Shape& shape, double extrapolation_error) {
   Setting own(shape);
   HullStatistics statistics;
   HullOptions options;
@@ -365,14 +367,14 @@ void expect_those_of_arcs(const Shape& shape) {
   for (const TracedEnd& end : traced) {
     EXPECT_LT(nearest(end.ruling.point[0], end.ruling.n), 1e-12);
     if (end.extrapolated) {
-      EXPECT_LT(nearest(end.x, end.n), 1e-4);
+      EXPECT_LT(nearest(end.x, end.n), extrapolation_error);
     }
   }
 }
 
 class Blobs : public testing::TestWithParam<unsigned> {};
 
-TEST_P(Blobs, EndTheirArcs) { expect_those_of_arcs(blob(GetParam())); }
+TEST_P(Blobs, EndTheirArcs) { expect_those_of_arcs(blob(GetParam()), 1e-4); }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
 
@@ -380,7 +382,8 @@ TEST(FreeEnds, EndTheArcsOfRandomCurves) {
   Random random(5);
   for (int k = 0; k < 40; ++k) {
     SCOPED_TRACE(k);
-    expect_those_of_arcs(as_shape(random_curve(random, pick(random, 3, 7), 1)));
+    const int degree = pick(random, 3, 7);
+    expect_those_of_arcs(as_shape(random_curve(random, degree, 1)), 1e-2);
   }
 }
 
@@ -388,7 +391,9 @@ TEST(FreeEnds, EndTheArcsOfRandomPatches) {
   Random random(6);
   for (int k = 0; k < 40; ++k) {
     SCOPED_TRACE(k);
-    expect_those_of_arcs(of_patch(random_patch(random, pick(random, 2, 4), pick(random, 2, 4), 2)));
+    const int degree_u = pick(random, 2, 4);
+    const int degree_v = pick(random, 2, 4);
+    expect_those_of_arcs(of_patch(random_patch(random, degree_u, degree_v, 2)), 1e-2);
   }
 }
 

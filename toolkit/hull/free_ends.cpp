@@ -22,6 +22,8 @@ constexpr int finest_level = 6;
 constexpr int samples_along = 64;
 /// Bisections after which an interval of a 64th is down to rounding.
 constexpr int bisection_limit = 60;
+/// Steps of a ternary search for a change of sign.
+constexpr int dip_limit = 40;
 
 constexpr int newton_limit = 20;
 /// Steps of a parameter below this end Newton's method; below the second one, if they do not get
@@ -93,27 +95,63 @@ std::optional<double> root_near(const Function& f, double start, double reach) {
   return std::nullopt;
 }
 
-/// Where a function over [0, 1] changes sign between samples; none if it vanishes throughout.
+double sample(int k) { return double(k) / samples_along; }
+
+/// The function is zero over all of [0, 1], up to rounding.
+template <class Function>
+bool vanishes(const Function& f) {
+  double extent = 0;
+  for (int k = 0; k <= samples_along; ++k) extent = std::max(extent, std::abs(f(sample(k))));
+  return !(extent > least_extent);
+}
+
+template <class Function>
+double bisected(const Function& f, double a, double b) {
+  const bool negative = f(a) < 0;
+  for (int i = 0; i < bisection_limit; ++i) {
+    const double middle = 0.5 * (a + b);
+    ((f(middle) < 0) == negative ? a : b) = middle;
+  }
+  return 0.5 * (a + b);
+}
+
+/// Where a function of one sign at both ends and about a dip between them has the other one, if
+/// ternary search finds that.
+template <class Function>
+std::optional<double> across_dip(const Function& f, double a, double b) {
+  const double first = f(a);
+  for (int i = 0; i < dip_limit; ++i) {
+    const double s = a + (b - a) / 3;
+    const double t = b - (b - a) / 3;
+    const double at_s = f(s);
+    const double at_t = f(t);
+    if ((at_s < 0) != (first < 0)) return s;
+    if ((at_t < 0) != (first < 0)) return t;
+    (std::abs(at_s) < std::abs(at_t) ? b : a) = std::abs(at_s) < std::abs(at_t) ? t : s;
+  }
+  return std::nullopt;
+}
+
+/// Zeros of a function over [0, 1] at which it changes sign: between samples, or twice in a dip.
 template <class Function>
 std::vector<double> sign_changes(const Function& f) {
   std::vector<double> values(samples_along + 1);
-  double extent = 0;
-  for (int k = 0; k <= samples_along; ++k) {
-    values[std::size_t(k)] = f(double(k) / samples_along);
-    extent = std::max(extent, std::abs(values[std::size_t(k)]));
-  }
+  for (int k = 0; k <= samples_along; ++k) values[std::size_t(k)] = f(sample(k));
+  const auto value = [&](int k) { return values[std::size_t(std::clamp(k, 0, samples_along))]; };
+  const auto changes = [&](int k) { return (value(k) < 0) != (value(k + 1) < 0); };
   std::vector<double> roots;
-  if (!(extent > least_extent)) return roots;
-  for (int k = 0; k < samples_along; ++k) {
-    const bool negative = values[std::size_t(k)] < 0;
-    if ((values[std::size_t(k) + 1] < 0) == negative) continue;
-    double a = double(k) / samples_along;
-    double b = double(k + 1) / samples_along;
-    for (int i = 0; i < bisection_limit; ++i) {
-      const double middle = 0.5 * (a + b);
-      ((f(middle) < 0) == negative ? a : b) = middle;
+  for (int k = 0; k <= samples_along; ++k) {
+    if (changes(k)) roots.push_back(bisected(f, sample(k), sample(k + 1)));
+    if (changes(k - 1) || changes(k) || std::abs(value(k - 1)) < std::abs(value(k)) ||
+        std::abs(value(k + 1)) < std::abs(value(k))) {
+      continue;
     }
-    roots.push_back(0.5 * (a + b));
+    const double a = sample(std::max(k - 1, 0));
+    const double b = sample(std::min(k + 1, samples_along));
+    if (const std::optional<double> across = across_dip(f, a, b)) {
+      roots.push_back(bisected(f, a, *across));
+      roots.push_back(bisected(f, *across, b));
+    }
   }
   return roots;
 }
@@ -208,12 +246,23 @@ std::optional<Beyond> beyond_join(const ContactGeometry& geometry, const Contact
   return Beyond{*over, border.neighbor_side};
 }
 
-double curvature_on(const ContactGeometry& geometry, Contact c, Side side, double t) {
+std::optional<SurfaceBend> bend_on(const ContactGeometry& geometry, Contact c, Side side,
+                                   double t) {
   const dvec2 uv = on_side(side, t);
   c.u = uv.x;
   c.v = uv.y;
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  return surface_bend(geometry, c);
+}
+
+double curvature_on(const ContactGeometry& geometry, const Contact& c, Side side, double t) {
+  const std::optional<SurfaceBend> b = bend_on(geometry, c, side, t);
   return b ? b->gauss_curvature() : 0;
+}
+
+/// The determinant of the second form along Su x Sv itself: a polynomial, where the patch is one.
+double determinant_on(const ContactGeometry& geometry, const Contact& c, Side side, double t) {
+  const std::optional<SurfaceBend> b = bend_on(geometry, c, side, t);
+  return b ? b->gauss_curvature() * std::pow(b->area, 4) : 0;
 }
 
 /// Beyond a smooth join, where there is one, the surface leaves the plane as it does on this side;
@@ -427,20 +476,19 @@ void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
     for (const Side side : all_sides) {
       if (border_at(geometry_, c, side).kind == BorderKind::collapsed) continue;
       const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
-      for (const double t : sign_changes(curvature)) offer(border_end(geometry_, c, side, t));
+      const auto det = [&](double t) { return determinant_on(geometry_, c, side, t); };
+      if (vanishes(curvature)) continue;
+      for (const double t : sign_changes(det)) offer(border_end(geometry_, c, side, t));
     }
   }
 }
 
 void FreeEndSearch::search_piece(const Contact& c) {
   const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
-  double extent = 0;
-  for (int k = 0; k <= samples_along; ++k) {
-    extent = std::max(extent, std::abs(twist(double(k) / samples_along)));
-  }
-  if (extent <= least_extent) return;  // planar
+  if (vanishes(twist)) return;  // planar
+  const std::vector<double> zeros = sign_changes(twist);
   for (const double sign : {1.0, -1.0}) {
-    for (const double t : sign_changes(twist)) offer(edge_end(geometry_, c, t, sign));
+    for (const double t : zeros) offer(edge_end(geometry_, c, t, sign));
     for (int end = 0; end < 2; ++end) offer(piece_end(geometry_, c, end, sign));
   }
 }

@@ -40,7 +40,7 @@ struct FreeEnd {
 /// Cells whose Bernstein nets prove that the second form is singular nowhere are excluded; from
 /// each of the others, a 64th of the patch wide, Newton's method starts once. So none is missed
 /// but where the method fails or two ends lie in neighbouring cells of that size. Borders and edges
-/// are sampled for changes of sign, at a distance of a 64th too.
+/// are sampled at a distance of a 64th too, for changes of sign and for dips that may hide two.
 /// @pre the cells are of the scene
 std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& query,
                                const std::vector<CulledCell>& cells);
