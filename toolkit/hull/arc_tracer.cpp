@@ -97,6 +97,7 @@ class Trace {
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
+  std::optional<FreeEnd> exact_end(const Ruling& near);
   bool merge();
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
@@ -460,22 +461,29 @@ std::optional<Contact> told_in(const ContactGeometry& geometry, const Contact& c
   return std::nullopt;
 }
 
-/// The ruling of length zero in the free end near the one given, exactly; none where that is not
-/// in the same elements.
-std::optional<Ruling> exact_end(const ContactGeometry& geometry, const Ruling& near) {
-  const std::optional<FreeEnd> kind = kind_of_end(geometry, near);
-  const std::optional<FreeEnd> end = kind ? polished(geometry, *kind) : std::nullopt;
-  if (!end) return std::nullopt;
+/// The ruling of length zero in a free end, in the elements of another ruling; none where it does
+/// not lie in both of them.
+std::optional<Ruling> ruling_at(const ContactGeometry& geometry, const FreeEnd& end,
+                                const Ruling& other) {
   Ruling result;
-  result.n = end->n;
+  result.n = end.n;
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<Contact> own = told_in(geometry, end->contact, near.contact[i]);
+    const std::optional<Contact> own = told_in(geometry, end.contact, other.contact[i]);
     if (!own) return std::nullopt;
     result.contact[i] = *own;
   }
-  const dvec3 x = geometry.point(end->contact);
+  const dvec3 x = geometry.point(end.contact);
   result.point = {x, x};
   return result;
+}
+
+/// The free end near the ruling that supports the model.
+std::optional<FreeEnd> Trace::exact_end(const Ruling& near) {
+  const std::optional<FreeEnd> kind = kind_of_end(geometry_, near);
+  const std::optional<FreeEnd> end = kind ? polished(geometry_, *kind) : std::nullopt;
+  if (!end) return std::nullopt;
+  const double height = glm::dot(geometry_.point(end->contact), end->n);
+  return query_(end->n, near.contact[0]).h <= height + support_tie ? end : std::nullopt;
 }
 
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
@@ -506,13 +514,15 @@ bool Trace::merge() {
     c.v = std::clamp(at.y, 0.0, 1.0);
   }
   move_together(geometry_, end.contact[0], end.contact[1]);
-  if (const std::optional<Ruling> exact = exact_end(geometry_, end)) {
-    const dvec3& at = exact->point[0];
-    if (glm::distance(at, last.point[0]) < 2 * std::abs(linear) &&
-        query_(exact->n, exact->contact[0]).h <= glm::dot(at, exact->n) + support_tie) {
-      arc_.pieces.back().rulings.push_back(*exact);
+  if (const std::optional<FreeEnd> exact = exact_end(end);
+      exact &&
+      glm::distance(geometry_.point(exact->contact), last.point[0]) < 2 * std::abs(linear)) {
+    if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
+      arc_.pieces.back().rulings.push_back(*ruling);
       return true;
     }
+    // A contact changes its element before.
+    if (rho > 2 * least_distance) return false;
   }
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};

@@ -31,7 +31,7 @@ constexpr int newton_limit = 20;
 constexpr double converged_step = 1e-14;
 constexpr double noise_step = 1e-8;
 /// Of central difference quotients: their error slows Newton's method by its square.
-constexpr double difference = 1e-4;
+constexpr double difference = 1e-5;
 /// How far rounding may put a root beyond the border on which it lies.
 constexpr double parameter_slack = 1e-11;
 /// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
@@ -198,6 +198,50 @@ std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, dou
     last = length;
   }
   return std::nullopt;
+}
+
+/// Where the parabolic curve meets the line from a to b, if it does once.
+std::optional<Contact> parabolic_between(const ContactGeometry& geometry, const Contact& a,
+                                         const Contact& b) {
+  const auto at = [&](double s) {
+    Contact c = a;
+    c.u += s * (b.u - a.u);
+    c.v += s * (b.v - a.v);
+    return c;
+  };
+  const auto curvature = [&](double s) {
+    const std::optional<SurfaceBend> bend = surface_bend(geometry, at(s));
+    return bend ? bend->gauss_curvature() : 0;
+  };
+  if ((curvature(0) < 0) == (curvature(1) < 0)) return std::nullopt;
+  return at(bisected(curvature, 0, 1));
+}
+
+/// Between the two points in which the parabolic curve crosses a cell's outline, if the cubic along
+/// it differs in sign there.
+std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Contact& c,
+                                    const PatchCell& cell) {
+  const auto corner = [&](int k) {
+    return Contact{c.instance, c.kind, c.element,
+                   k == 1 || k == 2 ? cell.u().upper : cell.u().lower,
+                   k >= 2 ? cell.v().upper : cell.v().lower};
+  };
+  std::vector<Contact> crossings;
+  for (int k = 0; k < 4; ++k) {
+    const auto crossing = parabolic_between(geometry, corner(k), corner((k + 1) % 4));
+    if (crossing) crossings.push_back(*crossing);
+  }
+  if (crossings.size() != 2) return std::nullopt;
+  const std::optional<SurfaceBend> a = surface_bend(geometry, crossings[0]);
+  const std::optional<SurfaceBend> b = surface_bend(geometry, crossings[1]);
+  if (!a || !b) return std::nullopt;
+  const double last = glm::dot(a->along, b->along) < 0 ? -b->cubic : b->cubic;
+  if ((a->cubic < 0) == (last < 0)) return std::nullopt;
+  const double share = a->cubic / (a->cubic - last);
+  Contact between = c;
+  between.u = crossings[0].u + share * (crossings[1].u - crossings[0].u);
+  between.v = crossings[0].v + share * (crossings[1].v - crossings[0].v);
+  return between;
 }
 
 /// @}
@@ -445,6 +489,9 @@ void FreeEndSearch::search_cell(const PatchNets& nets, const CellNets& cell, con
   middle.u = at.u().at(0.5);
   middle.v = at.v().at(0.5);
   if (const auto root = cusp_near(geometry_, middle, 2 * size)) offer(cusp(geometry_, *root));
+  if (const auto start = cusp_in_cell(geometry_, c, at)) {
+    if (const auto root = cusp_near(geometry_, *start, 2 * size)) offer(cusp(geometry_, *root));
+  }
 }
 
 void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {

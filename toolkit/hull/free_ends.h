@@ -37,10 +37,11 @@ struct FreeEnd {
 /// which a torus lies) there is none, nor where an edge is straight. Collapsed sides are left out,
 /// and edges that are planar.
 ///
-/// Cells whose Bernstein nets prove that the second form is singular nowhere are excluded; from
-/// each of the others, a 64th of the patch wide, Newton's method starts once. So none is missed
-/// but where the method fails or two ends lie in neighbouring cells of that size. Borders and edges
-/// are sampled at a distance of a 64th too, for changes of sign and for dips that may hide two.
+/// Cells whose Bernstein nets prove that the second form is singular nowhere are excluded. In each
+/// of the others, a 64th of the patch wide, Newton's method starts from the middle, and from the
+/// chord of the parabolic curve where the cubic changes sign along it. So none is missed but where
+/// the method fails from both, or where two ends lie that near. Borders and edges are sampled at a
+/// distance of a 64th too, for changes of sign and for dips that may hide two.
 /// @pre the cells are of the scene
 std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& query,
                                const std::vector<CulledCell>& cells);
