@@ -391,8 +391,8 @@ TEST(FreeEnds, EndTheArcsOfRandomPatches) {
   Random random(6);
   for (int k = 0; k < 40; ++k) {
     SCOPED_TRACE(k);
-    const int degree_u = pick(random, 2, 4);
-    const int degree_v = pick(random, 2, 4);
+    const int degree_u = pick(random, 3, 4);
+    const int degree_v = pick(random, 3, 4);
     expect_those_of_arcs(of_patch(random_patch(random, degree_u, degree_v, 2)), 1e-2);
   }
 }

@@ -22,6 +22,8 @@ constexpr int finest_level = 6;
 constexpr int samples_along = 64;
 /// Bisections after which an interval of a 64th is down to rounding.
 constexpr int bisection_limit = 60;
+/// Of a bisection for a start of Newton's method.
+constexpr int start_steps = 12;
 /// Steps of a ternary search for a change of sign.
 constexpr int dip_limit = 40;
 
@@ -106,9 +108,9 @@ bool vanishes(const Function& f) {
 }
 
 template <class Function>
-double bisected(const Function& f, double a, double b) {
+double bisected(const Function& f, double a, double b, int steps = bisection_limit) {
   const bool negative = f(a) < 0;
-  for (int i = 0; i < bisection_limit; ++i) {
+  for (int i = 0; i < steps; ++i) {
     const double middle = 0.5 * (a + b);
     ((f(middle) < 0) == negative ? a : b) = middle;
   }
@@ -200,36 +202,41 @@ std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, dou
   return std::nullopt;
 }
 
-/// Where the parabolic curve meets the line from a to b, if it does once.
-std::optional<Contact> parabolic_between(const ContactGeometry& geometry, const Contact& a,
-                                         const Contact& b) {
+double curvature_at(const ContactGeometry& geometry, const Contact& c) {
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  return b ? b->gauss_curvature() : 0;
+}
+
+/// About where the parabolic curve meets the line from a to b. @pre the curvature's sign changes
+Contact parabolic_between(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
   const auto at = [&](double s) {
     Contact c = a;
     c.u += s * (b.u - a.u);
     c.v += s * (b.v - a.v);
     return c;
   };
-  const auto curvature = [&](double s) {
-    const std::optional<SurfaceBend> bend = surface_bend(geometry, at(s));
-    return bend ? bend->gauss_curvature() : 0;
-  };
-  if ((curvature(0) < 0) == (curvature(1) < 0)) return std::nullopt;
-  return at(bisected(curvature, 0, 1));
+  const auto curvature = [&](double s) { return curvature_at(geometry, at(s)); };
+  return at(bisected(curvature, 0, 1, start_steps));
 }
 
 /// Between the two points in which the parabolic curve crosses a cell's outline, if the cubic along
 /// it differs in sign there.
 std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Contact& c,
                                     const PatchCell& cell) {
-  const auto corner = [&](int k) {
-    return Contact{c.instance, c.kind, c.element,
-                   k == 1 || k == 2 ? cell.u().upper : cell.u().lower,
-                   k >= 2 ? cell.v().upper : cell.v().lower};
-  };
+  const auto [u0, u1] = cell.u();
+  const auto [v0, v1] = cell.v();
+  std::array<Contact, 4> corner = {c, c, c, c};
+  std::array<bool, 4> saddle;
+  for (std::size_t k = 0; k < 4; ++k) {
+    corner[k].u = k == 1 || k == 2 ? u1 : u0;
+    corner[k].v = k >= 2 ? v1 : v0;
+    saddle[k] = curvature_at(geometry, corner[k]) < 0;
+  }
   std::vector<Contact> crossings;
-  for (int k = 0; k < 4; ++k) {
-    const auto crossing = parabolic_between(geometry, corner(k), corner((k + 1) % 4));
-    if (crossing) crossings.push_back(*crossing);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    if (saddle[k] == saddle[next]) continue;
+    crossings.push_back(parabolic_between(geometry, corner[k], corner[next]));
   }
   if (crossings.size() != 2) return std::nullopt;
   const std::optional<SurfaceBend> a = surface_bend(geometry, crossings[0]);
@@ -290,22 +297,21 @@ std::optional<Beyond> beyond_join(const ContactGeometry& geometry, const Contact
   return Beyond{*over, border.neighbor_side};
 }
 
-std::optional<SurfaceBend> bend_on(const ContactGeometry& geometry, Contact c, Side side,
-                                   double t) {
+/// The side's point with the free parameter t.
+Contact on_side_of(Contact patch, Side side, double t) {
   const dvec2 uv = on_side(side, t);
-  c.u = uv.x;
-  c.v = uv.y;
-  return surface_bend(geometry, c);
+  patch.u = uv.x;
+  patch.v = uv.y;
+  return patch;
 }
 
-double curvature_on(const ContactGeometry& geometry, const Contact& c, Side side, double t) {
-  const std::optional<SurfaceBend> b = bend_on(geometry, c, side, t);
-  return b ? b->gauss_curvature() : 0;
+double curvature_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
+  return curvature_at(geometry, on_side_of(patch, side, t));
 }
 
 /// The determinant of the second form along Su x Sv itself: a polynomial, where the patch is one.
-double determinant_on(const ContactGeometry& geometry, const Contact& c, Side side, double t) {
-  const std::optional<SurfaceBend> b = bend_on(geometry, c, side, t);
+double determinant_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
+  const std::optional<SurfaceBend> b = surface_bend(geometry, on_side_of(patch, side, t));
   return b ? b->gauss_curvature() * std::pow(b->area, 4) : 0;
 }
 
@@ -322,11 +328,10 @@ bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side,
 /// From where the parabolic curve was found to meet a side: B3, or on a smooth join an end that the
 /// jump of derivatives makes. A level departure is that of a cusp just there, or of a whole circle
 /// of flat points, which is none.
-std::optional<FreeEnd> border_end(const ContactGeometry& geometry, Contact c, Side side, double t) {
+std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact& patch, Side side,
+                                  double t) {
   if (!within(t)) return std::nullopt;
-  const dvec2 uv = on_side(side, std::clamp(t, 0.0, 1.0));
-  c.u = uv.x;
-  c.v = uv.y;
+  const Contact c = on_side_of(patch, side, std::clamp(t, 0.0, 1.0));
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
   const Departure own = inward_departure(*b, side);
