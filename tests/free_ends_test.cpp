@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "models.h"
 #include "taut/hull/facet_contacts.h"
@@ -17,8 +18,9 @@ using namespace taut_test;  // NOLINT: models
 
 /// A scene with all that a search for free ends takes.
 struct Setting {
-  explicit Setting(const Shape& shape)
-      : scene(make_scene(shape)),
+  explicit Setting(const Shape& shape) : Setting(make_model(shape)) {}
+  explicit Setting(Model model)
+      : scene(std::move(model), {.threads = 1, .progress = {}}),
         geometry(scene),
         query(scene),
         map(scene, {.threads = 1, .progress = {}}) {
@@ -369,6 +371,27 @@ void expect_those_of_arcs(const Shape& shape, double extrapolation_error) {
     if (end.extrapolated) {
       EXPECT_LT(nearest(end.x, end.n), extrapolation_error);
     }
+  }
+}
+
+TEST(FreeEnds, MoveWithTheInstance) {
+  Setting at_rest(blob(2));
+  Model model = make_model(blob(2));
+  const RigidMotion pose{skew_rotation(), dvec3(3, -2, 1)};
+  model.clear_instances();
+  model.add_instance(0, pose);
+  Setting moved(std::move(model));
+  const std::vector<FreeEnd> before = at_rest.ends();
+  const std::vector<FreeEnd> after = moved.ends();
+  ASSERT_EQ(before.size(), after.size());
+  for (const FreeEnd& end : before) {
+    double nearest = 1;
+    for (const FreeEnd& other : after) {
+      const double by_point = glm::distance(pose(at_rest.point(end)), moved.point(other));
+      const double by_n = glm::distance(pose.rotation * end.n, other.n);
+      nearest = std::min(nearest, std::max(by_point, by_n));
+    }
+    EXPECT_LT(nearest, 1e-12);
   }
 }
 
