@@ -6,6 +6,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/free_ends.h"
 
 namespace taut {
 namespace {
@@ -108,6 +109,7 @@ class Trace {
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
+  std::optional<FreeEnd> exact_end(const Ruling& near);
   bool merge();
   bool crosses();
   std::optional<Pace> near_merging();
@@ -494,6 +496,60 @@ bool Trace::crosses() {
   return true;
 }
 
+/// What kind of free end two contacts that merge make, and in which element it is told; none where
+/// it is of no generic kind.
+std::optional<FreeEnd> kind_of_end(const ContactGeometry& geometry, const Ruling& ruling) {
+  const std::array<Contact, 2>& c = ruling.contact;
+  const auto is = [&](std::size_t i, SourceKind kind) { return c[i].kind == kind; };
+  FreeEnd end{ruling.n, c[0], FreeEnd::Kind::face, dvec3(0.0)};
+  if (continues(geometry, c[0], c[1])) {
+    if (is(0, SourceKind::edge)) end.kind = FreeEnd::Kind::edge;
+    return end;
+  }
+  if (is(0, SourceKind::edge) && is(1, SourceKind::edge)) {
+    end.contact = geometry.canonical(c[0]);
+    end.kind = FreeEnd::Kind::corner;
+    return end;
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    end.contact = c[i];
+    if (is(i, SourceKind::edge) && is(1 - i, SourceKind::face)) {
+      end.kind = FreeEnd::Kind::border;
+      return end;
+    }
+    if (is(i, SourceKind::vertex) && is(1 - i, SourceKind::edge)) {
+      end.kind = FreeEnd::Kind::end;
+      return end;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The ruling of length zero in a free end, in the elements of another ruling; none where it does
+/// not lie in both of them.
+std::optional<Ruling> ruling_at(const ContactGeometry& geometry, const FreeEnd& end,
+                                const Ruling& other) {
+  Ruling result;
+  result.n = end.n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<Contact> own = expressed_in(geometry, end.contact, other.contact[i]);
+    if (!own) return std::nullopt;
+    result.contact[i] = *own;
+  }
+  const dvec3 x = geometry.point(end.contact);
+  result.point = {x, x};
+  return result;
+}
+
+/// The free end near the ruling that supports the model.
+std::optional<FreeEnd> Trace::exact_end(const Ruling& near) {
+  const std::optional<FreeEnd> kind = kind_of_end(geometry_, near);
+  const std::optional<FreeEnd> end = kind ? polished(geometry_, *kind) : std::nullopt;
+  if (!end) return std::nullopt;
+  const double height = glm::dot(geometry_.point(end->contact), end->n);
+  return query_(end->n, near.contact[0]).h <= height + support_tie ? end : std::nullopt;
+}
+
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
 /// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
 /// are in one element, the parameters' mean are smooth functions of its square.
@@ -525,6 +581,16 @@ bool Trace::merge() {
   if (!smooth &&
       !same_element(geometry_.canonical(end.contact[0]), geometry_.canonical(end.contact[1]))) {
     return crosses();
+  }
+  if (const std::optional<FreeEnd> exact = exact_end(end);
+      exact &&
+      glm::distance(geometry_.point(exact->contact), last.point[0]) < 2 * std::abs(linear)) {
+    if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
+      arc_.pieces.back().rulings.push_back(*ruling);
+      return true;
+    }
+    // A contact changes its element before.
+    if (rho > 2 * least_distance) return false;
   }
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};

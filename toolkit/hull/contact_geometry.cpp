@@ -217,6 +217,16 @@ PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
   return j;
 }
 
+CurveJet ContactGeometry::curve_jet(const Contact& c) const {
+  CurveJet j = taut::jet(elements(c).pieces[std::size_t(c.element)], c.u);
+  const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
+  if (instance.rotated) {
+    for (dvec3* x : {&j.c, &j.ct, &j.ctt, &j.cttt}) *x = instance.rotation * *x;
+  }
+  j.c += instance.translation;
+  return j;
+}
+
 Contact ContactGeometry::canonical(const Contact& contact) const {
   const Contact c = first(contact);
   const auto at_vertex = [&](int vertex) {

@@ -40,6 +40,8 @@ class ContactGeometry {
   ContactJet jet(const Contact& c) const;
   /// Third derivatives too, of a contact on a patch.
   PatchJet3 patch_jet(const Contact& c) const;
+  /// Of a contact on a piece.
+  CurveJet curve_jet(const Contact& c) const;
   dvec3 point(const Contact& c) const { return jet(c).x; }
 
   /// The contact in the lowest kind that it lies on exactly: at a corner that is a vertex, or on a

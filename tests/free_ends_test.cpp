@@ -1,0 +1,424 @@
+#include "taut/hull/free_ends.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "models.h"
+#include "taut/hull/facet_contacts.h"
+#include "taut/hull/precise_hull.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+/// A scene with all that a search for free ends takes.
+struct Setting {
+  explicit Setting(const Shape& shape) : Setting(make_model(shape)) {}
+  explicit Setting(Model model)
+      : scene(std::move(model), {.threads = 1, .progress = {}}),
+        geometry(scene),
+        query(scene),
+        map(scene, {.threads = 1, .progress = {}}) {
+    culling = cull(scene, map, {.levels = 3, .threads = 1, .progress = {}});
+  }
+  std::vector<FreeEnd> ends() { return free_ends(geometry, query, culling.cells); }
+  dvec3 point(const FreeEnd& end) const {
+    return scene.frame().to_model(geometry.point(end.contact));
+  }
+
+  Scene scene;
+  ContactGeometry geometry;
+  SupportQuery query;
+  GaussMap map;
+  Culling culling;
+};
+
+int count(const std::vector<FreeEnd>& ends, FreeEnd::Kind kind) {
+  return int(std::count_if(ends.begin(), ends.end(),
+                           [&](const FreeEnd& end) { return end.kind == kind; }));
+}
+
+Shape as_shape(const BezierCurve& curve) {
+  NurbsCurve nurbs{curve.degree(), {}, curve.points};
+  nurbs.knots.assign(curve.points.size(), 0.0);
+  nurbs.knots.insert(nurbs.knots.end(), curve.points.size(), 1.0);
+  return {{}, {nurbs}, {}};
+}
+
+/// Coefficients of a polynomial of degree n in Bernstein form over [a, b], from those of powers.
+std::vector<double> bernstein(std::vector<double> powers, int n, double a, double b) {
+  powers.resize(std::size_t(n) + 1);
+  // In s, x = a + (b - a) s: Horner's scheme on polynomials.
+  std::vector<double> shifted(std::size_t(n) + 1, 0.0);
+  for (int k = n; k >= 0; --k) {
+    for (int i = n; i >= 0; --i) {
+      shifted[std::size_t(i)] =
+          a * shifted[std::size_t(i)] + (i > 0 ? (b - a) * shifted[std::size_t(i) - 1] : 0.0);
+    }
+    shifted[0] += powers[std::size_t(k)];
+  }
+  std::vector<double> result(std::size_t(n) + 1, 0.0);
+  for (int i = 0; i <= n; ++i) {
+    double share = 1;  // binomial(i, k) / binomial(n, k)
+    for (int k = 0; k <= i; ++k) {
+      result[std::size_t(i)] += share * shifted[std::size_t(k)];
+      share *= double(i - k) / double(n - k);
+    }
+  }
+  return result;
+}
+
+/// One half of (cos t, sin 2t, cos 3t), exactly, by the tangent of t / 2 over [from, to]; the other
+/// half with both cosines' signs changed.
+NurbsCurve half_wave(double from, double to, double sign) {
+  // Times (1 + s^2)^3, with c = 1 - s^2 and w = 1 + s^2: c w^2, 4 s c w, 4 c^3 - 3 c w^2.
+  const std::vector<double> x = {1, 0, 1, 0, -1, 0, -1};
+  const std::vector<double> y = {0, 4, 0, 0, 0, -4, 0};
+  const std::vector<double> z = {1, 0, -15, 0, 15, 0, -1};
+  const std::vector<double> w = {1, 0, 3, 0, 3, 0, 1};
+  const auto of = [&](const std::vector<double>& powers) { return bernstein(powers, 6, from, to); };
+  const auto bx = of(x), by = of(y), bz = of(z), bw = of(w);
+  NurbsCurve curve{6, {}, {}};
+  curve.knots = {0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1};
+  curve.points.reserve(7);
+  for (std::size_t k = 0; k <= 6; ++k) {
+    curve.points.emplace_back(sign * bx[k], by[k], sign * bz[k], bw[k]);
+  }
+  return curve;
+}
+
+void expect_wave_ends(const Shape& wave, const std::string& name) {
+  SCOPED_TRACE(name);
+  Setting own(wave);
+  const std::vector<FreeEnd> ends = own.ends();
+  ASSERT_EQ(ends.size(), 2U);
+  for (const FreeEnd& end : ends) {
+    EXPECT_EQ(end.kind, FreeEnd::Kind::edge);
+    const dvec3 x = own.point(end);
+    // At (1, 0, 1) the tangent is (0, 2, 0) and the second derivative (-1, 0, -9).
+    const dvec3 n = (x.x < 0 ? -1.0 : 1.0) * dvec3(9, 0, -1) / std::sqrt(82.0);
+    EXPECT_LT(glm::distance(x, (x.x < 0 ? -1.0 : 1.0) * dvec3(1, 0, 1)), 1e-12);
+    EXPECT_LT(glm::distance(end.n, n), 1e-12);
+    EXPECT_NEAR(std::abs(end.along.y), 1, 1e-12);
+  }
+}
+
+TEST(FreeEnds, OfATwistedCurve) {
+  // The ends inside of pieces, where pieces join, and next to that.
+  for (const std::vector<double>& joins :
+       {std::vector<double>{-1, -0.4, 0.5, 1}, {-1, 0, 1}, {-1, 1e-3, 1}, {-1, -1e-6, 1}}) {
+    Shape wave;
+    for (const double sign : {1.0, -1.0}) {
+      for (std::size_t k = 0; k + 1 < joins.size(); ++k) {
+        wave.curves.push_back(half_wave(joins[k], joins[k + 1], sign));
+      }
+    }
+    expect_wave_ends(wave, std::to_string(joins[1]));
+  }
+}
+
+/// z = -(a x^4 - b x^2 y + c y^2) over a rectangle.
+BezierPatch godron_patch(double a, double b, double c, Interval x, Interval y) {
+  BezierPatch patch{4, 2, {}};
+  const std::vector<double> x4 = bernstein({0, 0, 0, 0, 1}, 4, x.lower, x.upper);
+  const std::vector<double> x2 = bernstein({0, 0, 1}, 4, x.lower, x.upper);
+  const std::vector<double> x1 = bernstein({0, 1}, 4, x.lower, x.upper);
+  const std::vector<double> y2 = bernstein({0, 0, 1}, 2, y.lower, y.upper);
+  const std::vector<double> y1 = bernstein({0, 1}, 2, y.lower, y.upper);
+  for (std::size_t i = 0; i <= 4; ++i) {
+    for (std::size_t j = 0; j <= 2; ++j) {
+      const double z = -(a * x4[i] - b * x2[i] * y1[j] + c * y2[j]);
+      patch.points.push_back(homogeneous({x1[i], y1[j], z}));
+    }
+  }
+  return patch;
+}
+
+/// In pieces over the grid of these lines.
+Shape godron(double a, double b, double c, const std::vector<double>& xs,
+             const std::vector<double>& ys) {
+  Shape shape;
+  for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < ys.size(); ++j) {
+      shape = shape + of_patch(godron_patch(a, b, c, {xs[i], xs[i + 1]}, {ys[j], ys[j + 1]}));
+    }
+  }
+  return shape;
+}
+
+void expect_godron(const Shape& shape, const dmat3& turn, const dvec3& shift) {
+  Setting own(mapped(shape, turn, shift));
+  const std::vector<FreeEnd> ends = own.ends();
+  ASSERT_EQ(count(ends, FreeEnd::Kind::face), 1);
+  const auto end = std::find_if(ends.begin(), ends.end(),
+                                [](const FreeEnd& e) { return e.kind == FreeEnd::Kind::face; });
+  EXPECT_LT(glm::distance(own.point(*end), shift), 1e-12);
+  EXPECT_LT(glm::distance(end->n, turn * dvec3(0, 0, 1)), 1e-12);
+  EXPECT_NEAR(std::abs(glm::dot(end->along, turn * dvec3(1, 0, 0))), 1, 1e-12);
+
+  // From nearby it is found again.
+  FreeEnd near = *end;
+  for (double* t : {&near.contact.u, &near.contact.v}) *t += *t < 0.5 ? 1e-3 : -1e-3;
+  const std::optional<FreeEnd> found = polished(own.geometry, near);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT(glm::distance(own.point(*found), shift), 1e-12);
+  EXPECT_LT(glm::distance(found->n, end->n), 1e-12);
+}
+
+TEST(FreeEnds, OfGodrons) {
+  Random random(3);
+  for (int k = 0; k < 12; ++k) {
+    const double b = uniform(random, 0.5, 2);
+    const double c = uniform(random, 0.5, 2);
+    const double a = b * b / (4 * c) * uniform(random, 1.3, 4);
+    const dmat3 turn = k == 0 ? dmat3(1.0) : random_rotation(random);
+    const dvec3 shift = k == 0 ? dvec3(0.0) : random_point(random);
+    const std::vector<double> whole = {-0.9, 1.1};
+    const std::vector<double> split = {-0.9, 0, 1.1};
+    const std::vector<double> beside = {-0.9, 1e-4, 1.1};
+    for (const auto& xs : {whole, split, beside}) {
+      for (const auto& ys : {whole, split, beside}) {
+        SCOPED_TRACE(std::to_string(k) + " " + std::to_string(xs[1]) + " " + std::to_string(ys[1]));
+        expect_godron(godron(a, b, c, xs, ys), turn, shift);
+      }
+    }
+  }
+}
+
+TEST(FreeEnds, NoneOnUnexposedGodrons) {
+  Setting own(of_patch(godron_patch(0.2, 1, 1, {-0.9, 1.1}, {-0.9, 1.1})));
+  EXPECT_EQ(count(own.ends(), FreeEnd::Kind::face), 0);
+}
+
+TEST(FreeEnds, TwoOnADentedEllipsoid) {
+  for (const Shape& shape :
+       {dented_ellipsoid(), mapped(dented_ellipsoid(), skew_rotation(), dvec3(1, 2, 3))}) {
+    Setting own(shape);
+    const std::vector<FreeEnd> ends = own.ends();
+    EXPECT_EQ(ends.size(), 2U);
+    EXPECT_EQ(count(ends, FreeEnd::Kind::face), 2);
+  }
+}
+
+TEST(FreeEnds, NoneOnRoundOrPlanarThings) {
+  for (const Shape& shape :
+       {sphere(), torus(2, 1), ellipsoid(1, 2, 3), oloid(), solid_cylinder(1, 2),
+        filleted_box(1, 2, 3, 0.2), spherical_cap(0.5), dented()}) {
+    for (const Shape& placed : {shape, mapped(shape, skew_rotation())}) {
+      Setting own(placed);
+      EXPECT_TRUE(own.ends().empty());
+    }
+  }
+}
+
+/// z = -(x^3 + b x^2 y + y^2) over x >= 0: the parabolic curve meets the border in the origin,
+/// where the cubic along x falls.
+TEST(FreeEnds, OnTheBorderOfAFace) {
+  Random random(4);
+  for (int k = 0; k < 8; ++k) {
+    const double b = uniform(random, 0.5, 1.5);
+    BezierPatch patch{3, 2, {}};
+    const std::vector<double> x1 = bernstein({0, 1}, 3, 0, 1);
+    const std::vector<double> x2 = bernstein({0, 0, 1}, 3, 0, 1);
+    const std::vector<double> x3 = bernstein({0, 0, 0, 1}, 3, 0, 1);
+    const std::vector<double> y1 = bernstein({0, 1}, 2, -0.6, 0.7);
+    const std::vector<double> y2 = bernstein({0, 0, 1}, 2, -0.6, 0.7);
+    for (std::size_t i = 0; i <= 3; ++i) {
+      for (std::size_t j = 0; j <= 2; ++j) {
+        patch.points.push_back(homogeneous({x1[i], y1[j], -(x3[i] + b * x2[i] * y1[j] + y2[j])}));
+      }
+    }
+    const dmat3 turn = random_rotation(random);
+    const double scale = log_uniform(random, 1e-4, 1e4);
+    Setting own(mapped(of_patch(patch), scale * turn));
+    const std::vector<FreeEnd> ends = own.ends();
+    const auto end = std::find_if(ends.begin(), ends.end(), [&](const FreeEnd& e) {
+      return e.kind == FreeEnd::Kind::border && glm::length(own.point(e)) < 1e-3 * scale;
+    });
+    ASSERT_NE(end, ends.end());
+    EXPECT_EQ(end->contact.kind, SourceKind::edge);
+    EXPECT_LT(glm::length(own.point(*end)), 1e-12 * scale);
+    EXPECT_LT(glm::distance(end->n, turn * dvec3(0, 0, 1)), 1e-12);
+    EXPECT_LT(glm::distance(end->along, turn * dvec3(1, 0, 0)), 1e-12);
+
+    FreeEnd near = *end;
+    near.contact.u += 1e-3;
+    const std::optional<FreeEnd> found = polished(own.geometry, near);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_LT(glm::length(own.point(*found)), 1e-12 * scale);
+  }
+}
+
+/// The twisted cubic lies on one side of its osculating plane at either end.
+TEST(FreeEnds, AtTheEndsOfATwistedCubic) {
+  Setting own({{}, {twisted_cubic()}, {}});
+  const std::vector<FreeEnd> ends = own.ends();
+  ASSERT_EQ(ends.size(), 2U);
+  for (const FreeEnd& end : ends) {
+    EXPECT_EQ(end.kind, FreeEnd::Kind::end);
+    EXPECT_EQ(end.contact.kind, SourceKind::vertex);
+    const bool first = own.point(end).x < 0.5;
+    const dvec3 n = first ? dvec3(0, 0, -1) : glm::normalize(dvec3(3, -3, 1));
+    const dvec3 along = first ? dvec3(1, 0, 0) : -glm::normalize(dvec3(1, 2, 3));
+    EXPECT_LT(glm::distance(end.n, n), 1e-13);
+    EXPECT_LT(glm::distance(end.along, along), 1e-13);
+    EXPECT_LT(glm::distance(own.point(end), dvec3(first ? 0 : 1)), 1e-13);
+  }
+}
+
+/// z = -(u^2 + 2 b u v + v^2) over the unit square bends as a saddle in its corner, over which the
+/// two borders compete where b > 1. Where b < 1 the face comes between them.
+TEST(FreeEnds, AtTheCornerOfASaddle) {
+  for (const double b : {0.7, 1.3, 2.0}) {
+    BezierPatch patch{2, 2, {}};
+    for (int i = 0; i <= 2; ++i) {
+      for (int j = 0; j <= 2; ++j) {
+        const double z = -((i == 2) + 2 * b * (0.5 * i) * (0.5 * j) + (j == 2));
+        patch.points.push_back(homogeneous({0.5 * i, 0.5 * j, z}));
+      }
+    }
+    const dmat3 turn = skew_rotation();
+    Setting own(mapped(of_patch(patch), turn, dvec3(1, 2, 3)));
+    const std::vector<FreeEnd> ends = own.ends();
+    // The one on the other side of the surface is in the corner across.
+    EXPECT_EQ(count(ends, FreeEnd::Kind::corner), b > 1 ? 2 : 0);
+    for (const FreeEnd& end : ends) {
+      if (end.kind != FreeEnd::Kind::corner) continue;
+      if (glm::distance(own.point(end), dvec3(1, 2, 3)) > 1) continue;
+      EXPECT_LT(glm::distance(own.point(end), dvec3(1, 2, 3)), 1e-13);
+      EXPECT_LT(glm::distance(end.n, turn * dvec3(0, 0, 1)), 1e-13);
+      const dvec3 diagonal = turn * glm::normalize(dvec3(1, -1, 0));
+      EXPECT_NEAR(std::abs(glm::dot(end.along, diagonal)), 1, 1e-13);
+    }
+  }
+}
+
+TEST(FreeEnds, PolishLeadsNowhereWhereThereIsNone) {
+  Setting own(ellipsoid(1, 2, 3));
+  const Support top = own.query(glm::normalize(dvec3(1, 2, 3)));
+  const FreeEnd near{glm::normalize(dvec3(1, 2, 3)), top.contact, FreeEnd::Kind::face, dvec3(0.0)};
+  EXPECT_FALSE(polished(own.geometry, near).has_value());
+}
+
+/// Where an arc of the exact boundary ends free.
+struct TracedEnd {
+  Ruling ruling;
+  /// From the rulings before it alone: point and n as cubics in the distance of the two contacts.
+  bool extrapolated = false;
+  dvec3 x = dvec3(0.0), n = dvec3(0.0);
+};
+
+TracedEnd traced_end(std::vector<Ruling> rulings, bool last) {
+  if (last) std::reverse(rulings.begin(), rulings.end());
+  TracedEnd end;
+  end.ruling = rulings.front();
+  const auto apart = [&](std::size_t i) {
+    return glm::distance(rulings[i].point[0], rulings[i].point[1]);
+  };
+  end.extrapolated = rulings.size() > 4 && apart(4) < 0.05;
+  if (!end.extrapolated) return end;
+  for (std::size_t i = 1; i <= 4; ++i) {
+    double weight = 1;
+    for (std::size_t j = 1; j <= 4; ++j) {
+      if (j != i) weight *= apart(j) / (apart(j) - apart(i));
+    }
+    end.x += 0.5 * weight * (rulings[i].point[0] + rulings[i].point[1]);
+    end.n += weight * rulings[i].n;
+  }
+  return end;
+}
+
+std::vector<TracedEnd> traced_ends(const HullBoundary& boundary) {
+  std::vector<TracedEnd> result;
+  for (const SeparatingArc& arc : boundary.arcs) {
+    if (arc.closed) continue;
+    if (arc.facet[0] < 0) result.push_back(traced_end(arc.pieces.front().rulings, false));
+    if (arc.facet[1] < 0) result.push_back(traced_end(arc.pieces.back().rulings, true));
+  }
+  return result;
+}
+
+/// As many as the arcs' ends, each of which lies in one of them. Some hulls of wild patches are not
+/// resolved; arcs are missing there. `extrapolation_error`: of ends from the arcs' other rulings.
+void expect_those_of_arcs(const Shape& shape, double extrapolation_error) {
+  Setting own(shape);
+  HullStatistics statistics;
+  HullOptions options;
+  options.threads = 1;
+  const HullBoundary boundary = exact_boundary(own.scene, own.map, options, statistics);
+  const std::vector<FreeEnd> ends = own.ends();
+  const std::vector<TracedEnd> traced = traced_ends(boundary);
+  if (boundary.unresolved.empty()) {
+    EXPECT_EQ(ends.size(), traced.size());
+  } else {
+    EXPECT_GE(ends.size(), traced.size());
+  }
+  const auto nearest = [&](const dvec3& x, const dvec3& n) {
+    double best = 1;
+    for (const FreeEnd& end : ends) {
+      const double by_point = glm::distance(own.geometry.point(end.contact), x);
+      best = std::min(best, std::max(by_point, glm::distance(end.n, n)));
+    }
+    return best;
+  };
+  for (const TracedEnd& end : traced) {
+    EXPECT_LT(nearest(end.ruling.point[0], end.ruling.n), 1e-12);
+    if (end.extrapolated) {
+      EXPECT_LT(nearest(end.x, end.n), extrapolation_error);
+    }
+  }
+}
+
+TEST(FreeEnds, MoveWithTheInstance) {
+  Setting at_rest(blob(2));
+  Model model = make_model(blob(2));
+  const RigidMotion pose{skew_rotation(), dvec3(3, -2, 1)};
+  model.clear_instances();
+  model.add_instance(0, pose);
+  Setting moved(std::move(model));
+  const std::vector<FreeEnd> before = at_rest.ends();
+  const std::vector<FreeEnd> after = moved.ends();
+  ASSERT_EQ(before.size(), after.size());
+  for (const FreeEnd& end : before) {
+    double nearest = 1;
+    for (const FreeEnd& other : after) {
+      const double by_point = glm::distance(pose(at_rest.point(end)), moved.point(other));
+      const double by_n = glm::distance(pose.rotation * end.n, other.n);
+      nearest = std::min(nearest, std::max(by_point, by_n));
+    }
+    EXPECT_LT(nearest, 1e-12);
+  }
+}
+
+class Blobs : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Blobs, EndTheirArcs) { expect_those_of_arcs(blob(GetParam()), 1e-4); }
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
+
+TEST(FreeEnds, EndTheArcsOfRandomCurves) {
+  Random random(5);
+  for (int k = 0; k < 40; ++k) {
+    SCOPED_TRACE(k);
+    const int degree = pick(random, 3, 7);
+    expect_those_of_arcs(as_shape(random_curve(random, degree, 1)), 1e-2);
+  }
+}
+
+TEST(FreeEnds, EndTheArcsOfRandomPatches) {
+  Random random(6);
+  for (int k = 0; k < 40; ++k) {
+    SCOPED_TRACE(k);
+    const int degree_u = pick(random, 3, 4);
+    const int degree_v = pick(random, 3, 4);
+    expect_those_of_arcs(of_patch(random_patch(random, degree_u, degree_v, 2)), 1e-2);
+  }
+}
+
+}  // namespace
+}  // namespace taut

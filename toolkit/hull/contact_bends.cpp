@@ -1,0 +1,90 @@
+#include "taut/hull/contact_bends.h"
+
+#include <cmath>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// Speeds and sines of the angle between tangents below this are those of a pole.
+constexpr double least_speed = coordinate_rounding;
+constexpr double least_sine = spurious_share;
+
+/// Symmetric 2x2 matrix.
+struct Form {
+  double aa, ab, bb;
+};
+
+/// Sets the two eigenvalues by their size, and the eigenvector of the smaller one. By the
+/// determinant, which loses nothing where it vanishes.
+dvec2 split(const Form& form, double& flat, double& steep) {
+  const double mean = 0.5 * (form.aa + form.bb);
+  const double half = 0.5 * (form.aa - form.bb);
+  steep = mean + std::copysign(std::hypot(half, form.ab), mean);
+  flat = steep == 0 ? 0 : (form.aa * form.bb - form.ab * form.ab) / steep;
+  const dvec2 a(form.ab, flat - form.aa);
+  const dvec2 b(flat - form.bb, form.ab);
+  const dvec2 longer = glm::dot(a, a) >= glm::dot(b, b) ? a : b;
+  const double length = glm::length(longer);
+  return length > 0 ? longer / length : dvec2(1, 0);
+}
+
+}  // namespace
+
+std::optional<SurfaceBend> surface_bend(const ContactGeometry& geometry, const Contact& c) {
+  const PatchJet3 j = geometry.patch_jet(c);
+  const dvec3 normal = glm::cross(j.Su, j.Sv);
+  const double speed = glm::length(j.Su);
+  SurfaceBend bend;
+  bend.area = glm::length(normal);
+  if (!(speed > least_speed) || !(bend.area > least_sine * speed * glm::length(j.Sv)) ||
+      !(bend.area > least_speed * speed)) {
+    return std::nullopt;
+  }
+  bend.x = j.S;
+  bend.n = normal / bend.area;
+  // Rates of the parameters along two orthogonal tangents of unit length, the first along Su.
+  const dvec2 a(1 / speed, 0);
+  const double across = bend.area / speed;
+  const dvec2 b(-glm::dot(j.Su, j.Sv) / (speed * speed * across), 1 / across);
+  const double uu = glm::dot(j.Suu, bend.n);
+  const double uv = glm::dot(j.Suv, bend.n);
+  const double vv = glm::dot(j.Svv, bend.n);
+  const auto second = [&](const dvec2& p, const dvec2& q) {
+    return uu * p.x * q.x + uv * (p.x * q.y + p.y * q.x) + vv * p.y * q.y;
+  };
+  const dvec2 e = split({second(a, a), second(a, b), second(b, b)}, bend.flat, bend.steep);
+  if (bend.steep > 0) {
+    bend.n = -bend.n;
+    bend.flat = -bend.flat;
+    bend.steep = -bend.steep;
+  }
+  bend.rate = e.x * a + e.y * b;
+  bend.along = unit(bend.rate.x * j.Su + bend.rate.y * j.Sv);
+  const double u = bend.rate.x;
+  const double v = bend.rate.y;
+  const dvec3 third =
+      u * u * u * j.Suuu + 3 * u * v * (u * j.Suuv + v * j.Suvv) + v * v * v * j.Svvv;
+  bend.cubic = glm::dot(third, bend.n);
+  bend.third = glm::length(third);
+  return bend;
+}
+
+std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Contact& c) {
+  const CurveJet j = geometry.curve_jet(c);
+  const double speed = glm::length(j.ct);
+  if (!(speed > least_speed)) return std::nullopt;
+  CurveBend bend;
+  bend.x = j.c;
+  bend.along = j.ct / speed;
+  bend.second = j.ctt / (speed * speed);
+  bend.third = j.cttt / (speed * speed * speed);
+  const dvec3 cross = glm::cross(bend.along, bend.second);
+  bend.curvature = glm::length(cross);
+  bend.binormal = unit(cross);
+  bend.twist = glm::dot(cross, bend.third);
+  return bend;
+}
+
+}  // namespace taut

@@ -1,0 +1,692 @@
+#include "taut/hull/free_ends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "taut/bounds/patch_nets.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/contact_bends.h"
+#include "taut/hull/contact_exits.h"
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+namespace {
+
+using Kind = FreeEnd::Kind;
+
+/// Cells that may hold a parabolic point are split down to this level.
+constexpr int finest_level = 6;
+/// Intervals of a border or piece whose ends are compared by sign.
+constexpr int samples_along = 64;
+/// Bisections after which an interval of a 64th is down to rounding.
+constexpr int bisection_limit = 60;
+/// Of a bisection for a start of Newton's method.
+constexpr int start_steps = 12;
+/// Steps of a ternary search for a change of sign.
+constexpr int dip_limit = 40;
+
+constexpr int newton_limit = 20;
+/// Steps of a parameter below this end Newton's method; below the second one, if they do not get
+/// shorter, they are rounding.
+constexpr double converged_step = 1e-14;
+constexpr double noise_step = 1e-8;
+/// Of central difference quotients: their error slows Newton's method by its square.
+constexpr double difference = 1e-5;
+/// How far rounding may put a root beyond the border on which it lies.
+constexpr double parameter_slack = 1e-11;
+/// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
+/// rounding on a circle of flat points.
+constexpr double least_change = 1e-5;
+/// A curvature or twist that stays below this everywhere vanishes.
+constexpr double least_extent = 1e-9;
+/// Third derivatives across a plane that are below this, relative to the whole ones or the unit,
+/// may be zero.
+constexpr double cubic_slack = 1e-9;
+/// The same of a curvature on the other side of a join, relative to the principal one.
+constexpr double flat_slack = 1e-7;
+/// Where a departure is level for a cusp or a zero of the torsion, that is no farther.
+constexpr double level_reach = 1e-6;
+/// What is nearer to a collapsed side is at it.
+constexpr double pole_distance = 1e-6;
+/// Elements over a border that is no farther are searched too.
+constexpr double beside_border = 0.1;
+
+bool within(double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; }
+
+Contact clamped(Contact c) {
+  c.u = std::clamp(c.u, 0.0, 1.0);
+  c.v = std::clamp(c.v, 0.0, 1.0);
+  return c;
+}
+
+double distance_from(const Contact& c, Side side) {
+  const double t = along_v(side) ? c.u : c.v;
+  return at_upper_end(side) ? 1 - t : t;
+}
+
+const Border& border_at(const ContactGeometry& geometry, const Contact& c, Side side) {
+  return geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+}
+
+bool near_pole(const ContactGeometry& geometry, const Contact& c) {
+  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    return border_at(geometry, c, side).kind == BorderKind::collapsed &&
+           distance_from(c, side) < pole_distance;
+  });
+}
+
+/// @name Roots
+/// @{
+
+/// Newton's method with difference quotients; within [-reach, reach] of the start.
+template <class Function>
+std::optional<double> root_near(const Function& f, double start, double reach) {
+  double t = start;
+  double last = reach;
+  for (int k = 0; k < newton_limit; ++k) {
+    const double slope = (f(t + difference) - f(t - difference)) / (2 * difference);
+    const double step = -f(t) / slope;
+    t += step;
+    if (!(std::abs(t - start) <= reach)) return std::nullopt;
+    const double length = std::abs(step);
+    if (length < converged_step || (length < noise_step && length > 0.5 * last)) return t;
+    last = length;
+  }
+  return std::nullopt;
+}
+
+double sample(int k) { return double(k) / samples_along; }
+
+/// The function is zero over all of [0, 1], up to rounding.
+template <class Function>
+bool vanishes(const Function& f) {
+  double extent = 0;
+  for (int k = 0; k <= samples_along; ++k) extent = std::max(extent, std::abs(f(sample(k))));
+  return !(extent > least_extent);
+}
+
+template <class Function>
+double bisected(const Function& f, double a, double b, int steps = bisection_limit) {
+  const bool negative = f(a) < 0;
+  for (int i = 0; i < steps; ++i) {
+    const double middle = 0.5 * (a + b);
+    ((f(middle) < 0) == negative ? a : b) = middle;
+  }
+  return 0.5 * (a + b);
+}
+
+/// Where a function of one sign at both ends and about a dip between them has the other one, if
+/// ternary search finds that.
+template <class Function>
+std::optional<double> across_dip(const Function& f, double a, double b) {
+  const double first = f(a);
+  for (int i = 0; i < dip_limit; ++i) {
+    const double s = a + (b - a) / 3;
+    const double t = b - (b - a) / 3;
+    const double at_s = f(s);
+    const double at_t = f(t);
+    if ((at_s < 0) != (first < 0)) return s;
+    if ((at_t < 0) != (first < 0)) return t;
+    (std::abs(at_s) < std::abs(at_t) ? b : a) = std::abs(at_s) < std::abs(at_t) ? t : s;
+  }
+  return std::nullopt;
+}
+
+/// Zeros of a function over [0, 1] at which it changes sign: between samples, or twice in a dip.
+template <class Function>
+std::vector<double> sign_changes(const Function& f) {
+  std::vector<double> values(samples_along + 1);
+  for (int k = 0; k <= samples_along; ++k) values[std::size_t(k)] = f(sample(k));
+  const auto value = [&](int k) { return values[std::size_t(std::clamp(k, 0, samples_along))]; };
+  const auto changes = [&](int k) { return (value(k) < 0) != (value(k + 1) < 0); };
+  std::vector<double> roots;
+  for (int k = 0; k <= samples_along; ++k) {
+    if (changes(k)) roots.push_back(bisected(f, sample(k), sample(k + 1)));
+    if (changes(k - 1) || changes(k) || std::abs(value(k - 1)) < std::abs(value(k)) ||
+        std::abs(value(k + 1)) < std::abs(value(k))) {
+      continue;
+    }
+    const double a = sample(std::max(k - 1, 0));
+    const double b = sample(std::min(k + 1, samples_along));
+    if (const std::optional<double> across = across_dip(f, a, b)) {
+      roots.push_back(bisected(f, a, *across));
+      roots.push_back(bisected(f, *across, b));
+    }
+  }
+  return roots;
+}
+
+/// The cusp's two equations: the flat curvature vanishes, and so does the cubic along it. Its sense
+/// is that of `along`.
+std::optional<dvec2> cusp_residual(const ContactGeometry& geometry, const Contact& c,
+                                   const dvec3& along) {
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b) return std::nullopt;
+  return dvec2(b->flat, glm::dot(b->along, along) < 0 ? -b->cubic : b->cubic);
+}
+
+/// Newton's method onto a cusp; its parameters may lie out of the patch. None if it goes farther
+/// than `reach` or if the root is not a simple one.
+std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, double reach) {
+  const dvec2 start(c.u, c.v);
+  double last = reach;
+  for (int k = 0; k < newton_limit; ++k) {
+    const std::optional<SurfaceBend> here = surface_bend(geometry, c);
+    if (!here) return std::nullopt;
+    const auto residual = [&](double du, double dv) {
+      Contact moved = c;
+      moved.u += du;
+      moved.v += dv;
+      return cusp_residual(geometry, moved, here->along);
+    };
+    const auto u0 = residual(-difference, 0), u1 = residual(difference, 0);
+    const auto v0 = residual(0, -difference), v1 = residual(0, difference);
+    if (!u0 || !u1 || !v0 || !v1) return std::nullopt;
+    const dvec2 by_u = (*u1 - *u0) / (2 * difference);
+    const dvec2 by_v = (*v1 - *v0) / (2 * difference);
+    const dvec2 f(here->flat, here->cubic);
+    const double det = by_u.x * by_v.y - by_v.x * by_u.y;
+    const dvec2 step = dvec2(by_v.x * f.y - by_v.y * f.x, by_u.y * f.x - by_u.x * f.y) / det;
+    c.u += step.x;
+    c.v += step.y;
+    if (!(glm::distance(dvec2(c.u, c.v), start) <= reach)) return std::nullopt;
+    const double length = glm::length(step);
+    if (length < converged_step || (length < noise_step && length > 0.5 * last)) {
+      if (std::abs(det) < least_change * here->area) return std::nullopt;
+      return c;
+    }
+    last = length;
+  }
+  return std::nullopt;
+}
+
+double curvature_at(const ContactGeometry& geometry, const Contact& c) {
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  return b ? b->gauss_curvature() : 0;
+}
+
+/// About where the parabolic curve meets the line from a to b. @pre the curvature's sign changes
+Contact parabolic_between(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
+  const auto at = [&](double s) {
+    Contact c = a;
+    c.u += s * (b.u - a.u);
+    c.v += s * (b.v - a.v);
+    return c;
+  };
+  const auto curvature = [&](double s) { return curvature_at(geometry, at(s)); };
+  return at(bisected(curvature, 0, 1, start_steps));
+}
+
+/// Between the two points in which the parabolic curve crosses a cell's outline, if the cubic along
+/// it differs in sign there.
+std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Contact& c,
+                                    const PatchCell& cell) {
+  const auto [u0, u1] = cell.u();
+  const auto [v0, v1] = cell.v();
+  std::array<Contact, 4> corner = {c, c, c, c};
+  std::array<bool, 4> saddle;
+  for (std::size_t k = 0; k < 4; ++k) {
+    corner[k].u = k == 1 || k == 2 ? u1 : u0;
+    corner[k].v = k >= 2 ? v1 : v0;
+    saddle[k] = curvature_at(geometry, corner[k]) < 0;
+  }
+  std::vector<Contact> crossings;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t next = (k + 1) % 4;
+    if (saddle[k] == saddle[next]) continue;
+    crossings.push_back(parabolic_between(geometry, corner[k], corner[next]));
+  }
+  if (crossings.size() != 2) return std::nullopt;
+  const std::optional<SurfaceBend> a = surface_bend(geometry, crossings[0]);
+  const std::optional<SurfaceBend> b = surface_bend(geometry, crossings[1]);
+  if (!a || !b) return std::nullopt;
+  const double last = glm::dot(a->along, b->along) < 0 ? -b->cubic : b->cubic;
+  if ((a->cubic < 0) == (last < 0)) return std::nullopt;
+  const double share = a->cubic / (a->cubic - last);
+  Contact between = c;
+  between.u = crossings[0].u + share * (crossings[1].u - crossings[0].u);
+  between.v = crossings[0].v + share * (crossings[1].v - crossings[0].v);
+  return between;
+}
+
+/// @}
+/// @name Candidates
+/// @{
+
+/// From where a cusp was found.
+std::optional<FreeEnd> cusp(const ContactGeometry& geometry, const Contact& root) {
+  if (!within(root.u) || !within(root.v)) return std::nullopt;
+  const Contact c = clamped(root);
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b || near_pole(geometry, c)) return std::nullopt;
+  return FreeEnd{b->n, c, Kind::face, b->along};
+}
+
+/// How the surface or curve leaves the plane across n at a border, where it is flat to second
+/// order.
+enum class Departure { below, level, above };
+
+Departure departure(double cubic, double slack) {
+  return cubic < -slack ? Departure::below : cubic > slack ? Departure::above : Departure::level;
+}
+
+/// Rate into the patch at a side.
+double inward_rate(const SurfaceBend& b, Side side) {
+  const double across = along_v(side) ? b.rate.x : b.rate.y;
+  return at_upper_end(side) ? -across : across;
+}
+
+/// Into the patch along the flat direction, to third order.
+Departure inward_departure(const SurfaceBend& b, Side side) {
+  const double cubic = inward_rate(b, side) < 0 ? -b.cubic : b.cubic;
+  return departure(cubic, cubic_slack * std::max(1.0, b.third));
+}
+
+/// The side over a smooth join where the contact lies.
+struct Beyond {
+  Contact contact;
+  Side side = Side::u0;
+};
+std::optional<Beyond> beyond_join(const ContactGeometry& geometry, const Contact& c, Side side) {
+  const Border& border = border_at(geometry, c, side);
+  if (border.kind != BorderKind::smooth) return std::nullopt;
+  const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::side, int(side)});
+  if (!over) return std::nullopt;
+  return Beyond{*over, border.neighbor_side};
+}
+
+/// The side's point with the free parameter t.
+Contact on_side_of(Contact patch, Side side, double t) {
+  const dvec2 uv = on_side(side, t);
+  patch.u = uv.x;
+  patch.v = uv.y;
+  return patch;
+}
+
+double curvature_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
+  return curvature_at(geometry, on_side_of(patch, side, t));
+}
+
+/// The determinant of the second form along Su x Sv itself: a polynomial, where the patch is one.
+double determinant_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
+  const std::optional<SurfaceBend> b = surface_bend(geometry, on_side_of(patch, side, t));
+  return b ? b->gauss_curvature() * std::pow(b->area, 4) : 0;
+}
+
+/// Beyond a smooth join, where there is one, the surface leaves the plane as it does on this side;
+/// or it bends away.
+bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side, Departure own) {
+  const std::optional<Beyond> over = beyond_join(geometry, c, side);
+  if (!over) return true;
+  const std::optional<SurfaceBend> b = surface_bend(geometry, over->contact);
+  if (!b) return false;
+  return b->flat < flat_slack * b->steep || inward_departure(*b, over->side) == own;
+}
+
+/// From where the parabolic curve was found to meet a side: B3, or on a smooth join an end that the
+/// jump of derivatives makes. A level departure is that of a cusp just there, or of a whole circle
+/// of flat points, which is none.
+std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact& patch, Side side,
+                                  double t) {
+  if (!within(t)) return std::nullopt;
+  const Contact c = on_side_of(patch, side, std::clamp(t, 0.0, 1.0));
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b || near_pole(geometry, c)) return std::nullopt;
+  const Departure own = inward_departure(*b, side);
+  if (own == Departure::above || !agrees_beyond(geometry, c, side, own)) return std::nullopt;
+  if (own == Departure::level && !cusp_near(geometry, c, level_reach)) return std::nullopt;
+  const Contact place = geometry.canonical(c);
+  const Kind kind = place.kind == SourceKind::face ? Kind::face : Kind::border;
+  return FreeEnd{b->n, place, kind, inward_rate(*b, side) < 0 ? -b->along : b->along};
+}
+
+double twist_at(const ContactGeometry& geometry, Contact c, double t) {
+  c.u = t;
+  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  return b ? b->twist : 0;
+}
+
+/// From where the torsion was found to vanish; n is the binormal times the sign.
+std::optional<FreeEnd> edge_end(const ContactGeometry& geometry, Contact c, double t, double sign) {
+  if (!within(t)) return std::nullopt;
+  c.u = std::clamp(t, 0.0, 1.0);
+  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  if (!b || b->binormal == dvec3(0.0)) return std::nullopt;
+  return FreeEnd{sign * b->binormal, c, Kind::edge, b->along};
+}
+
+/// From an end of the piece on, to third order.
+Departure inward_departure(const CurveBend& b, int end, const dvec3& n) {
+  const double cubic = glm::dot(b.third, n);
+  return departure(end == 0 ? cubic : -cubic, cubic_slack * std::max(1.0, glm::length(b.third)));
+}
+
+/// At the end of a piece, in its osculating plane: B3 at a vertex, or where pieces join an end that
+/// the jump of derivatives makes.
+std::optional<FreeEnd> piece_end(const ContactGeometry& geometry, Contact c, int end, double sign) {
+  c.u = end;
+  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::end, end});
+  if (!b || b->binormal == dvec3(0.0) || !over) return std::nullopt;
+  const dvec3 n = sign * b->binormal;
+  const Departure own = inward_departure(*b, end, n);
+  if (own == Departure::above) return std::nullopt;
+  if (own == Departure::level) {
+    const auto twist = [&](double t) { return twist_at(geometry, c, t); };
+    if (!root_near(twist, double(end), level_reach)) return std::nullopt;
+  }
+  const dvec3 along = end == 0 ? b->along : -b->along;
+  if (over->kind == SourceKind::vertex) return FreeEnd{n, *over, Kind::end, along};
+  const std::optional<CurveBend> next = curve_bend(geometry, *over);
+  if (!next) return std::nullopt;
+  const bool bends_away = glm::dot(next->second, n) < -flat_slack * next->curvature;
+  if (!bends_away && inward_departure(*next, int(over->u), n) != own) return std::nullopt;
+  return FreeEnd{n, c, Kind::edge, along};
+}
+
+/// The face between two pieces that end in a common vertex, if a patch has both for sides, is a
+/// saddle there.
+bool parts_at_corner(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
+  for (const ContactGeometry::PieceSide& s : geometry.sides(a)) {
+    for (const ContactGeometry::PieceSide& t : geometry.sides(b)) {
+      if (s.patch != t.patch || along_v(s.side) == along_v(t.side)) continue;
+      const dvec2 uv = on_side(s.side, at_upper_end(t.side) ? 1 : 0);
+      const std::optional<SurfaceBend> bend =
+          surface_bend(geometry, {a.instance, SourceKind::face, s.patch, uv.x, uv.y});
+      if (!bend || bend->flat <= 0) return false;
+    }
+  }
+  return true;
+}
+
+/// At a vertex, in the plane of two edges that end there: above it both edges' contacts compete,
+/// unless a face's takes over between them.
+std::optional<FreeEnd> corner_end(const ContactGeometry& geometry, const Contact& vertex,
+                                  const std::array<ContactGeometry::PieceEnd, 2>& ends,
+                                  double sign) {
+  std::array<Contact, 2> c;
+  std::array<CurveBend, 2> bend;
+  std::array<dvec3, 2> away;
+  for (std::size_t i = 0; i < 2; ++i) {
+    c[i] = {vertex.instance, SourceKind::edge, ends[i].piece, double(ends[i].end), 0};
+    const std::optional<CurveBend> b = curve_bend(geometry, c[i]);
+    if (!b || geometry.is_straight(c[i])) return std::nullopt;
+    bend[i] = *b;
+    away[i] = ends[i].end == 0 ? b->along : -b->along;
+  }
+  const dvec3 cross = glm::cross(away[0], away[1]);
+  if (glm::length(cross) < smooth_join_angle) return std::nullopt;
+  const dvec3 n = sign * unit(cross);
+  dvec3 along(0.0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double falls = -glm::dot(bend[i].second, n);
+    if (falls <= flat_slack * bend[i].curvature) return std::nullopt;
+    along += (i == 0 ? -1 : 1) / std::sqrt(falls) * away[i];
+  }
+  if (!parts_at_corner(geometry, c[0], c[1])) return std::nullopt;
+  return FreeEnd{n, vertex, Kind::corner, unit(along)};
+}
+
+/// Calls visit with the candidates at a vertex between any two of its edges.
+template <class Visit>
+void each_corner_end(const ContactGeometry& geometry, const Contact& vertex, const Visit& visit) {
+  const std::vector<ContactGeometry::PieceEnd>& ends = geometry.ends(vertex);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (std::size_t j = i + 1; j < ends.size(); ++j) {
+      for (const double sign : {1.0, -1.0}) {
+        visit(corner_end(geometry, vertex, {ends[i], ends[j]}, sign));
+      }
+    }
+  }
+}
+
+/// @}
+
+/// Gathers what supports the model.
+class FreeEndSearch {
+ public:
+  FreeEndSearch(const ContactGeometry& geometry, SupportQuery& query)
+      : geometry_(geometry), query_(query) {}
+
+  void search_cells(const std::vector<CulledCell>& cells);
+  void search_borders(const std::vector<CulledCell>& cells);
+  void search_edges();
+  void search_corners();
+  std::vector<FreeEnd> result() { return std::move(ends_); }
+
+ private:
+  void search_cell(const PatchNets& nets, const CellNets& cell, const Contact& c, PatchCell at);
+  void search_piece(const Contact& c);
+  void offer(const std::optional<FreeEnd>& end);
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  std::vector<FreeEnd> ends_;
+};
+
+/// Takes the candidate if it supports the model and is new.
+void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
+  if (!end) return;
+  const dvec3 x = geometry_.point(end->contact);
+  const bool known = std::any_of(ends_.begin(), ends_.end(), [&](const FreeEnd& other) {
+    return glm::distance(geometry_.point(other.contact), x) <= same_contact &&
+           glm::distance(other.n, end->n) <= same_contact;
+  });
+  if (known || query_(end->n, end->contact).h > glm::dot(x, end->n) + support_tie) return;
+  ends_.push_back(*end);
+}
+
+void FreeEndSearch::search_cell(const PatchNets& nets, const CellNets& cell, const Contact& c,
+                                PatchCell at) {
+  const NormalBounds bounds = nets.bounds(cell, at.level);
+  if (bounds.definite || !bounds.signs.any()) return;
+  if (at.level < finest_level) {
+    std::array<CellNets, 4> quarters;
+    nets.quarter_points(cell.points, quarters);
+    nets.quarter_normals(cell.normals, quarters);
+    for (std::uint32_t k = 0; k < 4; ++k) search_cell(nets, quarters[k], c, at.child(k));
+    return;
+  }
+  const double size = at.u().upper - at.u().lower;
+  Contact middle = c;
+  middle.u = at.u().at(0.5);
+  middle.v = at.v().at(0.5);
+  if (const auto root = cusp_near(geometry_, middle, 2 * size)) offer(cusp(geometry_, *root));
+  if (const auto start = cusp_in_cell(geometry_, c, at)) {
+    if (const auto root = cusp_near(geometry_, *start, 2 * size)) offer(cusp(geometry_, *root));
+  }
+}
+
+void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
+  const Scene::Content& content = geometry_.scene().content();
+  std::optional<PatchNets> nets;  // of the last cell's element
+  const SceneElement* element = nullptr;
+  for (const CulledCell& cell : cells) {
+    if (cell.state != CellState::mixed) continue;
+    const Contact c{cell.instance, SourceKind::face, cell.patch, 0, 0};
+    const ScenePart& part = content.part_of(c.instance);
+    const int index = part.element_of_patch[std::size_t(c.element)];
+    if (index < 0) continue;
+    if (element != &part.elements[std::size_t(index)]) {
+      element = &part.elements[std::size_t(index)];
+      nets.emplace(*element);
+    }
+    const CellNets own{nets->points(cell.cell.u(), cell.cell.v()), nets->normals(cell.cell)};
+    search_cell(*nets, own, c, cell.cell);
+  }
+}
+
+void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
+  std::set<std::pair<int, int>> patches;
+  for (const CulledCell& cell : cells) {
+    if (cell.state == CellState::mixed) patches.emplace(cell.instance, cell.patch);
+  }
+  for (const auto& [instance, patch] : patches) {
+    const Contact c{instance, SourceKind::face, patch, 0, 0};
+    for (const Side side : all_sides) {
+      if (border_at(geometry_, c, side).kind == BorderKind::collapsed) continue;
+      const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
+      const auto det = [&](double t) { return determinant_on(geometry_, c, side, t); };
+      if (vanishes(curvature)) continue;
+      for (const double t : sign_changes(det)) offer(border_end(geometry_, c, side, t));
+    }
+  }
+}
+
+void FreeEndSearch::search_piece(const Contact& c) {
+  const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
+  if (vanishes(twist)) return;  // planar
+  const std::vector<double> zeros = sign_changes(twist);
+  for (const double sign : {1.0, -1.0}) {
+    for (const double t : zeros) offer(edge_end(geometry_, c, t, sign));
+    for (int end = 0; end < 2; ++end) offer(piece_end(geometry_, c, end, sign));
+  }
+}
+
+void FreeEndSearch::search_edges() {
+  const std::vector<Instance>& instances = geometry_.scene().model().instances();
+  for (int i = 0; i < int(instances.size()); ++i) {
+    const std::vector<EdgePiece>& pieces = geometry_.part({i}).pieces();
+    for (int k = 0; k < int(pieces.size()); ++k) {
+      const Contact c{i, SourceKind::edge, k, 0, 0};
+      // Seams are no edges.
+      if (pieces[std::size_t(k)].edge >= 0 && !geometry_.is_straight(c)) search_piece(c);
+    }
+  }
+}
+
+void FreeEndSearch::search_corners() {
+  const std::vector<Instance>& instances = geometry_.scene().model().instances();
+  for (int i = 0; i < int(instances.size()); ++i) {
+    const int vertices = int(geometry_.part({i}).vertices().size());
+    for (int k = 0; k < vertices; ++k) {
+      each_corner_end(geometry_, {i, SourceKind::vertex, k, 0, 0},
+                      [&](const std::optional<FreeEnd>& end) { offer(end); });
+    }
+  }
+}
+
+/// Roots about a contact: the one nearest to a free end that is known roughly.
+class Polish {
+ public:
+  Polish(const ContactGeometry& geometry, const FreeEnd& near)
+      : geometry_(geometry), near_(near), x_(geometry.point(near.contact)) {}
+
+  std::optional<FreeEnd> run() {
+    const Contact& c = near_.contact;
+    if (near_.kind == Kind::face && c.kind == SourceKind::face) face();
+    if (near_.kind == Kind::edge && c.kind == SourceKind::edge) edge();
+    if (near_.kind == Kind::border && c.kind == SourceKind::edge) border();
+    if (near_.kind == Kind::end && c.kind == SourceKind::vertex) end();
+    if (near_.kind == Kind::corner && c.kind == SourceKind::vertex) {
+      each_corner_end(geometry_, c, [&](const std::optional<FreeEnd>& found) { keep(found); });
+    }
+    return best_;
+  }
+
+ private:
+  void face() {
+    for (const Contact& c : contacts_around()) {
+      if (const auto root = cusp_near(geometry_, c, reach)) keep(cusp(geometry_, *root));
+      for (const Side side : all_sides) {
+        if (distance_from(c, side) > beside_border) continue;
+        if (border_at(geometry_, c, side).kind == BorderKind::smooth) on_border(c, side);
+      }
+    }
+  }
+  void edge() {
+    for (const Contact& c : contacts_around()) {
+      const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
+      const std::optional<double> t = root_near(twist, c.u, reach);
+      for (const double sign : {1.0, -1.0}) {
+        if (t) keep(edge_end(geometry_, c, *t, sign));
+        for (int end = 0; end < 2; ++end) {
+          if (std::abs(c.u - end) <= beside_border) keep(piece_end(geometry_, c, end, sign));
+        }
+      }
+    }
+  }
+  void border() {
+    for (const Contact& c : contacts_around()) {
+      for (const ContactGeometry::PieceSide& side : geometry_.sides(c)) {
+        const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
+        on_border({c.instance, SourceKind::face, side.patch, uv.x, uv.y}, side.side);
+      }
+    }
+  }
+  void end() {
+    for (const ContactGeometry::PieceEnd& own : geometry_.ends(near_.contact)) {
+      const Contact c{near_.contact.instance, SourceKind::edge, own.piece, 0, 0};
+      for (const double sign : {1.0, -1.0}) keep(piece_end(geometry_, c, own.end, sign));
+    }
+  }
+  void on_border(const Contact& c, Side side) {
+    const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
+    const auto t = root_near(curvature, along_v(side) ? c.v : c.u, reach);
+    if (t) keep(border_end(geometry_, c, side, *t));
+  }
+
+  /// The contact, and those on neighbouring elements over smooth joins nearby.
+  std::vector<Contact> contacts_around() const;
+  void keep(const std::optional<FreeEnd>& end);
+
+  /// In parameters.
+  static constexpr double reach = 0.5;
+  static constexpr std::size_t most_around = 8;
+
+  const ContactGeometry& geometry_;
+  FreeEnd near_;
+  dvec3 x_;
+  std::optional<FreeEnd> best_;
+  double least_ = free_end_reach;
+};
+
+std::vector<Contact> Polish::contacts_around() const {
+  std::vector<Contact> found = {near_.contact};
+  const auto add = [&](const std::optional<Contact>& c) {
+    if (!c || c->kind != near_.contact.kind) return;
+    const bool known = std::any_of(found.begin(), found.end(),
+                                   [&](const Contact& other) { return same_element(*c, other); });
+    if (!known && found.size() < most_around) found.push_back(*c);
+  };
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Contact c = found[k];
+    const bool face = c.kind == SourceKind::face;
+    for (int i = 0; i < (face ? 4 : 2); ++i) {
+      const Side side = all_sides[std::size_t(i)];
+      const double distance = face ? distance_from(c, side) : std::abs(c.u - i);
+      if (distance > beside_border) continue;
+      add(beyond(geometry_, c, {face ? ContactExit::Kind::side : ContactExit::Kind::end, i}));
+    }
+  }
+  return found;
+}
+
+void Polish::keep(const std::optional<FreeEnd>& end) {
+  if (!end) return;
+  const double distance =
+      std::max(glm::distance(geometry_.point(end->contact), x_), glm::distance(end->n, near_.n));
+  if (distance > least_) return;
+  least_ = distance;
+  best_ = end;
+}
+
+}  // namespace
+
+std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& query,
+                               const std::vector<CulledCell>& cells) {
+  FreeEndSearch search(geometry, query);
+  search.search_cells(cells);
+  search.search_borders(cells);
+  search.search_edges();
+  search.search_corners();
+  return search.result();
+}
+
+std::optional<FreeEnd> polished(const ContactGeometry& geometry, const FreeEnd& near) {
+  return Polish(geometry, near).run();
+}
+
+}  // namespace taut
