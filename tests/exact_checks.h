@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <ostream>
-#include <vector>
 
 #include "boundary_checks.h"
 #include "models.h"

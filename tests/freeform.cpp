@@ -1,8 +1,10 @@
 #include "freeform.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numbers>
 
 namespace taut_test {
@@ -116,8 +118,10 @@ NurbsSurface assembled(const std::vector<BezierPatch>& patches, int down) {
 }
 
 std::vector<BezierPatch> patches_of(const NurbsSurface& surface) {
+  const std::vector<PatchPiece> pieces = taut::decompose(surface);
   std::vector<BezierPatch> result;
-  for (const PatchPiece& piece : taut::decompose(surface)) result.push_back(piece.bezier);
+  result.reserve(pieces.size());
+  for (const PatchPiece& piece : pieces) result.push_back(piece.bezier);
   return result;
 }
 
@@ -279,8 +283,10 @@ Shape split(const Shape& shape, double u, double v) {
     surface = assembled(finer, 2 * down);
   }
   for (NurbsCurve& curve : result.curves) {
+    const std::vector<taut::CurvePiece> pieces = taut::decompose(curve);
     std::vector<BezierCurve> finer;
-    for (const taut::CurvePiece& piece : taut::decompose(curve)) {
+    finer.reserve(2 * pieces.size());
+    for (const taut::CurvePiece& piece : pieces) {
       for (const int side : {0, 1}) finer.push_back(taut::restricted(piece.bezier, half(side, u)));
     }
     curve = assembled(finer);
@@ -298,11 +304,13 @@ Shape with_higher_degrees(const Shape& shape) {
     surface = assembled(patches, patches_down(surface));
   }
   for (NurbsCurve& curve : result.curves) {
-    std::vector<BezierCurve> pieces;
-    for (const taut::CurvePiece& piece : taut::decompose(curve)) {
-      pieces.push_back(taut::elevated(piece.bezier, curve.degree + 1));
+    const std::vector<taut::CurvePiece> pieces = taut::decompose(curve);
+    std::vector<BezierCurve> higher;
+    higher.reserve(pieces.size());
+    for (const taut::CurvePiece& piece : pieces) {
+      higher.push_back(taut::elevated(piece.bezier, curve.degree + 1));
     }
-    curve = assembled(pieces);
+    curve = assembled(higher);
   }
   return result;
 }
@@ -356,6 +364,7 @@ Shape dented_body(const std::vector<Dent>& dents, double start) {
     if (row > 1 && row < down + 1) return pressed(dents, d);
     return dvec3(1.3 * d.x, 1.15 * d.y, row == 1 ? 1 : -1);
   };
+  surface.points.reserve(std::size_t((around + 3) * (down + 3)));
   for (int i = 0; i < around + 3; ++i) {
     for (int row = 0; row <= down + 2; ++row) {
       surface.points.push_back(homogeneous(control_point(i, row)));

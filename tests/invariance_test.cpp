@@ -200,6 +200,19 @@ class GivenTwice : public Invariance {};
 
 TEST_P(GivenTwice, IsTheSame) { expect_same(outcome_of(shape_ + shape_), was_); }
 
+class WithPointsOfTheHull : public Invariance {};
+
+/// The points in which planes touch the hull twice, as points of the model too.
+TEST_P(WithPointsOfTheHull, IsTheSame) {
+  const Scene scene = make_scene(shape_);
+  const Hull hull = boundary_of(scene);
+  Shape more = shape_;
+  for (const HullCurve& curve : hull.boundary->curves) {
+    for (const dvec3& x : curve.points) more.points.push_back(scene.frame().to_model(x));
+  }
+  expect_same(outcome_of(more), was_);
+}
+
 class HullOfTheHull : public testing::TestWithParam<Subject> {};
 
 /// The mesh is convex: its hull has the same measures.
@@ -255,6 +268,10 @@ INSTANTIATE_TEST_SUITE_P(DISABLED_Surfaces, GivenTwice,
                                          spheres_subject),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(DISABLED_Flat, GivenTwice, flat, name_of);
+
+INSTANTIATE_TEST_SUITE_P(General, WithPointsOfTheHull, general, name_of);
+INSTANTIATE_TEST_SUITE_P(DISABLED_Aligned, WithPointsOfTheHull, aligned, name_of);
+INSTANTIATE_TEST_SUITE_P(DISABLED_Flat, WithPointsOfTheHull, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(General, HullOfTheHull, general, name_of);
 INSTANTIATE_TEST_SUITE_P(Aligned, HullOfTheHull, aligned, name_of);
