@@ -90,7 +90,7 @@ TEST(Events, TiedCurveWithJointsInItsFreeEnds) { expect_tied_curve(0); }
 
 /// The scroll that ends in the godron runs to the border y = 1, whose wall is a facet as those of
 /// the other three borders, which are planar curves; the four corners lie in a plane by symmetry.
-TEST(Events, DISABLED_Godron) {
+TEST(Events, Godron) {
   const Hull hull = expect_exact(godron(1, 0.5, 1), {{1, 1, 5}, 0, 1});
   const SceneFrame& frame = hull.boundary->frame;
   for (const SeparatingArc& arc : hull.boundary->arcs) {
@@ -158,7 +158,7 @@ TEST(Events, Bean) { expect_smooth(bean(), {{1, 1, 0}, 0, 2}); }
 TEST(Events, DentedEllipsoid) { expect_smooth(dented_ellipsoid(), {{1, 1, 0}, 0, 2}); }
 
 /// A plane touches all of the rim: a disc, in which no curve ends.
-TEST(Events, DISABLED_CraterOfRevolution) { expect_smooth(dented(), {{1, 0, 1}, 0, 0}); }
+TEST(Events, CraterOfRevolution) { expect_smooth(dented(), {{1, 0, 1}, 0, 0}); }
 
 /// The scroll is a piece of a cone, between two caps.
 TEST(Events, Dumbbell) { expect_smooth(dumbbell(), {{2, 1, 0}, 0, 0}); }
@@ -199,7 +199,7 @@ TEST(Events, SpheresTouchingFromOutside) {
 
 /// Edge circle, tip and sphere are bounded by each other: three arcs between two facets. The third
 /// facet is the cone's base.
-TEST(Events, DISABLED_ConeBesideASphere) {
+TEST(Events, ConeBesideASphere) {
   expect_exact(solid_cone(1, 2) + ball(1, {3.5, 0.3, 1.5}), {{1, 3, 3}, 2, 0});
 }
 
@@ -222,20 +222,20 @@ void expect_same_twice(const Shape& shape, const Expected& expected) {
   expect(parts, "two parts");
 }
 
-TEST(Events, DISABLED_SphereTwice) { expect_same_twice(sphere(), {{1, 0, 0}, 0, 0, 4 * pi / 3}); }
-TEST(Events, DISABLED_BeanTwice) { expect_same_twice(bean(), {{1, 1, 0}, 0, 2}); }
-TEST(Events, DISABLED_CylinderTwice) {
+TEST(Events, SphereTwice) { expect_same_twice(sphere(), {{1, 0, 0}, 0, 0, 4 * pi / 3}); }
+TEST(Events, BeanTwice) { expect_same_twice(bean(), {{1, 1, 0}, 0, 2}); }
+TEST(Events, CylinderTwice) {
   expect_same_twice(solid_cylinder(1, 2), {{0, 1, 2}, unknown, 0, 2 * pi});
 }
-TEST(Events, DISABLED_BoxTwice) { expect_same_twice(box(1, 2, 3), {{0, 0, 6}, 0, 0, 6}); }
+TEST(Events, BoxTwice) { expect_same_twice(box(1, 2, 3), {{0, 0, 6}, 0, 0, 6}); }
 
 /// Nothing of the lid between them is left, and the scroll runs past it.
-TEST(Events, DISABLED_StackedCylinders) {
+TEST(Events, StackedCylinders) {
   const Shape one = solid_cylinder(1, 1);
   expect_exact(one + shifted(one, {0, 0, 1}), {{0, 1, 2}, unknown, 0, 2 * pi});
 }
 
-TEST(Events, DISABLED_BoxesSideBySide) {
+TEST(Events, BoxesSideBySide) {
   const Shape one = box(1, 2, 3);
   expect_exact(one + shifted(one, {1, 0, 0}), {{0, 0, 6}, 0, 0, 12});
 }
@@ -245,27 +245,27 @@ TEST(Events, DISABLED_BoxesSideBySide) {
 /// All directions of a fan belong to each tip; the surface itself is the hull.
 TEST(Events, Lemon) { expect_exact(lemon(), {{1, 0, 0}, 0, 0}); }
 
-TEST(Events, DISABLED_Ogive) {
+TEST(Events, Ogive) {
   expect_exact(ogive(), {{1, 0, 1}, 0, 0});
   expect_exact(ogive() + disc(1, 0), {{1, 0, 1}, 0, 0});
 }
 
 /// The outer half of the tube; half discs above and below; and the two ends' circles, which lie in
 /// one plane with the segments between them.
-TEST(Events, DISABLED_HalfTorus) { expect_exact(half_torus(1, 0.25), {{1, 0, 3}, 0, 0}); }
+TEST(Events, HalfTorus) { expect_exact(half_torus(1, 0.25), {{1, 0, 3}, 0, 0}); }
 
 /// The floor touches four corners of the box and the sphere. Counter-clockwise around the sphere it
 /// meets: the floor, a lower corner beside it (cone), that one's lower edge (facet), the lower
 /// corner farther away (cone), the upright edge there (facet), the upper corner (cone), the upper
 /// edge (facet), and the same mirrored. The box's far side is the seventh facet.
-TEST(Events, DISABLED_SphereAndBoxOnTheFloor) {
+TEST(Events, SphereAndBoxOnTheFloor) {
   const Shape on_floor = shifted(box(2, 1.4, 1.5), {-1, -0.7, 0}) + ball(1, {3, 0, 1});
   expect_exact(on_floor, {{1, 6, 7}, 5, 0});
 }
 
 /// The torus touches the lid's plane in a circle, within the hull. Above a disc, below four cones
 /// from the lid's corners between four facets on its edges; five faces of the box.
-TEST(Events, DISABLED_TorusOnTheLidOfABox) {
+TEST(Events, TorusOnTheLidOfABox) {
   const Shape lid = shifted(box(4, 4, 1), {-2, -2, -1});
   expect_exact(lid + shifted(torus(1, 0.25), {0, 0, 0.25}), {{1, 4, 10}, 4, 0});
 }
@@ -273,14 +273,14 @@ TEST(Events, DISABLED_TorusOnTheLidOfABox) {
 /// The floor touches all of a circle and the box's corners: a facet with a curved side. The disc
 /// above, the box's far side and two upright edges and an upper one with the torus make five more;
 /// the cones' tips are its four far corners.
-TEST(Events, DISABLED_TorusAndBoxOnTheFloor) {
+TEST(Events, TorusAndBoxOnTheFloor) {
   const Shape low = shifted(box(2, 1.2, 0.3), {-1, -0.6, 0});
   expect_exact(low + shifted(torus(1, 0.25), {4, 0, 0.25}), {{1, 4, 6}, 3, 0});
 }
 
 /// Rounded edges bend away from the floor: four corners of the flat face within them and the ball
 /// make one facet, and the flat face on the far side another, beside those with three contacts.
-TEST(Events, DISABLED_FilletedBoxOnTheFloorBesideABall) {
+TEST(Events, FilletedBoxOnTheFloorBesideABall) {
   const Shape rounded = shifted(filleted_box(2, 1.4, 1.5, 0.2), {0, 0, 0.75});
   const Scene scene = make_scene(rounded + ball(1, {3, 0, 1}));
   const Hull hull = precise_hull(scene, {.relative = 1e-2, .threads = 1, .progress = {}});

@@ -252,26 +252,26 @@ const auto flat =
     testing::Values(cylinder_subject, filleted_subject, torus_subject, saddle_subject);
 
 INSTANTIATE_TEST_SUITE_P(General, Invariance, general, name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Aligned, Invariance, aligned, name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Flat, Invariance, flat, name_of);
+INSTANTIATE_TEST_SUITE_P(Aligned, Invariance, aligned, name_of);
+INSTANTIATE_TEST_SUITE_P(Flat, Invariance, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(General, FarAway,
                          testing::Values(teapot_subject, blob_subject, bean_subject, oloid_subject),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Aligned, FarAway, testing::Values(tori_subject, spheres_subject),
+INSTANTIATE_TEST_SUITE_P(Aligned, FarAway, testing::Values(tori_subject, spheres_subject),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Flat, FarAway, flat, name_of);
+INSTANTIATE_TEST_SUITE_P(Flat, FarAway, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(Curves, GivenTwice, testing::Values(oloid_subject), name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Surfaces, GivenTwice,
+INSTANTIATE_TEST_SUITE_P(Surfaces, GivenTwice,
                          testing::Values(teapot_subject, blob_subject, bean_subject, tori_subject,
                                          spheres_subject),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Flat, GivenTwice, flat, name_of);
+INSTANTIATE_TEST_SUITE_P(Flat, GivenTwice, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(General, WithPointsOfTheHull, general, name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Aligned, WithPointsOfTheHull, aligned, name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_Flat, WithPointsOfTheHull, flat, name_of);
+INSTANTIATE_TEST_SUITE_P(Aligned, WithPointsOfTheHull, aligned, name_of);
+INSTANTIATE_TEST_SUITE_P(Flat, WithPointsOfTheHull, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(General, HullOfTheHull, general, name_of);
 INSTANTIATE_TEST_SUITE_P(Aligned, HullOfTheHull, aligned, name_of);

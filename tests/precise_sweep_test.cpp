@@ -106,7 +106,7 @@ class ManyScenes {
   std::string unresolved_;
 };
 
-TEST(PreciseSweep, DISABLED_TwoHundredBlobs) {
+TEST(PreciseSweep, TwoHundredBlobs) {
   ManyScenes scenes;
   for (unsigned seed = 1; seed <= 200; ++seed) {
     scenes.add(make_scene(blob(seed)), "blob " + std::to_string(seed));
