@@ -9,7 +9,7 @@ namespace taut {
 
 /// Relative accuracy to which measures are compared: what integrals between a document's rulings
 /// reach where these end in free ends.
-inline constexpr double measure_accuracy = 1e-7;
+inline constexpr double measure_accuracy = 1e-10;
 
 /// Compares what a document's report says of the exact hull with the document: its dimension, the
 /// numbers of faces and curves, nothing unresolved, and the measures where there are any. A

@@ -30,7 +30,8 @@ bool check_sources(const HullDocument& hull, const Scene& scene, HullFaults& fau
                    double& off_model) {
   const double size = scene.diagonal() > 0 ? scene.diagonal() : 1;
   raise(off_model, std::abs(hull.diagonal - scene.diagonal()) / size);
-  HullSources own(scene.model(), {});
+  const std::vector<std::string> no_files;
+  const HullSources own(scene.model(), no_files);
   bool same = true;
   for (std::size_t i = 0; i < hull.sources.size(); ++i) {
     const HullDocument::Source& source = hull.sources[i];

@@ -16,6 +16,9 @@ constexpr std::array<double, RulingInterval::node_count> node = {
 /// Residuals, in the scene's frame, of rulings that are solutions.
 constexpr double solved_residual = 1e-12;
 
+/// Rulings that differ by less, points as fractions of the diagonal, are one.
+constexpr double same_ruling = 1e-12;
+
 /// Rulings tell about a free end up to this many times the length of the last one before it.
 constexpr double reach_of_free_end = 8;
 
@@ -160,10 +163,17 @@ std::vector<RulingInterval> DocumentRulings::intervals(const HullDocument::Face&
   const auto merged = [&](const HullDocument::Ruling& r) {
     return glm::distance(r.a.p, r.b.p) <= rounding;
   };
+  // One ruling in two terms, or two that are one but for the rounding of where it passes borders.
+  const double size = system_.geometry().scene().diagonal();
+  const auto same = [&](const HullDocument::Ruling& r, const HullDocument::Ruling& s) {
+    return glm::distance(r.n, s.n) <= same_ruling &&
+           glm::distance(r.a.p, s.a.p) <= rounding + same_ruling * size &&
+           glm::distance(r.b.p, s.b.p) <= rounding + same_ruling * size;
+  };
   for (std::size_t i = 0; i + 1 < rulings.size(); ++i) {
     const HullDocument::Ruling& from = rulings[i];
     const HullDocument::Ruling& to = rulings[i + 1];
-    if (from.n == to.n && from.a.p == to.a.p && from.b.p == to.b.p) continue;
+    if (same(from, to)) continue;
     RulingInterval interval;
     interval.ruling = int(i);
     if (!fill(from, to, interval)) continue;

@@ -9,7 +9,7 @@ namespace taut {
 struct OutlineStretch {
   enum class Kind {
     track,   ///< of a scroll's contact: an interval between two of its rulings
-    border,  ///< along a side of the Bezier patch
+    border,  ///< along a side of the Bezier patch, or no longer than rounding
     free     ///< anything else
   };
   Kind kind = Kind::free;

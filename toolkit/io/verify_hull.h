@@ -46,18 +46,19 @@ struct HullVerification {
   /// over the faces from that by support queries; of hulls of dimension 3.
   double vector_area = 0;
   double mean_width_error = 0;
+  /// How well that many queries tell it.
+  double mean_width_accuracy = 0;
   /// All else that is wrong, each with its place.
   std::vector<HullFault> faults;
 
   bool topological_sphere() const { return euler == 2; }
+  bool closes_up(double relative) const;
+  bool has_width(double relative) const;
   /// The largest of all lengths.
   double worst_length() const;
   /// Sound but for lengths within the tolerance.
   bool is_hull(double relative) const;
 };
-
-/// Relative accuracy of the mean width by support queries in some thousand directions.
-inline constexpr double mean_width_accuracy = 1e-3;
 
 /// Checks a hull document against a model, from nothing but the document, support queries and plain
 /// mathematics.
