@@ -71,6 +71,7 @@ class OutlineCheck {
   void check_sides(const Face& scroll);
   void check_ruling_ends(const Curve& curve, const Face& scroll);
   void check_patch(std::size_t face);
+  void check_free_stretches(std::size_t face);
   void check_loop(const Face& face, const HullDocument::Loop& loop);
   double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
   void check_tracks();
@@ -157,10 +158,12 @@ void OutlineCheck::check_order(std::size_t f) {
   using Step = std::array<dvec3, 3>;
   Step last{};
   bool any = false;
+  double area = 0;
   for (std::size_t i = 0; i + 1 < rulings.size(); ++i) {
     const HullDocument::Ruling& from = rulings[i];
     const HullDocument::Ruling& to = rulings[i + 1];
     const Step step = {to.n - from.n, (to.a.p - from.a.p) / size, (to.b.p - from.b.p) / size};
+    area += glm::dot(from.n, glm::cross(step[1] + step[2], (from.b.p - from.a.p) / size));
     double length = 0;
     double along = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -173,6 +176,10 @@ void OutlineCheck::check_order(std::size_t f) {
     }
     last = step;
     any = true;
+  }
+  // Along them, contact a has the scroll to the left.
+  if (!(area >= -tolerance_ / size)) {
+    faults_.add("order", at("faces", f) + "its rulings run backwards");
   }
 }
 
@@ -236,16 +243,39 @@ void OutlineCheck::check_patch(std::size_t f) {
       check_loop(face, loop);
     }
   }
+  check_free_stretches(f);
+}
+
+/// Where a region's outline is neither a track nor a border, its points are those of the curves.
+void OutlineCheck::check_free_stretches(std::size_t f) {
+  const Face& face = hull_.faces[f];
+  std::vector<dvec3> points;
+  for (const HullDocument::Loop& loop : face.loops) {
+    const std::vector<dvec3> more = points_of(loop.curves);
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  const NearestPoint curves(points);
+  const auto check = [&](const dvec2& uv) {
+    const std::vector<SourcePlace> places = geometry_.places(face.source, uv);
+    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
+    raise(off_, curves.distance(geometry_.jet(face.source, places[0]).x + geometry_.origin()));
+  };
+  for (const RegionOutline& region : outlines_.regions()) {
+    if (region.face != int(f)) continue;
+    for (const std::vector<OutlineStretch>& loop : region.loops) {
+      for (const OutlineStretch& stretch : loop) {
+        if (stretch.kind != OutlineStretch::Kind::free) continue;
+        check(stretch.from);
+        check(stretch.to);
+      }
+    }
+  }
 }
 
 /// Each point of the loop that is no border's is one of its curves', and each point of these lies
 /// on the loop.
 void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) {
-  std::vector<dvec3> points;
-  for (const DirectedCurve& c : loop.curves) {
-    const std::vector<dvec3>& more = hull_.curves[to_size(c.first)].points;
-    points.insert(points.end(), more.begin(), more.end());
-  }
+  const std::vector<dvec3> points = points_of(loop.curves);
   const NearestPoint curves(points);
   std::vector<dvec3> own;
   std::vector<OutlineStretch> borders;

@@ -37,7 +37,7 @@ class ReportCheck {
                               ", not " + text(value));
   }
   void compare_counts(const HullDocument& hull);
-  void compare_measures(const DocumentMeasures& measures);
+  void compare_measures(const DocumentMeasures& measures, double accuracy);
 
  private:
   static std::string text(double value) {
@@ -65,23 +65,23 @@ void ReportCheck::compare_counts(const HullDocument& hull) {
   compare("unresolved", exact, 0, 0);
 }
 
-void ReportCheck::compare_measures(const DocumentMeasures& measures) {
+void ReportCheck::compare_measures(const DocumentMeasures& measures, double accuracy) {
   const DocumentValue* exact = find(&report_, "hull");
-  compare("volume", exact, measures.volume, measure_accuracy);
-  compare("area", exact, measures.area, measure_accuracy);
-  compare("mean_width", exact, measures.mean_width, measure_accuracy);
+  compare("volume", exact, measures.volume, accuracy);
+  compare("area", exact, measures.area, accuracy);
+  compare("mean_width", exact, measures.mean_width, accuracy);
 }
 
 }  // namespace
 
 void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
-                  HullFaults& faults) {
+                  double rounding, HullFaults& faults) {
   if (hull.report.empty()) return;
   try {
     const DocumentValue report = parse_json("report", hull.report);
     ReportCheck check(report, faults);
     check.compare_counts(hull);
-    if (measures) check.compare_measures(*measures);
+    if (measures) check.compare_measures(*measures, measure_accuracy + rounding);
   } catch (const Error& error) {
     faults.add("report", error.what());
   }

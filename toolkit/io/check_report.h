@@ -13,8 +13,9 @@ inline constexpr double measure_accuracy = 1e-10;
 
 /// Compares what a document's report says of the exact hull with the document: its dimension, the
 /// numbers of faces and curves, nothing unresolved, and the measures where there are any. A
-/// document without a report has nothing to compare.
+/// document without a report has nothing to compare. `rounding`: what that of coordinates may do to
+/// the measures.
 void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
-                  HullFaults& faults);
+                  double rounding, HullFaults& faults);
 
 }  // namespace taut

@@ -11,8 +11,8 @@ dvec2 parameters(const HullDocument::Contact& c) {
   return {c.uv.empty() ? 0 : c.uv[0], c.uv.size() < 2 ? 0 : c.uv[1]};
 }
 
-DocumentGeometry::DocumentGeometry(const HullDocument& hull, const dvec3& origin)
-    : hull_(hull), origin_(origin) {
+DocumentGeometry::DocumentGeometry(const HullDocument& hull, const dvec3& origin, double rounding)
+    : hull_(hull), origin_(origin), rounding_(rounding) {
   nets_.reserve(hull.sources.size());
   for (const HullDocument::Source& source : hull.sources) {
     std::vector<BezierPatch>& nets = nets_.emplace_back();

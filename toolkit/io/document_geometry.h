@@ -30,11 +30,15 @@ struct SourcePlace {
 /// point near it, from which coordinates are measured lest digits are lost far from the origin.
 class DocumentGeometry {
  public:
-  /// The document must outlive it.
-  DocumentGeometry(const HullDocument& hull, const dvec3& origin);
+  /// The document must outlive it. `rounding`: what that of coordinates may do to lengths, as a
+  /// fraction of the diagonal.
+  DocumentGeometry(const HullDocument& hull, const dvec3& origin, double rounding);
 
   const HullDocument& hull() const { return hull_; }
   const dvec3& origin() const { return origin_; }
+  /// Lengths as fractions of the diagonal, shares of parameters and angles that are no larger are
+  /// those between two computations of the same.
+  double noise() const { return exact_noise + rounding_; }
   const HullDocument::Source& source(int place) const {
     return hull_.sources[static_cast<std::size_t>(place)];
   }
@@ -52,8 +56,11 @@ class DocumentGeometry {
   dvec3 normal(int source, const SourcePlace& place, int sign) const;
 
  private:
+  static constexpr double exact_noise = 1e-12;
+
   const HullDocument& hull_;
   dvec3 origin_;
+  double rounding_;
   /// Per source and patch, as homogeneous control points.
   std::vector<std::vector<BezierPatch>> nets_;
 };

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <optional>
 
-#include "taut/core/tolerances.h"
-
 namespace taut {
 namespace {
 
@@ -15,9 +13,6 @@ constexpr std::array<double, RulingInterval::node_count> node = {
 
 /// Residuals, in the scene's frame, of rulings that are solutions.
 constexpr double solved_residual = 1e-12;
-
-/// Rulings that differ by less, points as fractions of the diagonal, are one.
-constexpr double same_ruling = 1e-12;
 
 /// Rulings tell about a free end up to this many times the length of the last one before it.
 constexpr double reach_of_free_end = 8;
@@ -158,17 +153,14 @@ std::vector<RulingInterval> DocumentRulings::intervals(const HullDocument::Face&
   std::vector<RulingInterval> found;
   const std::vector<HullDocument::Ruling>& rulings = scroll.rulings;
   found.reserve(rulings.size());
-  const double rounding = coordinate_rounding *
-                          (system_.geometry().scene().diagonal() + glm::length(geometry_.origin()));
+  const double near = geometry_.noise() * system_.geometry().scene().diagonal();
   const auto merged = [&](const HullDocument::Ruling& r) {
-    return glm::distance(r.a.p, r.b.p) <= rounding;
+    return glm::distance(r.a.p, r.b.p) <= near;
   };
   // One ruling in two terms, or two that are one but for the rounding of where it passes borders.
-  const double size = system_.geometry().scene().diagonal();
   const auto same = [&](const HullDocument::Ruling& r, const HullDocument::Ruling& s) {
-    return glm::distance(r.n, s.n) <= same_ruling &&
-           glm::distance(r.a.p, s.a.p) <= rounding + same_ruling * size &&
-           glm::distance(r.b.p, s.b.p) <= rounding + same_ruling * size;
+    return glm::distance(r.n, s.n) <= geometry_.noise() && glm::distance(r.a.p, s.a.p) <= near &&
+           glm::distance(r.b.p, s.b.p) <= near;
   };
   for (std::size_t i = 0; i + 1 < rulings.size(); ++i) {
     const HullDocument::Ruling& from = rulings[i];

@@ -18,9 +18,6 @@ constexpr double near_outline = 1e-6;
 /// known: outlines are smooth between points whose normals differ by up to 0.1.
 constexpr double near_free_stretch = 0.02;
 
-/// Shorter stretches, against the parameters' size, are where an outline passes a border.
-constexpr double short_stretch = 1e-12;
-
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -145,7 +142,10 @@ OutlineStretch DocumentOutlines::stretch(int source, const dvec2& from, const dv
   stretch.to = to;
   const int patches = int(geometry_.source(source).patches.size());
   const double size = std::max(1.0, std::max(glm::length(from), glm::length(to)));
-  if (glm::distance(from, to) <= short_stretch * size) stretch.kind = OutlineStretch::Kind::border;
+  // No longer than this where it passes from one Bezier patch into another.
+  if (glm::distance(from, to) <= geometry_.noise() * size) {
+    stretch.kind = OutlineStretch::Kind::border;
+  }
   for (int i = 0; i < patches; ++i) {
     if (on_border(source, i, from, to)) stretch.kind = OutlineStretch::Kind::border;
   }

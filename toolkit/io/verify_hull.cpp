@@ -99,6 +99,14 @@ std::vector<dvec3> even_directions(int count, unsigned seed) {
   return directions;
 }
 
+/// What the rounding of a scene's coordinates may do to lengths, as a fraction of its diagonal.
+double relative_rounding(const Scene& scene) {
+  const Box& box = scene.box();
+  const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double rounding = coordinate_rounding * (reach.x + reach.y + reach.z);
+  return scene.diagonal() > 0 ? rounding / scene.diagonal() : rounding;
+}
+
 /// Checks one document.
 class HullVerifier {
  public:
@@ -106,12 +114,12 @@ class HullVerifier {
       : hull_(hull),
         scene_(scene),
         options_(options),
-        geometry_(hull, scene.frame().center),
-        diagonal_(scene.diagonal()) {}
+        diagonal_(scene.diagonal()),
+        rounding_(relative_rounding(scene)),
+        geometry_(hull, scene.frame().center, rounding_) {}
   HullVerification run();
 
  private:
-  void check_rounding();
   void check_structure();
   void check_contact(const HullDocument::Contact& c, const dvec3& n);
   void check_geometry();
@@ -131,15 +139,16 @@ class HullVerifier {
   const HullDocument& hull_;
   const Scene& scene_;
   const VerifyOptions& options_;
-  DocumentGeometry geometry_;
   double diagonal_;
+  double rounding_;
+  DocumentGeometry geometry_;
   std::map<int, int> place_of_source_;
   HullVerification result_;
   HullFaults faults_;
 };
 
 HullVerification HullVerifier::run() {
-  check_rounding();
+  result_.rounding = rounding_;
   if (!FiniteNumbers().all(hull_)) faults_.add("numbers", "a number is not finite");
   check_structure();
   const bool finite = faults_.list().empty();
@@ -152,16 +161,10 @@ HullVerification HullVerifier::run() {
     std::vector<Claim> claims;
     add_listed_claims(claims);
     check_support(claims);
-    check_report(hull_, std::nullopt, faults_);
+    check_report(hull_, std::nullopt, rounding_, faults_);
   }
   result_.faults = faults_.list();
   return result_;
-}
-
-void HullVerifier::check_rounding() {
-  const Box& box = scene_.box();
-  const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-  result_.rounding = relative(coordinate_rounding * (reach.x + reach.y + reach.z));
 }
 
 void HullVerifier::check_structure() {
@@ -170,8 +173,7 @@ void HullVerifier::check_structure() {
     result_.euler = 2;
     return;
   }
-  const HullStructure structure =
-      hull_structure(hull_, (same_point + result_.rounding) * diagonal_);
+  const HullStructure structure = hull_structure(hull_, (same_point + rounding_) * diagonal_);
   result_.complete = structure.complete;
   result_.closed = structure.closed;
   result_.euler = structure.euler;
@@ -235,7 +237,7 @@ void HullVerifier::check_faces() {
   options_.progress.update("verify", 0.4);
   std::optional<DocumentMeasures> measures;
   if (hull_.dimension >= 2) {
-    const double tolerance = (same_point + result_.rounding) * diagonal_;
+    const double tolerance = (same_point + rounding_) * diagonal_;
     raise(result_.off_outline, relative(check_outlines(geometry_, outlines, tolerance, faults_)));
   }
   if (hull_.dimension == 3) {
@@ -248,7 +250,7 @@ void HullVerifier::check_faces() {
   } else {
     check_points();
   }
-  check_report(hull_, measures, faults_);
+  check_report(hull_, measures, rounding_, faults_);
 }
 
 void HullVerifier::add_listed_claims(std::vector<Claim>& claims) {
@@ -375,7 +377,7 @@ double HullVerification::worst_length() const {
 }
 
 bool HullVerification::closes_up(double relative) const {
-  return vector_area <= std::max(relative, measure_accuracy);
+  return vector_area <= std::max(relative, measure_accuracy) + rounding;
 }
 
 bool HullVerification::has_width(double relative) const {
