@@ -347,13 +347,13 @@ TEST(VerifyFaults, InATetrahedronAreFound) {
         }},
        {"the boundary runs backwards", "outlines",
         [](auto& h) { std::reverse(h.faces[1].boundary.begin(), h.faces[1].boundary.end()); }},
-       {"a facet is turned over", "hull_outside",
+       {"a facet is turned over", "model_outside",
         [](auto& h) {
           h.faces[1].normal *= -1.0;
           h.faces[1].offset *= -1.0;
         }},
        {"a facet stands twice", "closed", [](auto& h) { h.faces.push_back(h.faces[1]); }},
-       {"another facet lies inside", "closed",
+       {"another facet lies inside", "euler",
         [](auto& h) {
           HullDocument::Face face = h.faces[1];
           face.outline.clear();
