@@ -14,6 +14,9 @@ constexpr int track_pieces = 4;
 /// contacts are ill-conditioned, that is how far support queries find them off.
 constexpr double near_outline = 1e-6;
 
+/// How far beside the outline at a free end, which is interpolated, as a share of its pieces.
+constexpr double near_guess = 0.25;
+
 /// The same about a stretch that is neither a track nor along a side, of which only the ends are
 /// known: outlines are smooth between points whose normals differ by up to 0.1.
 constexpr double near_free_stretch = 0.02;
@@ -80,7 +83,9 @@ void RegionOutline::refine(const DocumentGeometry& geometry, int source) {
         const dvec2 to = i == track_pieces ? stretch.to : on_track(stretch, s);
         const dvec2 middle = on_track(stretch, s - 0.5 / track_pieces);
         const double sagitta = glm::length((middle - 0.5 * (from + to)) / size_);
-        pieces_.push_back({from, to, 2 * sagitta + near_outline});
+        double slack = 2 * sagitta + near_outline;
+        if (!stretch.interval->solved) slack += near_guess * glm::length((to - from) / size_);
+        pieces_.push_back({from, to, slack});
         from = to;
       }
     }
