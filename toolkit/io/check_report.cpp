@@ -81,7 +81,8 @@ void check_report(const HullDocument& hull, const std::optional<DocumentMeasures
     const DocumentValue report = parse_json("report", hull.report);
     ReportCheck check(report, faults);
     check.compare_counts(hull);
-    if (measures) check.compare_measures(*measures, measure_accuracy + rounding);
+    if (measures)
+      check.compare_measures(*measures, measure_accuracy + rounding + measures->interpolation);
   } catch (const Error& error) {
     faults.add("report", error.what());
   }

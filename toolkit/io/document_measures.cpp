@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "taut/hull/quadrature.h"
 
@@ -15,8 +16,10 @@ using Face = HullDocument::Face;
 constexpr int along_nodes = 8;
 constexpr int across_nodes = 16;
 
-/// Points of a curve that its interpolating polynomials go through.
-constexpr std::size_t window = 6;
+/// Points of a curve that its interpolating polynomials go through, and those of a worse one that
+/// tells the error.
+constexpr std::size_t best_window = 6;
+constexpr std::size_t worse_window = 4;
 
 /// Cosine of the angle between neighbouring chords from which on there is a kink.
 constexpr double kink = 0.9;
@@ -34,7 +37,7 @@ void for_gauss_nodes(double from, double to, const Function& f) {
 /// A smooth curve through given points.
 class SmoothLine {
  public:
-  explicit SmoothLine(const std::vector<dvec3>& points);
+  SmoothLine(const std::vector<dvec3>& points, std::size_t window);
   std::size_t segments() const { return points_.empty() ? 0 : points_.size() - 1; }
   double from(std::size_t segment) const { return length_[segment]; }
   double to(std::size_t segment) const { return length_[segment + 1]; }
@@ -44,12 +47,13 @@ class SmoothLine {
  private:
   bool kinked(std::size_t i) const;
 
+  std::size_t window_;
   std::vector<dvec3> points_;
   std::vector<double> length_;
   std::vector<std::size_t> first_, last_;  ///< per segment: what is smooth with it
 };
 
-SmoothLine::SmoothLine(const std::vector<dvec3>& points) {
+SmoothLine::SmoothLine(const std::vector<dvec3>& points, std::size_t window) : window_(window) {
   points_.reserve(points.size());
   length_.reserve(points.size());
   for (const dvec3& p : points) {
@@ -74,7 +78,7 @@ bool SmoothLine::kinked(std::size_t i) const {
 }
 
 std::array<dvec3, 2> SmoothLine::at(std::size_t segment, double s) const {
-  const std::size_t count = std::min(window, last_[segment] - first_[segment] + 1);
+  const std::size_t count = std::min(window_, last_[segment] - first_[segment] + 1);
   // The window's middle is the segment, as far as there are points.
   const std::size_t before = std::min(segment - first_[segment], count / 2 - (count > 1 ? 1 : 0));
   const std::size_t begin = std::min(segment - before, last_[segment] + 1 - count);
@@ -96,12 +100,17 @@ std::array<dvec3, 2> SmoothLine::at(std::size_t segment, double s) const {
 /// Sums up the faces' integrals.
 class MeasureSums {
  public:
-  MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines);
+  MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+              std::size_t window);
   DocumentMeasures run();
+  /// Something was interpolated.
+  bool interpolated() const { return interpolated_; }
 
  private:
   void add_patch(const RegionOutline& outline);
   void add_stretch(const RegionOutline& outline, const OutlineStretch& stretch);
+  std::optional<SmoothLine> smooth_line(const OutlineStretch& stretch, const dvec2& lower,
+                                        const dvec2& size);
   void add_across(const RegionOutline& outline, const dvec2& t, double w);
   void add_patch_element(const SourceJet& j, int sign, double w);
   void add_scroll(const Face& face, const std::vector<RulingInterval>& intervals);
@@ -117,10 +126,13 @@ class MeasureSums {
   double base_ = 0;            ///< where integrals across the region at hand begin
   DocumentMeasures sums_;
   double curvature_ = 0;
+  std::size_t window_;
+  bool interpolated_ = false;
 };
 
-MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines)
-    : geometry_(geometry), outlines_(outlines) {
+MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+                         std::size_t window)
+    : geometry_(geometry), outlines_(outlines), window_(window) {
   double count = 0;
   const auto add = [&](const dvec3& p) {
     inside_ += geometry.local(p);
@@ -171,6 +183,20 @@ void MeasureSums::add_patch(const RegionOutline& outline) {
   }
 }
 
+/// Of a stretch of which only the points are known, in the Bezier patch's parameters.
+std::optional<SmoothLine> MeasureSums::smooth_line(const OutlineStretch& stretch,
+                                                   const dvec2& lower, const dvec2& size) {
+  if (stretch.kind != OutlineStretch::Kind::free) return std::nullopt;
+  interpolated_ = true;
+  std::vector<dvec3> points;
+  points.reserve(stretch.line.size());
+  for (const dvec2& p : stretch.line) points.emplace_back((p - lower) / size, 0);
+  const SmoothLine line(points, window_);
+  // Points that stand twice are one to it.
+  if (line.segments() + 1 != points.size()) return std::nullopt;
+  return line;
+}
+
 /// The region's integrals are those along its outline, counter-clockwise, of the integrals across
 /// to it, dv.
 void MeasureSums::add_stretch(const RegionOutline& outline, const OutlineStretch& stretch) {
@@ -180,10 +206,18 @@ void MeasureSums::add_stretch(const RegionOutline& outline, const OutlineStretch
       geometry_.source(source).patches[to_size(outline.region->patch)].domain;
   const dvec2 lower(domain[0].lower, domain[1].lower);
   const dvec2 size(domain[0].upper - lower.x, domain[1].upper - lower.y);
+  const std::optional<SmoothLine> free = smooth_line(stretch, lower, size);
   for_gauss_nodes<along_nodes>(0, 1, [&](double s, double w) {
     SourcePlace place{outline.region->patch,
                       (stretch.from + s * (stretch.to - stretch.from) - lower) / size};
     dvec2 dt = (stretch.to - stretch.from) / size;
+    if (free) {
+      const double from = free->from(stretch.place);
+      const double length = free->to(stretch.place) - from;
+      const auto [t, slope] = free->at(stretch.place, from + s * length);
+      place.t = dvec2(t);
+      dt = length * dvec2(slope);
+    }
     if (stretch.kind == OutlineStretch::Kind::track) {
       const RulingInterval& interval = *stretch.interval;
       const auto k = to_size(stretch.contact);
@@ -274,7 +308,8 @@ void MeasureSums::add_facet(const Face& face) {
     std::vector<dvec3> points = geometry_.hull().curves[to_size(curve)].points;
     for (dvec3& p : points) p = from_inside(p);
     if (sense < 0) std::reverse(points.begin(), points.end());
-    const SmoothLine line(points);
+    const SmoothLine line(points, window_);
+    interpolated_ = interpolated_ || line.segments() > 1;
     for (std::size_t k = 0; k < line.segments(); ++k) {
       for_gauss_nodes<across_nodes>(line.from(k), line.to(k), [&](double s, double w) {
         const auto [x, dx] = line.at(k, s);
@@ -294,7 +329,14 @@ void MeasureSums::add_facet(const Face& face) {
 }  // namespace
 
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines) {
-  return MeasureSums(geometry, outlines).run();
+  MeasureSums sums(geometry, outlines, best_window);
+  DocumentMeasures best = sums.run();
+  if (!sums.interpolated()) return best;
+  const DocumentMeasures worse = MeasureSums(geometry, outlines, worse_window).run();
+  best.interpolation =
+      std::max({std::abs(worse.volume / best.volume - 1), std::abs(worse.area / best.area - 1),
+                std::abs(worse.mean_width / best.mean_width - 1)});
+  return best;
 }
 
 }  // namespace taut

@@ -120,9 +120,9 @@ void DocumentOutlines::add_tracks(const DocumentGeometry& geometry) {
         if (geometry.source(a.source).kind != SourceKind::face) continue;
         const dvec2 p = parameters(a);
         const dvec2 q = parameters(b);
-        OutlineStretch s{OutlineStretch::Kind::track, p, q, &interval, k, false};
+        OutlineStretch s{OutlineStretch::Kind::track, p, q, &interval, k, false, {}, 0};
         tracks_.try_emplace({double(a.source), p.x, p.y, q.x, q.y}, s);
-        s = {OutlineStretch::Kind::track, q, p, &interval, k, true};
+        s = {OutlineStretch::Kind::track, q, p, &interval, k, true, {}, 0};
         tracks_.try_emplace({double(a.source), q.x, q.y, p.x, p.y}, s);
       }
     }
@@ -173,10 +173,26 @@ void DocumentOutlines::add_regions(const DocumentGeometry& geometry) {
           loop.push_back(stretch(face.source, line[k], line[(k + 1) % line.size()]));
         }
       }
+      for (std::vector<OutlineStretch>& loop : outline.loops) join_free_stretches(loop);
       outline.refine(geometry, face.source);
       regions_of_[to_size(face.source)].push_back(int(regions_.size()));
       regions_.push_back(std::move(outline));
     }
+  }
+}
+
+void DocumentOutlines::join_free_stretches(std::vector<OutlineStretch>& loop) {
+  for (std::size_t first = 0; first < loop.size();) {
+    std::size_t last = first;
+    std::vector<dvec2> line = {loop[first].from};
+    while (last < loop.size() && loop[last].kind == OutlineStretch::Kind::free) {
+      line.push_back(loop[last++].to);
+    }
+    for (std::size_t k = first; k < last; ++k) {
+      loop[k].line = line;
+      loop[k].place = k - first;
+    }
+    first = std::max(last, first + 1);
   }
 }
 

@@ -18,6 +18,9 @@ struct OutlineStretch {
   const RulingInterval* interval = nullptr;
   int contact = 0;
   bool reversed = false;
+  /// free: the points of the free stretches on end that it is one of, and which of these it is.
+  std::vector<dvec2> line;
+  std::size_t place = 0;
 };
 
 /// A region of a patch with its outline as exact as the document's rulings tell.
@@ -74,6 +77,7 @@ class DocumentOutlines {
  private:
   void add_tracks(const DocumentGeometry& geometry);
   void add_regions(const DocumentGeometry& geometry);
+  static void join_free_stretches(std::vector<OutlineStretch>& loop);
   bool on_border(int source, int patch, const dvec2& from, const dvec2& to) const;
 
   using Key = std::array<double, 5>;

@@ -243,6 +243,7 @@ void HullVerifier::check_faces() {
   if (hull_.dimension == 3) {
     measures = measure(geometry_, outlines);
     raise(result_.vector_area, glm::length(measures->vector_area) / measures->area);
+    raise(result_.interpolation, measures->interpolation);
     if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
     raise(result_.patch_outside, check_patches(geometry_, outlines, scene_, options_, faults_));
     options_.progress.update("verify", 0.8);
@@ -377,7 +378,7 @@ double HullVerification::worst_length() const {
 }
 
 bool HullVerification::closes_up(double relative) const {
-  return vector_area <= std::max(relative, measure_accuracy) + rounding;
+  return vector_area <= std::max(relative, measure_accuracy) + rounding + interpolation;
 }
 
 bool HullVerification::has_width(double relative) const {

@@ -46,6 +46,8 @@ struct HullVerification {
   /// over the faces from that by support queries; of hulls of dimension 3.
   double vector_area = 0;
   double mean_width_error = 0;
+  /// What interpolating the curves of facets may do to these.
+  double interpolation = 0;
   /// How well that many queries tell it.
   double mean_width_accuracy = 0;
   /// All else that is wrong, each with its place.
