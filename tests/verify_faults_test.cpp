@@ -472,7 +472,7 @@ TEST(VerifyFaults, AreNamed) {
   change_number(sound.hull.report, "unresolved", 1, 2);
   const HullVerification v = verified(sound.hull, sound.scene);
   ASSERT_EQ(v.faults.size(), 2U) << text_of(v);
-  EXPECT_EQ(v.faults[0].text, "curves[1]: a join not between patches");
+  EXPECT_EQ(v.faults[0].text, "curves[1]: a join not between sources");
   EXPECT_EQ(v.faults[1].text, "report: unresolved is 2, not 0");
 }
 

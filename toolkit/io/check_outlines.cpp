@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "taut/io/closest_on_curve.h"
 #include "taut/io/nearest_point.h"
 
 namespace taut {
@@ -23,32 +24,6 @@ double distance_to_segment(const dvec3& p, const dvec3& a, const dvec3& b) {
   const double square = glm::dot(side, side);
   const double s = square > 0 ? std::clamp(glm::dot(p - a, side) / square, 0.0, 1.0) : 0;
   return glm::distance(p, a + s * side);
-}
-
-/// Distance of a point from a curve c(s), s in [from, to], given with its first two derivatives.
-template <class Jet>
-double distance_to_curve(const dvec3& p, double from, double to, const Jet& jet) {
-  constexpr int samples = 16;
-  constexpr int steps = 12;
-  double best = std::numeric_limits<double>::infinity();
-  double s = from;
-  for (int i = 0; i <= samples; ++i) {
-    const double here = from + (to - from) * i / samples;
-    const double d = glm::distance(jet(here).x, p);
-    if (d < best) {
-      best = d;
-      s = here;
-    }
-  }
-  for (int i = 0; i < steps; ++i) {
-    const SourceJet j = jet(s);
-    const dvec3 off = j.x - p;
-    const double second = glm::dot(j.dx[0], j.dx[0]) + glm::dot(off, j.dxx);
-    if (!(second > 0)) break;
-    s = std::clamp(s - glm::dot(off, j.dx[0]) / second, std::min(from, to), std::max(from, to));
-    best = std::min(best, glm::distance(jet(s).x, p));
-  }
-  return best;
 }
 
 /// Checks one document.
@@ -121,7 +96,7 @@ void OutlineCheck::check_kind(std::size_t i) {
       if (!on_edge) return wrong("an edge without one of the model's");
       return check_edge(curve);
     case HullCurveKind::join:
-      if (patches < 2) return wrong("a join not between patches");
+      if (faces[0]->source < 0 || faces[1]->source < 0) return wrong("a join not between sources");
       if (faces[0]->source == faces[1]->source) wrong("a join within one source face");
       break;
     case HullCurveKind::bitangent:
@@ -144,7 +119,7 @@ void OutlineCheck::check_edge(const Curve& curve) {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < pieces && best > 0; ++i) {
       const auto jet = [&](double t) { return geometry_.jet(curve.source, {i, dvec2(t, 0)}); };
-      best = std::min(best, distance_to_curve(p, 0, 1, jet));
+      best = std::min(best, closest_on_curve(p, 0, 1, jet).distance);
     }
     raise(off_, best);
   }
@@ -320,7 +295,8 @@ double OutlineCheck::distance_to_border(int source, const OutlineStretch& stretc
         }
         return j;
       };
-      best = std::min(best, distance_to_curve(geometry_.local(p), from.t[k], to.t[k], along));
+      best =
+          std::min(best, closest_on_curve(geometry_.local(p), from.t[k], to.t[k], along).distance);
     }
   }
   return best;

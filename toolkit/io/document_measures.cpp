@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "taut/hull/quadrature.h"
+#include "taut/io/closest_on_curve.h"
 
 namespace taut {
 namespace {
 
+using DirectedCurve = HullDocument::DirectedCurve;
 using Face = HullDocument::Face;
 
 /// Nodes along a stretch of an outline, and across a patch from it.
@@ -39,6 +41,7 @@ class SmoothLine {
  public:
   SmoothLine(const std::vector<dvec3>& points, std::size_t window);
   std::size_t segments() const { return points_.empty() ? 0 : points_.size() - 1; }
+  const dvec3& point(std::size_t i) const { return points_[i]; }
   double from(std::size_t segment) const { return length_[segment]; }
   double to(std::size_t segment) const { return length_[segment + 1]; }
   /// Point and derivative at a length within the segment.
@@ -100,6 +103,12 @@ std::array<dvec3, 2> SmoothLine::at(std::size_t segment, double s) const {
 /// Sums up the faces' integrals.
 class MeasureSums {
  public:
+  /// Of a Bezier curve of an edge.
+  struct EdgePart {
+    int patch = -1;
+    double from = 0;
+    double to = 0;
+  };
   MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
               std::size_t window);
   DocumentMeasures run();
@@ -117,6 +126,9 @@ class MeasureSums {
   void add_scroll_element(const RulingInterval& interval, double s, double w);
   void add_end(const HullDocument::Ruling& ruling, bool last);
   void add_facet(const Face& face);
+  dvec3 facet_side(const DirectedCurve& side, const dvec3& normal);
+  std::optional<EdgePart> edge_between(const HullDocument::Curve& curve, const dvec3& p,
+                                       const dvec3& q) const;
   void add_outline(const dvec3& x, const dvec3& dx, const dvec3& n, double w);
   dvec3 from_inside(const dvec3& p) const { return geometry_.local(p) - inside_; }
 
@@ -304,26 +316,61 @@ void MeasureSums::add_end(const HullDocument::Ruling& ruling, bool last) {
 
 void MeasureSums::add_facet(const Face& face) {
   dvec3 area(0.0);
-  for (const auto& [curve, sense] : face.outline) {
-    std::vector<dvec3> points = geometry_.hull().curves[to_size(curve)].points;
-    for (dvec3& p : points) p = from_inside(p);
-    if (sense < 0) std::reverse(points.begin(), points.end());
-    const SmoothLine line(points, window_);
-    interpolated_ = interpolated_ || line.segments() > 1;
-    for (std::size_t k = 0; k < line.segments(); ++k) {
-      for_gauss_nodes<across_nodes>(line.from(k), line.to(k), [&](double s, double w) {
-        const auto [x, dx] = line.at(k, s);
-        area += 0.5 * w * glm::cross(x, dx);
-        add_outline(x, dx, face.normal, w);
-      });
-    }
-  }
+  for (const DirectedCurve& c : face.outline) area += facet_side(c, face.normal);
   const double size = glm::dot(area, face.normal);
   sums_.area += size;
   sums_.vector_area += size * face.normal;
   if (!face.boundary.empty()) {
     sums_.volume += size * glm::dot(from_inside(face.boundary[0]), face.normal) / 3;
   }
+}
+
+/// Its share of the facet's vector area: along the model's edge between points of it, else along
+/// what is interpolated.
+dvec3 MeasureSums::facet_side(const DirectedCurve& side, const dvec3& normal) {
+  const HullDocument::Curve& curve = geometry_.hull().curves[to_size(side.first)];
+  std::vector<dvec3> points = curve.points;
+  for (dvec3& p : points) p = from_inside(p);
+  if (side.second < 0) std::reverse(points.begin(), points.end());
+  const SmoothLine line(points, window_);
+  dvec3 area(0.0);
+  const auto add = [&](const dvec3& x, const dvec3& dx, double w) {
+    area += 0.5 * w * glm::cross(x, dx);
+    add_outline(x, dx, normal, w);
+  };
+  for (std::size_t k = 0; k < line.segments(); ++k) {
+    if (const auto on_edge = edge_between(curve, line.point(k), line.point(k + 1))) {
+      for_gauss_nodes<across_nodes>(on_edge->from, on_edge->to, [&](double t, double w) {
+        const SourceJet j = geometry_.jet(curve.source, {on_edge->patch, dvec2(t, 0)});
+        add(j.x - inside_, j.dx[0], w);
+      });
+      continue;
+    }
+    interpolated_ = interpolated_ || line.segments() > 1;
+    for_gauss_nodes<across_nodes>(line.from(k), line.to(k), [&](double s, double w) {
+      const auto [x, dx] = line.at(k, s);
+      add(x, dx, w);
+    });
+  }
+  return area;
+}
+
+/// The part of one of an edge's Bezier curves between two points, if both lie on it.
+std::optional<MeasureSums::EdgePart> MeasureSums::edge_between(const HullDocument::Curve& curve,
+                                                               const dvec3& p,
+                                                               const dvec3& q) const {
+  if (curve.kind != HullCurveKind::edge || curve.source < 0) return std::nullopt;
+  if (geometry_.source(curve.source).kind != SourceKind::edge) return std::nullopt;
+  const double near = geometry_.noise() * geometry_.hull().diagonal;
+  const int pieces = int(geometry_.source(curve.source).patches.size());
+  for (int i = 0; i < pieces; ++i) {
+    const auto jet = [&](double t) { return geometry_.jet(curve.source, {i, dvec2(t, 0)}); };
+    const ClosestOnCurve from = closest_on_curve(p + inside_, 0, 1, jet);
+    if (!(from.distance <= near)) continue;
+    const ClosestOnCurve to = closest_on_curve(q + inside_, 0, 1, jet);
+    if (to.distance <= near && from.s != to.s) return EdgePart{i, from.s, to.s};
+  }
+  return std::nullopt;
 }
 
 }  // namespace

@@ -16,14 +16,14 @@ struct DocumentMeasures {
   double interpolation = 0;
 };
 
-/// By integrals over all faces: patches by Green's theorem in their parameters and scrolls along
-/// their rulings, to some 1e-12; facets along their curves, of which only points are known, and so
-/// patches where no scroll is along them, by polynomials of degree five through these.
+/// By integrals over all faces: patches by Green's theorem in their parameters, scrolls along their
+/// rulings and facets along their edges, to some 1e-12. Of other curves about facets only points
+/// are known: these, and patches along them, are by polynomials of degree five through the points.
 ///
 /// The mean width is total mean curvature over 2 pi. Creases have their share of it: the outline of
 /// each face counts with the angle between the face's normal and the direction from a point inside
 /// of the hull, whose differences are the creases' angles.
-/// @pre hull of dimension 3, all contacts on their sources
+/// Meaningless where faces are missing or contacts off their sources. @pre hull of dimension 3
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines);
 
 }  // namespace taut
