@@ -128,6 +128,11 @@ TEST(VerifySoundHulls, TwoSpheres) { expect_sound_anywhere(two_spheres(1, 0.5, 3
 TEST(VerifySoundHulls, Oloid) { expect_sound_anywhere(oloid(), "oloid"); }
 TEST(VerifySoundHulls, DentedEllipsoid) { expect_sound_anywhere(dented_ellipsoid(), "dented"); }
 TEST(VerifySoundHulls, Teapot) { expect_sound(teapot(), "teapot"); }
+/// Edges that end where only the face on one side does.
+TEST(VerifySoundHulls, SpheresWithAnOloid) {
+  const Shape turned = mapped(oloid(), skew_rotation());
+  expect_sound(two_spheres(1, 0.5, 3) + shifted(turned, dvec3(1, 2, 0)), "spheres and oloid");
+}
 TEST(VerifySoundHulls, BlobsWithFreeEnds) {
   for (const unsigned seed : {1U, 2U, 3U}) expect_sound(blob(seed), "blob");
 }

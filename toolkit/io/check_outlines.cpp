@@ -167,8 +167,8 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<int>& curves) const
   return points;
 }
 
-/// The curves along a scroll's contacts have their points, but for edges, which may have more or
-/// fewer: there the ends must be the scroll's.
+/// The curves along a scroll's contacts have their points, but for edges: these have those of both
+/// sides, and end where the face on the other side does.
 void OutlineCheck::check_sides(const Face& scroll) {
   for (std::size_t k = 0; k < 2; ++k) {
     if (scroll.curves[k].empty()) continue;
@@ -176,18 +176,14 @@ void OutlineCheck::check_sides(const Face& scroll) {
     contacts.reserve(scroll.rulings.size());
     for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
     const NearestPoint listed(contacts);
-    bool free = false;
+    bool any_edge = false;
     for (const int c : scroll.curves[k]) {
       const Curve& curve = hull_.curves[to_size(c)];
-      const bool edge = curve.kind == HullCurveKind::edge;
-      free = free || edge;
-      raise(off_, listed.distance(curve.points.front()));
-      raise(off_, listed.distance(curve.points.back()));
-      for (const dvec3& p : curve.points) {
-        if (!edge) raise(off_, listed.distance(p));
-      }
+      any_edge = any_edge || curve.kind == HullCurveKind::edge;
+      if (curve.kind == HullCurveKind::edge) continue;
+      for (const dvec3& p : curve.points) raise(off_, listed.distance(p));
     }
-    if (free) continue;
+    if (any_edge) continue;
     const NearestPoint curves(points_of(scroll.curves[k]));
     for (const dvec3& p : contacts) raise(off_, curves.distance(p));
   }
