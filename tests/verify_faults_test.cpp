@@ -133,6 +133,19 @@ TEST(VerifySoundHulls, SpheresWithAnOloid) {
   const Shape turned = mapped(oloid(), skew_rotation());
   expect_sound(two_spheres(1, 0.5, 3) + shifted(turned, dvec3(1, 2, 0)), "spheres and oloid");
 }
+TEST(VerifySoundHulls, PatchesWithCurvesAndPoints) {
+  for (const unsigned seed : {1U, 2U, 4U, 5U, 8U, 11U, 13U}) {
+    Random random(seed);
+    Shape shape;
+    for (unsigned k = 0; k < 1 + seed % 3; ++k) {
+      const double weights = seed % 4 != 0 ? 1 : 3;
+      shape.surfaces.push_back(as_nurbs(random_patch(random, 2 + int(seed % 2), 3, weights)));
+      shape.curves.push_back(as_nurbs(random_curve(random, 3, 1)));
+      shape.points.push_back(random_point(random));
+    }
+    expect_sound(shape, std::to_string(seed).c_str());
+  }
+}
 TEST(VerifySoundHulls, BlobsWithFreeEnds) {
   for (const unsigned seed : {1U, 2U, 3U}) expect_sound(blob(seed), "blob");
 }

@@ -16,6 +16,7 @@
 #include "taut/io/check_report.h"
 #include "taut/io/check_sources.h"
 #include "taut/io/hull_structure.h"
+#include "taut/io/nearest_point.h"
 
 namespace taut {
 namespace {
@@ -130,7 +131,8 @@ class HullVerifier {
   void check_even_directions(const DocumentOutlines& outlines,
                              const std::optional<DocumentMeasures>& measures);
   void check_points();
-  bool covers(const DocumentOutlines& outlines, const Contact& contact) const;
+  bool covers(const DocumentOutlines& outlines, const NearestPoint& curves,
+              const Contact& contact) const;
 
   double relative(double length) const {
     return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
@@ -310,8 +312,11 @@ void HullVerifier::check_support(const std::vector<Claim>& claims) {
   result_.directions += int(claims.size());
 }
 
-/// On an edge or vertex that the document names, or on a patch, be it at its border.
-bool HullVerifier::covers(const DocumentOutlines& outlines, const Contact& contact) const {
+/// On an edge or vertex that the document names, or on a patch, be it at its border; or in a point
+/// of its curves, where a corner is named as the end of an edge.
+bool HullVerifier::covers(const DocumentOutlines& outlines, const NearestPoint& curves,
+                          const Contact& contact) const {
+  if (curves.distance(scene_.point(contact)) <= (same_point + rounding_) * diagonal_) return true;
   const SourceContact c = scene_.source(contact);
   if (c.kind != SourceKind::face && place_of_source_.contains(c.source)) return true;
   if (contact.kind != SourceKind::face) return false;
@@ -329,6 +334,11 @@ void HullVerifier::check_even_directions(const DocumentOutlines& outlines,
   const std::vector<dvec3> directions = even_directions(options_.random_directions, options_.seed);
   std::vector<double> h(directions.size(), 0);
   std::vector<char> missed(directions.size(), 0);
+  std::vector<dvec3> points;
+  for (const HullDocument::Curve& curve : hull_.curves) {
+    points.insert(points.end(), curve.points.begin(), curve.points.end());
+  }
+  const NearestPoint curves(std::move(points));
   constexpr std::size_t grain = 64;
   parallel_for(directions.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
@@ -336,7 +346,7 @@ void HullVerifier::check_even_directions(const DocumentOutlines& outlines,
     for (std::size_t i = begin; i < end; ++i) {
       const Support s = query(directions[i]);
       h[i] = s.h;
-      missed[i] = covers(outlines, s.contact) ? 0 : 1;
+      missed[i] = covers(outlines, curves, s.contact) ? 0 : 1;
     }
   });
   result_.uncovered = int(std::count(missed.begin(), missed.end(), 1));
