@@ -474,6 +474,16 @@ TEST_F(Cli, VerifyReadsExactHulls) {
   const Result open = run("verify open.hull.json " + points);
   EXPECT_EQ(open.exit_code, 1);
   EXPECT_NE(open.err.find("faces are missing, not closed"), std::string::npos) << open.err;
+  hull = Json::parse(content(path("h.hull.json")));
+  hull["report"]["hull"]["unresolved"] = 3;
+  plant("unresolved.hull.json", hull.dump());
+  const Result unresolved = run("verify unresolved.hull.json " + points);
+  EXPECT_EQ(unresolved.exit_code, 1);
+  EXPECT_NE(unresolved.err.find("report: unresolved is 3, not 0"), std::string::npos)
+      << unresolved.err;
+  hull["faces"][0]["offset"] = double(hull["faces"][0]["offset"]) + 1e-9;
+  plant("off.hull.json", hull.dump());
+  EXPECT_EQ(run("verify off.hull.json " + points).exit_code, 1) << "an exact hull is exact";
   EXPECT_EQ(run("verify h.hull.json " + plant("q.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 2\n")).exit_code,
             1);
   expect_failure("verify " + plant("bad.hull.json", "{}") + " " + points, 3, "bad.hull.json: ");

@@ -219,6 +219,12 @@ void close(std::vector<Point>& line) {
   if (line.size() > 1 && line.front() == line.back()) line.pop_back();
 }
 
+double length(const std::vector<dvec2>& line) {
+  double sum = 0;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) sum += glm::distance(line[k], line[k + 1]);
+  return sum;
+}
+
 void DocumentMaker::make_patch(const HullFace& face, HullDocument::Face& result) const {
   std::vector<Stretch> stretches;
   const Model& model = scene_.model();
@@ -261,9 +267,10 @@ std::vector<dvec2> DocumentMaker::outline(const std::vector<DirectedCurve>& curv
   for (const DirectedCurve& c : curves) {
     dvec3 at = end_of(c, false);
     const dvec3 target = end_of(c, true);
-    for (bool first = true;; first = false) {
-      // Of a curve that the face meets from both sides, the others belong to the other side.
-      if (!first && glm::distance(at, target) < outline_gap) break;
+    for (double passed = 0;;) {
+      // Of a curve that the face meets from both sides, the others belong to the other side. One
+      // that closes may begin with a stretch no longer than rounding.
+      if (passed > outline_gap && glm::distance(at, target) < outline_gap) break;
       Stretch* next = nullptr;
       for (Stretch& s : stretches) {
         if (s.used || s.curve != c.first) continue;
@@ -274,6 +281,7 @@ std::vector<dvec2> DocumentMaker::outline(const std::vector<DirectedCurve>& curv
       if (next == nullptr) break;
       next->used = true;
       at = next->end;
+      passed += length(next->uv);
       append(line, next->uv);
     }
   }

@@ -30,10 +30,10 @@ class HullSources {
     for (const int id : order_) sources.push_back(source(id));
     return sources;
   }
-
- private:
+  /// The model's source with this id. @pre it has one
   HullDocument::Source source(int id) const;
 
+ private:
   const Model& model_;
   const std::vector<std::string>& files_;
   std::set<int> ids_;

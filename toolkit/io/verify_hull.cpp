@@ -4,13 +4,19 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <random>
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
+#include "taut/io/check_outlines.h"
+#include "taut/io/check_patches.h"
+#include "taut/io/check_report.h"
+#include "taut/io/check_sources.h"
 #include "taut/io/hull_structure.h"
-#include "taut/surface/bezier.h"
+#include "taut/io/nearest_point.h"
 
 namespace taut {
 namespace {
@@ -19,123 +25,161 @@ namespace {
 /// but for the rounding of two computations, and that of their coordinates.
 constexpr double same_point = 1e-9;
 
-/// How far, as a share of a Bezier patch's parameters, a contact may lie beside the polygon of a
-/// region's outline: outlines are smooth between points whose normals differ by up to 0.1.
-constexpr double outline_slack = 0.02;
+/// Relative error of the mean width by support queries, times their number: that of the lattice is
+/// below a tenth of this even of polyhedra, whose support functions have kinks.
+constexpr double mean_width_spread = 1;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-/// A point of a source and its derivatives over a whole Bezier patch or curve.
-struct SourceJet {
-  dvec3 x = dvec3(0.0);
-  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
+/// A direction with the support value that the document claims for it, about the scene's centre.
+struct Claim {
+  dvec3 n = dvec3(0.0);
+  double h = 0;
 };
 
-/// A region with a box of the parameters that count as its own.
-struct RegionBox {
-  const HullDocument::Region* region = nullptr;
-  dvec2 slack, lower, upper;
+/// All numbers of a document, to find one that is none.
+class FiniteNumbers {
+ public:
+  bool all(const HullDocument& hull);
+
+ private:
+  void see(double x) { finite_ = finite_ && std::isfinite(x); }
+  void see(const dvec2& p) { see(p.x), see(p.y); }
+  void see(const dvec3& p) { see(p.x), see(p.y), see(p.z); }
+  void see(const dvec4& p) { see(dvec3(p)), see(p.w); }
+  void see(const HullDocument::Contact& c) { see(c.uv), see(c.p); }
+  void see(const HullDocument::Ruling& r) { see(r.n), see(r.a), see(r.b); }
+  void see(const HullDocument::Loop& loop) { see(loop.uv); }
+  void see(const HullDocument::Region& region) { see(region.loops); }
+  void see(const HullDocument::Patch& patch) { see(patch.points); }
+  template <class Value>
+  void see(const std::vector<Value>& values) {
+    for (const Value& value : values) see(value);
+  }
+
+  bool finite_ = true;
 };
+
+bool FiniteNumbers::all(const HullDocument& hull) {
+  see(hull.diagonal);
+  for (const HullDocument::Source& source : hull.sources) see(source.patches);
+  for (const HullDocument::Curve& curve : hull.curves) see(curve.points);
+  for (const HullDocument::Face& face : hull.faces) {
+    see(face.loops);
+    see(face.regions);
+    see(face.rulings);
+    see(face.normal);
+    see(face.offset);
+    see(face.contacts);
+    see(face.boundary);
+  }
+  return finite_;
+}
+
+/// Directions spread evenly (spherical Fibonacci lattice: Swinbank and Purser 2006), turned at
+/// random.
+std::vector<dvec3> even_directions(int count, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gaussian;
+  const auto vector = [&] {
+    const double x = gaussian(random);
+    const double y = gaussian(random);
+    return dvec3(x, y, gaussian(random));
+  };
+  const dvec3 z = unit(vector());
+  const dvec3 x = unit(glm::cross(z, vector()));
+  const dvec3 y = glm::cross(z, x);
+  std::vector<dvec3> directions;
+  directions.reserve(to_size(std::max(count, 0)));
+  for (int k = 0; k < count; ++k) {
+    const double height = 1 - (2 * k + 1.0) / count;
+    const double radius = std::sqrt(1 - height * height);
+    const double angle = 2 * std::numbers::pi * std::fmod(k * std::numbers::phi, 1.0);
+    directions.push_back(unit(radius * (std::cos(angle) * x + std::sin(angle) * y) + height * z));
+  }
+  return directions;
+}
+
+/// What the rounding of a scene's coordinates may do to lengths, as a fraction of its diagonal.
+double relative_rounding(const Scene& scene) {
+  const Box& box = scene.box();
+  const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double rounding = coordinate_rounding * (reach.x + reach.y + reach.z);
+  return scene.diagonal() > 0 ? rounding / scene.diagonal() : rounding;
+}
 
 /// Checks one document.
 class HullVerifier {
  public:
-  HullVerifier(const HullDocument& hull, const Scene& scene, const VerifyOptions& options);
+  HullVerifier(const HullDocument& hull, const Scene& scene, const VerifyOptions& options)
+      : hull_(hull),
+        scene_(scene),
+        options_(options),
+        diagonal_(scene.diagonal()),
+        rounding_(relative_rounding(scene)),
+        geometry_(hull, scene.frame().center, rounding_) {}
   HullVerification run();
 
  private:
-  std::vector<SourceJet> jets(const HullDocument::Contact& c) const;
+  void check_structure();
   void check_contact(const HullDocument::Contact& c, const dvec3& n);
   void check_side(const HullDocument::Face& facet, std::size_t k);
   void check_geometry();
-  void check_support();
-  void check_cover();
-  void list_regions();
-  bool covers(const Contact& contact) const;
-  bool covers(int source, const dvec2& uv) const;
+  void check_faces();
+  void add_listed_claims(std::vector<Claim>& claims);
+  void add_claims_between(const DocumentOutlines& outlines, std::vector<Claim>& claims) const;
+  void check_support(const std::vector<Claim>& claims);
+  void check_even_directions(const DocumentOutlines& outlines,
+                             const std::optional<DocumentMeasures>& measures);
+  void check_points();
+  bool covers(const DocumentOutlines& outlines, const NearestPoint& curves,
+              const Contact& contact) const;
 
   double relative(double length) const {
     return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
-  }
-  /// A length that is no number is as bad as can be.
-  static void raise(double& worst, double value) {
-    worst = std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(worst, value);
   }
 
   const HullDocument& hull_;
   const Scene& scene_;
   const VerifyOptions& options_;
   double diagonal_;
-  /// As homogeneous control nets.
-  std::vector<std::vector<BezierPatch>> nets_;
+  double rounding_;
+  DocumentGeometry geometry_;
   std::map<int, int> place_of_source_;
-  std::vector<std::vector<RegionBox>> regions_of_;  ///< per source
   HullVerification result_;
+  HullFaults faults_;
 };
 
-HullVerifier::HullVerifier(const HullDocument& hull, const Scene& scene,
-                           const VerifyOptions& options)
-    : hull_(hull), scene_(scene), options_(options), diagonal_(scene.diagonal()) {
-  for (std::size_t i = 0; i < hull.sources.size(); ++i) {
-    place_of_source_[hull.sources[i].id] = int(i);
-    std::vector<BezierPatch>& nets = nets_.emplace_back();
-    for (const HullDocument::Patch& patch : hull.sources[i].patches) {
-      BezierPatch& net = nets.emplace_back();
-      net.degree_u = patch.rows - 1;
-      net.degree_v = patch.columns - 1;
-      for (const dvec4& p : patch.points) net.points.push_back(homogeneous(dvec3(p), p.w));
-    }
-  }
-}
-
 HullVerification HullVerifier::run() {
-  if (hull_.dimension >= 2) {
-    const Box& box = scene_.box();
-    const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-    const double rounding = coordinate_rounding * (reach.x + reach.y + reach.z);
-    const HullStructure structure = hull_structure(hull_, same_point * diagonal_ + rounding);
-    result_.complete = structure.complete;
-    result_.closed = structure.closed;
-    result_.euler = structure.euler;
-  } else {
-    result_.complete = result_.closed = true;
-    result_.euler = 2;
-  }
-  check_geometry();
+  result_.rounding = rounding_;
+  if (!FiniteNumbers().all(hull_)) faults_.add("numbers", "a number is not finite");
+  check_structure();
+  const bool finite = faults_.list().empty();
+  const bool same = check_sources(hull_, scene_, faults_, result_.off_model);
+  if (finite) check_geometry();
   options_.progress.update("verify", 0.1);
-  check_support();
-  options_.progress.update("verify", 0.8);
-  if (hull_.dimension == 3) check_cover();
+  if (finite && same) {
+    check_faces();
+  } else {
+    std::vector<Claim> claims;
+    add_listed_claims(claims);
+    check_support(claims);
+    check_report(hull_, std::nullopt, rounding_, faults_);
+  }
+  result_.faults = faults_.list();
   return result_;
 }
 
-/// By each of the source's patches that has the contact's parameters: several where they meet.
-std::vector<SourceJet> HullVerifier::jets(const HullDocument::Contact& c) const {
-  const HullDocument::Source& source = hull_.sources[to_size(c.source)];
-  std::vector<SourceJet> found;
-  for (std::size_t i = 0; i < source.patches.size(); ++i) {
-    const HullDocument::Patch& patch = source.patches[i];
-    std::array<double, 2> t = {0, 0};
-    bool inside = true;
-    for (std::size_t k = 0; k < patch.domain.size(); ++k) {
-      const Interval& interval = patch.domain[k];
-      t[k] = (c.uv[k] - interval.lower) / (interval.upper - interval.lower);
-      if (c.uv[k] == interval.upper) t[k] = 1;
-      inside = inside && 0 <= t[k] && t[k] <= 1;
-    }
-    if (!inside) continue;
-    const BezierPatch& net = nets_[to_size(c.source)][i];
-    if (source.kind == SourceKind::vertex) {
-      found.push_back({dvec3(patch.points[0]), {}});
-    } else if (source.kind == SourceKind::edge) {
-      const CurveJet j = taut::jet(BezierCurve{net.points}, t[0]);
-      found.push_back({j.c, {j.ct, dvec3(0.0)}});
-    } else {
-      const PatchJet1 j = jet1(net, t[0], t[1]);
-      found.push_back({j.S, {j.Su, j.Sv}});
-    }
+void HullVerifier::check_structure() {
+  if (hull_.dimension < 2) {
+    result_.complete = result_.closed = true;
+    result_.euler = 2;
+    return;
   }
-  return found;
+  const HullStructure structure = hull_structure(hull_, (same_point + rounding_) * diagonal_);
+  result_.complete = structure.complete;
+  result_.closed = structure.closed;
+  result_.euler = structure.euler;
 }
 
 /// The contact is on one of its patches, and tangent there.
@@ -143,8 +187,9 @@ void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n)
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double off = infinity;
   double slope = 0;
-  for (const SourceJet& jet : jets(c)) {
-    const double off_here = relative(glm::distance(jet.x, c.p));
+  for (const SourcePlace& place : geometry_.places(c)) {
+    const SourceJet jet = geometry_.jet(c.source, place);
+    const double off_here = relative(glm::distance(jet.x, geometry_.local(c.p)));
     double slope_here = 0;
     for (const dvec3& d : jet.dx) raise(slope_here, relative(glm::dot(d, n)));
     if (!(off_here + slope_here < off + slope)) continue;
@@ -166,16 +211,17 @@ void HullVerifier::check_side(const HullDocument::Face& facet, std::size_t k) {
     for (std::size_t p = 0; p < side.from.size(); ++p) {
       c.uv.push_back(Interval{side.from[p], side.to[p]}.at(double(i) / parts));
     }
-    const std::vector<SourceJet> found = jets(c);
+    const std::vector<SourcePlace> found = geometry_.places(c);
     if (found.empty()) {
       raise(result_.off_source, infinity);
       return;
     }
-    const dvec3& x = found[0].x;
-    raise(result_.flatness, relative(glm::dot(x, facet.normal) - facet.offset));
+    const dvec3 x = geometry_.jet(c.source, found.front()).x;
+    const double offset = facet.offset - glm::dot(geometry_.origin(), facet.normal);
+    raise(result_.flatness, relative(glm::dot(x, facet.normal) - offset));
     if (i > 0 && i < parts) continue;
     const std::size_t end = (k + (i == 0 ? 0 : 1)) % facet.contacts.size();
-    raise(result_.off_source, relative(glm::distance(x, facet.contacts[end].p)));
+    raise(result_.off_source, relative(glm::distance(x, geometry_.local(facet.contacts[end].p))));
   }
 }
 
@@ -187,34 +233,89 @@ void HullVerifier::check_geometry() {
       raise(result_.flatness, relative(glm::dot(r.a.p - r.b.p, r.n)));
     }
     if (face.kind != FaceKind::facet) continue;
+    const double offset = face.offset - glm::dot(geometry_.origin(), face.normal);
+    const auto off_plane = [&](const dvec3& p) {
+      return relative(glm::dot(geometry_.local(p), face.normal) - offset);
+    };
     for (const HullDocument::Contact& c : face.contacts) {
       check_contact(c, face.normal);
-      raise(result_.flatness, relative(glm::dot(c.p, face.normal) - face.offset));
+      raise(result_.flatness, off_plane(c.p));
     }
     for (std::size_t k = 0; k < face.sides.size(); ++k) check_side(face, k);
-    for (const dvec3& p : face.boundary) {
-      raise(result_.flatness, relative(glm::dot(p, face.normal) - face.offset));
+    for (const dvec3& p : face.boundary) raise(result_.flatness, off_plane(p));
+    for (const auto& [curve, sense] : face.outline) {
+      for (const dvec3& p : hull_.curves[to_size(curve)].points) {
+        raise(result_.flatness, off_plane(p));
+      }
     }
   }
 }
 
-void HullVerifier::check_support() {
-  struct Claim {
-    dvec3 n;
-    double h;  ///< about the scene's centre, in model units
-  };
+/// What needs the model's sources to be the document's.
+void HullVerifier::check_faces() {
+  for (std::size_t i = 0; i < hull_.sources.size(); ++i) {
+    place_of_source_[hull_.sources[i].id] = int(i);
+  }
+  const ContactGeometry contacts(scene_);
+  const ContactSystem system(contacts);
+  const DocumentOutlines outlines(geometry_, system);
   std::vector<Claim> claims;
-  const SceneFrame& frame = scene_.frame();
+  add_listed_claims(claims);
+  add_claims_between(outlines, claims);
+  check_support(claims);
+  options_.progress.update("verify", 0.4);
+  std::optional<DocumentMeasures> measures;
+  if (hull_.dimension >= 2) {
+    const double tolerance = (same_point + rounding_) * diagonal_;
+    raise(result_.off_outline, relative(check_outlines(geometry_, outlines, tolerance, faults_)));
+  }
+  if (hull_.dimension == 3) {
+    measures = measure(geometry_, outlines);
+    raise(result_.vector_area, glm::length(measures->vector_area) / measures->area);
+    raise(result_.interpolation, measures->interpolation);
+    if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
+    raise(result_.patch_outside, check_patches(geometry_, outlines, scene_, options_, faults_));
+    options_.progress.update("verify", 0.8);
+    check_even_directions(outlines, measures);
+  } else {
+    check_points();
+  }
+  check_report(hull_, measures, rounding_, faults_);
+}
+
+void HullVerifier::add_listed_claims(std::vector<Claim>& claims) {
+  const dvec3& center = scene_.frame().center;
   for (const HullDocument::Face& face : hull_.faces) {
     for (const HullDocument::Ruling& r : face.rulings) {
       const dvec3 n = unit(r.n);
       raise(result_.tangency, std::abs(glm::length(r.n) - 1));
-      for (const dvec3& p : {r.a.p, r.b.p}) claims.push_back({n, glm::dot(p - frame.center, n)});
+      for (const dvec3& p : {r.a.p, r.b.p}) claims.push_back({n, glm::dot(p - center, n)});
     }
     if (face.kind != FaceKind::facet) continue;
     raise(result_.tangency, std::abs(glm::length(face.normal) - 1));
-    claims.push_back({unit(face.normal), face.offset - glm::dot(face.normal, frame.center)});
+    claims.push_back({unit(face.normal), face.offset - glm::dot(face.normal, center)});
   }
+}
+
+/// Rulings between the listed ones support as well.
+void HullVerifier::add_claims_between(const DocumentOutlines& outlines,
+                                      std::vector<Claim>& claims) const {
+  for (const std::vector<RulingInterval>& intervals : outlines.intervals()) {
+    for (const RulingInterval& interval : intervals) {
+      // The first two are listed.
+      for (std::size_t i = 2; interval.solved && i < interval.states().size(); ++i) {
+        const RulingState& state = interval.states()[i];
+        for (std::size_t k = 0; k < 2; ++k) {
+          const SourceJet j = geometry_.jet(interval.source[k], {interval.patch[k], state.t[k]});
+          claims.push_back({state.n, glm::dot(j.x, state.n)});
+        }
+      }
+    }
+  }
+}
+
+void HullVerifier::check_support(const std::vector<Claim>& claims) {
+  const SceneFrame& frame = scene_.frame();
   std::vector<double> gap(claims.size());
   constexpr std::size_t grain = 64;
   parallel_for(claims.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
@@ -222,7 +323,7 @@ void HullVerifier::check_support() {
     SupportQuery query(scene_);
     Contact near;
     for (std::size_t i = begin; i < end; ++i) {
-      if (claims[i].n == dvec3(0.0)) {
+      if (!(glm::length(claims[i].n) > 0.5)) {
         gap[i] = std::numeric_limits<double>::infinity();
         continue;
       }
@@ -238,97 +339,93 @@ void HullVerifier::check_support() {
   result_.directions += int(claims.size());
 }
 
-/// Whether the point lies in the polygon, by the parity of crossings, or within the slack of it.
-bool near_polygon(const std::vector<std::vector<dvec2>>& loops, const dvec2& p,
-                  const dvec2& slack) {
-  bool inside = false;
-  for (const std::vector<dvec2>& loop : loops) {
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const dvec2 a = loop[k];
-      const dvec2 b = loop[(k + 1) % loop.size()];
-      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) {
-        inside = !inside;
-      }
-      const dvec2 side = (b - a) / slack;
-      const dvec2 from = (p - a) / slack;
-      const double length = glm::dot(side, side);
-      const double s = length > 0 ? std::clamp(glm::dot(from, side) / length, 0.0, 1.0) : 0;
-      if (glm::length(from - s * side) <= 1) return true;
-    }
-  }
-  return inside;
-}
-
-/// On an edge or vertex that the document names, or on a patch, be it at its border.
-bool HullVerifier::covers(const Contact& contact) const {
+/// On an edge or vertex that the document names, or on a patch, be it at its border; or in a point
+/// of its curves, where a corner is named as the end of an edge.
+bool HullVerifier::covers(const DocumentOutlines& outlines, const NearestPoint& curves,
+                          const Contact& contact) const {
+  if (curves.distance(scene_.point(contact)) <= (same_point + rounding_) * diagonal_) return true;
   const SourceContact c = scene_.source(contact);
   if (c.kind != SourceKind::face && place_of_source_.contains(c.source)) return true;
   if (contact.kind != SourceKind::face) return false;
   const Model& model = scene_.model();
   const Part& part = model.parts()[to_size(model.instances()[to_size(contact.instance)].part)];
   const Patch& patch = part.patches()[to_size(contact.element)];
-  return covers(model.source_id({SourceKind::face, contact.instance, patch.face}),
-                {patch.u.at(contact.u), patch.v.at(contact.v)});
+  const auto place =
+      place_of_source_.find(model.source_id({SourceKind::face, contact.instance, patch.face}));
+  return place != place_of_source_.end() &&
+         outlines.covers(place->second, {patch.u.at(contact.u), patch.v.at(contact.v)});
 }
 
-bool HullVerifier::covers(int id, const dvec2& uv) const {
-  const auto place = place_of_source_.find(id);
-  if (place == place_of_source_.end()) return false;
-  const std::vector<RegionBox>& regions = regions_of_[to_size(place->second)];
-  return std::any_of(regions.begin(), regions.end(), [&](const RegionBox& box) {
-    return glm::all(glm::lessThanEqual(box.lower, uv)) &&
-           glm::all(glm::lessThanEqual(uv, box.upper)) &&
-           near_polygon(box.region->loops, uv, box.slack);
-  });
-}
-
-void HullVerifier::list_regions() {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  regions_of_.resize(hull_.sources.size());
-  for (const HullDocument::Face& face : hull_.faces) {
-    for (const HullDocument::Region& region : face.regions) {
-      const std::vector<Interval>& domain =
-          hull_.sources[to_size(face.source)].patches[to_size(region.patch)].domain;
-      RegionBox box{&region,
-                    outline_slack *
-                        dvec2(domain[0].upper - domain[0].lower, domain[1].upper - domain[1].lower),
-                    dvec2(infinity), dvec2(-infinity)};
-      for (const std::vector<dvec2>& loop : region.loops) {
-        for (const dvec2& p : loop) {
-          box.lower = glm::min(box.lower, p - box.slack);
-          box.upper = glm::max(box.upper, p + box.slack);
-        }
-      }
-      regions_of_[to_size(face.source)].push_back(box);
-    }
-  }
-}
-
-void HullVerifier::check_cover() {
-  list_regions();
-  std::mt19937_64 random(options_.seed);
-  std::normal_distribution<double> gaussian;
-  std::vector<dvec3> directions;
-  for (int k = 0; k < options_.random_directions; ++k) {
-    const double x = gaussian(random);
-    const double y = gaussian(random);
-    const dvec3 n = unit({x, y, gaussian(random)});
-    if (n != dvec3(0.0)) directions.push_back(n);
-  }
+void HullVerifier::check_even_directions(const DocumentOutlines& outlines,
+                                         const std::optional<DocumentMeasures>& measures) {
+  const std::vector<dvec3> directions = even_directions(options_.random_directions, options_.seed);
+  std::vector<double> h(directions.size(), 0);
   std::vector<char> missed(directions.size(), 0);
+  std::vector<dvec3> points;
+  for (const HullDocument::Curve& curve : hull_.curves) {
+    points.insert(points.end(), curve.points.begin(), curve.points.end());
+  }
+  const NearestPoint curves(std::move(points));
   constexpr std::size_t grain = 64;
   parallel_for(directions.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
     SupportQuery query(scene_);
     for (std::size_t i = begin; i < end; ++i) {
-      missed[i] = covers(query(directions[i]).contact) ? 0 : 1;
+      const Support s = query(directions[i]);
+      h[i] = s.h;
+      missed[i] = covers(outlines, curves, s.contact) ? 0 : 1;
     }
   });
   result_.uncovered = int(std::count(missed.begin(), missed.end(), 1));
   result_.directions += int(directions.size());
+  if (directions.empty() || !measures) return;
+  result_.mean_width_accuracy = mean_width_spread / double(directions.size());
+  double sum = 0;
+  for (const double one : h) sum += one;
+  const double width = 2 * scene_.frame().length_to_model(sum / double(directions.size()));
+  raise(result_.mean_width_error, std::abs(measures->mean_width / width - 1));
+}
+
+/// A hull of lower dimension reaches as far as its points, which a polyhedral one lists.
+void HullVerifier::check_points() {
+  if (!scene_.model().polyhedral()) return;
+  std::vector<dvec3> points;
+  for (const HullDocument::Curve& curve : hull_.curves) {
+    points.insert(points.end(), curve.points.begin(), curve.points.end());
+  }
+  if (hull_.curves.empty()) {
+    for (const HullDocument::Source& source : hull_.sources) {
+      for (const HullDocument::Patch& p : source.patches) points.emplace_back(p.points[0]);
+    }
+  }
+  std::vector<Claim> claims;
+  for (const dvec3& n : even_directions(options_.random_directions, options_.seed)) {
+    Claim claim{n, -std::numeric_limits<double>::infinity()};
+    for (const dvec3& p : points) claim.h = std::max(claim.h, glm::dot(geometry_.local(p), n));
+    claims.push_back(claim);
+  }
+  check_support(claims);
 }
 
 }  // namespace
+
+double HullVerification::worst_length() const {
+  return std::max({off_model, tangency, flatness, off_source, off_outline, model_outside,
+                   hull_outside, patch_outside});
+}
+
+bool HullVerification::closes_up(double relative) const {
+  return vector_area <= std::max(relative, measure_accuracy) + rounding + interpolation;
+}
+
+bool HullVerification::has_width(double relative) const {
+  return mean_width_error <= std::max(relative, mean_width_accuracy);
+}
+
+bool HullVerification::is_hull(double relative) const {
+  return complete && closed && topological_sphere() && uncovered == 0 && faults.empty() &&
+         closes_up(relative) && has_width(relative) && worst_length() <= relative + rounding;
+}
 
 HullVerification verify(const HullDocument& hull, const Scene& scene,
                         const VerifyOptions& options) {

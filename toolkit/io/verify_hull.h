@@ -3,12 +3,16 @@
 #include "taut/bounds/scene.h"
 #include "taut/hull/verify.h"
 #include "taut/io/hull_document.h"
+#include "taut/io/hull_faults.h"
 
 namespace taut {
 
 /// What verify() found of a hull document. Lengths are fractions of the model's diagonal, and as
 /// large as they were found: lower bounds of what may be wrong.
 struct HullVerification {
+  /// What the rounding of coordinates, large against the diagonal far from the origin, may do to
+  /// lengths.
+  double rounding = 0;
   /// Every curve has two faces, and every face is there that the outlines ask for.
   bool complete = false;
   /// The curves about every face close, those that it names are those that name it, and the
@@ -17,6 +21,8 @@ struct HullVerification {
   /// V - E + F, where a face counts as its own Euler characteristic; 2 for a convex body. A curve
   /// without ends, and what is no longer than rounding, counts as nothing.
   int euler = 0;
+  /// Largest distance of a source's control point from the model's, and difference of diagonals.
+  double off_model = 0;
   /// Largest slope of a contact's surface or edge against its supporting plane: derivative along
   /// n over a whole Bezier patch or curve.
   double tangency = 0;
@@ -24,28 +30,47 @@ struct HullVerification {
   double flatness = 0;
   /// Largest distance of a contact's point from its source at its parameters.
   double off_source = 0;
-  /// max of h_model - h_document and of h_document - h_model over the directions of all rulings and
-  /// facets, by support queries.
+  /// Largest distance of a curve from one of its faces, or of a face's outline from its curves.
+  double off_outline = 0;
+  /// max of h_model - h_document and of h_document - h_model over the directions of all rulings,
+  /// some between them, and facets, by support queries.
   double model_outside = 0;
   double hull_outside = 0;
-  /// Random directions whose contact lies on a face of the model, in no region of a patch of the
-  /// hull nor near its outline, or on another source that the document does not name.
+  /// Largest h_model(n) - x . n of points x of patches with normal n.
+  double patch_outside = 0;
+  /// Directions, spread evenly, whose contact lies on a face of the model, in no region of a patch
+  /// of the hull nor near its outline, or on another source that the document does not name.
   int uncovered = 0;
   int directions = 0;
+  /// |integral of n dA| over the area, and the relative difference of the mean width by integrals
+  /// over the faces from that by support queries; of hulls of dimension 3.
+  double vector_area = 0;
+  double mean_width_error = 0;
+  /// What interpolating the curves of facets may do to these.
+  double interpolation = 0;
+  /// How well that many queries tell it.
+  double mean_width_accuracy = 0;
+  /// All else that is wrong, each with its place.
+  std::vector<HullFault> faults;
 
   bool topological_sphere() const { return euler == 2; }
-  bool is_hull(double relative) const {
-    return complete && closed && topological_sphere() && uncovered == 0 && tangency <= relative &&
-           flatness <= relative && off_source <= relative && model_outside <= relative &&
-           hull_outside <= relative;
-  }
+  bool closes_up(double relative) const;
+  bool has_width(double relative) const;
+  /// The largest of all lengths.
+  double worst_length() const;
+  /// Sound but for lengths within the tolerance.
+  bool is_hull(double relative) const;
 };
 
-/// Checks a hull document of dimension 2 or 3 against a model: whether its faces make up one closed
-/// surface, and whether its rulings and facets support the model. A hull of lower dimension is
-/// checked for its sources and points alone, and counts as closed.
+/// Checks a hull document against a model, from nothing but the document, support queries and plain
+/// mathematics.
 ///
-/// Patches are checked at their outlines and, by random directions, for being there.
+/// Of dimension 2 and 3: whether its faces make up one closed surface, its curves are what their
+/// kinds say and lie on their faces, and its rulings and facets support the model, also in between.
+/// Of dimension 3 moreover, if the sources are the model's: whether points of patches support, and
+/// others of their sources do not; that the integrals of n and of mean curvature are those of a
+/// closed surface about the model, and volume and area those of the report. A hull of lower
+/// dimension is checked for its sources and points alone, and counts as closed.
 HullVerification verify(const HullDocument& hull, const Scene& scene,
                         const VerifyOptions& options = {});
 

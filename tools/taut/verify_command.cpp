@@ -19,13 +19,17 @@ namespace taut::tool {
 namespace {
 
 constexpr double default_relative = 1e-4;
+/// Of exact hulls, which claim to be so.
+constexpr double default_exact_relative = 1e-12;
 
 struct VerifyArguments {
   std::string hull;
   InputArguments inputs;
   std::optional<double> given_relative;
 
-  double relative() const { return given_relative.value_or(default_relative); }
+  double relative(bool exact) const {
+    return given_relative.value_or(exact ? default_exact_relative : default_relative);
+  }
 };
 
 /// A check with its answer and, where it measures a length, that as a fraction of the diagonal.
@@ -64,26 +68,51 @@ std::vector<Check> checks(const Verification& found, double relative, double dia
 
 /// Of an exact hull.
 std::vector<Check> checks(const HullVerification& found, double relative) {
-  const auto within = [&](double measure) { return measure <= relative; };
-  return {
+  const auto within = [&](double measure) { return measure <= relative + found.rounding; };
+  const auto length = [&](const char* key, const char* name, const char* fault,
+                          const char* measure_key, double measure) {
+    return Check{key, name, fault, within(measure), measure_key, measure};
+  };
+  std::vector<Check> all = {
       {"complete", "complete", "faces are missing", found.complete},
       {"closed", "closed", "not closed", found.closed},
       {"topological_sphere", "one closed surface", "not one surface without holes",
        found.topological_sphere(), "euler", double(found.euler), true},
       {"covered", "patches are all there", "patches are missing", found.uncovered == 0, "uncovered",
        double(found.uncovered), true},
-      {"on_sources", "contacts on their sources", "contacts are off their sources",
-       within(found.off_source), "off_source", found.off_source},
-      {"tangent", "contacts are tangent", "contacts are not tangent", within(found.tangency),
-       "tangency", found.tangency},
-      {"flat", "rulings and facets are flat", "rulings or facets are not flat",
-       within(found.flatness), "flatness", found.flatness},
-      {"contains_model", "contains the model", "the model reaches outside",
-       within(found.model_outside), "model_outside", found.model_outside},
-      {"inside_hull", "inside the model's hull", "it reaches outside the model's hull",
-       within(found.hull_outside), "hull_outside", found.hull_outside},
-  };
+      length("of_model", "sources are the model's", "sources are not the model's", "off_model",
+             found.off_model),
+      length("on_sources", "contacts on their sources", "contacts are off their sources",
+             "off_source", found.off_source),
+      length("on_outlines", "curves on their faces", "curves are off their faces", "off_outline",
+             found.off_outline),
+      length("tangent", "contacts are tangent", "contacts are not tangent", "tangency",
+             found.tangency),
+      length("flat", "rulings and facets are flat", "rulings or facets are not flat", "flatness",
+             found.flatness),
+      length("contains_model", "contains the model", "the model reaches outside", "model_outside",
+             found.model_outside),
+      length("inside_hull", "inside the model's hull", "it reaches outside the model's hull",
+             "hull_outside", found.hull_outside),
+      length("patches_support", "patches on the hull", "patches are not on the hull",
+             "patch_outside", found.patch_outside),
+      {"no_vector_area", "faces close up", "the faces do not close up", found.closes_up(relative),
+       "vector_area", found.vector_area},
+      {"width", "width of the model", "the width is not the model's", found.has_width(relative),
+       "mean_width_error", found.mean_width_error},
+      {"sound", "nothing else is wrong", "", found.faults.empty()}};
+  return all;
 }
+
+/// What verify() says of either.
+struct Verdict {
+  std::vector<Check> checks;
+  /// Of an exact hull, what no check has a line for.
+  std::vector<std::string> faults;
+  double relative = 0;
+  int directions = 0;
+  bool is_hull = false;
+};
 
 /// What stands before the number that a check measured.
 std::string measure_name(const Check& check) {
@@ -95,10 +124,9 @@ std::string measure_name(const Check& check) {
                                                                                   : "off by ";
 }
 
-std::string text_of(const std::vector<Check>& checks, const VerifyArguments& arguments,
-                    int directions, bool is_hull) {
+std::string text_of(const Verdict& verdict) {
   std::string text;
-  for (const Check& check : checks) {
+  for (const Check& check : verdict.checks) {
     text += padded(check.name, 28) + padded(check.passed ? "yes" : "no", 5);
     if (check.measure_key != nullptr) {
       text += measure_name(check) + number(check.measure, 3);
@@ -106,33 +134,36 @@ std::string text_of(const std::vector<Check>& checks, const VerifyArguments& arg
     text.erase(text.find_last_not_of(' ') + 1);
     text += "\n";
   }
+  for (const std::string& fault : verdict.faults) text += "  " + fault + "\n";
   text += "(lengths are fractions of the diagonal, measured in " +
-          counted(directions, "direction", "directions") + ")\n";
-  text += padded("hull within " + number(arguments.relative(), 3), 28) + (is_hull ? "yes" : "no");
-  return text + "\n";
+          counted(verdict.directions, "direction", "directions") + ")\n";
+  text += padded("hull within " + number(verdict.relative, 3), 28);
+  return text + (verdict.is_hull ? "yes" : "no") + "\n";
 }
 
-Json json_of(const std::vector<Check>& checks, const VerifyArguments& arguments, int directions,
-             bool is_hull) {
+Json json_of(const Verdict& verdict, const std::string& hull) {
   Json json;
   json["taut"] = TAUT_VERSION;
-  json["hull"] = arguments.hull;
-  json["is_hull"] = is_hull;
-  json["relative"] = arguments.relative();
-  for (const Check& check : checks) {
+  json["hull"] = hull;
+  json["is_hull"] = verdict.is_hull;
+  json["relative"] = verdict.relative;
+  for (const Check& check : verdict.checks) {
     json[check.key] = check.passed;
     if (check.measure_key == nullptr) continue;
     json[check.measure_key] = check.counted ? Json(long(check.measure)) : Json(check.measure);
   }
-  json["directions"] = directions;
+  json["faults"] = verdict.faults;
+  json["directions"] = verdict.directions;
   return json;
 }
 
-std::string faults_of(const std::vector<Check>& checks) {
+std::string faults_of(const Verdict& verdict) {
   std::vector<std::string> faults;
-  for (const Check& check : checks) {
-    if (!check.passed) faults.emplace_back(check.fault);
+  for (const Check& check : verdict.checks) {
+    if (!check.passed && *check.fault != 0) faults.emplace_back(check.fault);
   }
+  // One line is no place for all of them.
+  if (!verdict.faults.empty()) faults.push_back(verdict.faults.front());
   return joined(faults);
 }
 
@@ -162,21 +193,20 @@ HullFile read_hull_file(const VerifyArguments& arguments, Console& console) {
       {}};
 }
 
-/// What verify() says of either.
-struct Verdict {
-  std::vector<Check> checks;
-  int directions = 0;
-  bool is_hull = false;
-};
-
 Verdict check(const HullFile& hull, Input& input, double relative, const VerifyOptions& options) {
-  if (hull.exact) {
-    const HullVerification found = verify(*hull.exact, input.scene(), options);
-    return {checks(found, relative), found.directions, found.is_hull(relative)};
+  if (!hull.exact) {
+    const double diagonal = input.scene().diagonal();
+    const Verification found = verify(hull.mesh, input.scene(), options);
+    return {checks(found, relative, diagonal),
+            {},
+            relative,
+            found.directions,
+            found.is_hull(relative * diagonal)};
   }
-  const double diagonal = input.scene().diagonal();
-  const Verification found = verify(hull.mesh, input.scene(), options);
-  return {checks(found, relative, diagonal), found.directions, found.is_hull(relative * diagonal)};
+  const HullVerification found = verify(*hull.exact, input.scene(), options);
+  Verdict verdict{checks(found, relative), {}, relative, found.directions, found.is_hull(relative)};
+  for (const HullFault& fault : found.faults) verdict.faults.push_back(fault.text);
+  return verdict;
 }
 
 ExitCode run(const VerifyArguments& arguments, Console& console) {
@@ -187,11 +217,12 @@ ExitCode run(const VerifyArguments& arguments, Console& console) {
   VerifyOptions options;
   options.threads = console.options().threads;
   options.progress = console.progress();
-  const auto [results, directions, is_hull] = check(hull, input, arguments.relative(), options);
+  const double relative = arguments.relative(hull.exact.has_value());
+  const Verdict verdict = check(hull, input, relative, options);
   const double seconds = watch.seconds();
 
   if (console.options().json) {
-    Json json = json_of(results, arguments, directions, is_hull);
+    Json json = json_of(verdict, arguments.hull);
     json["input"] = to_json(input.summary());
     json["seconds"] = {{"read", input.seconds_read()},
                        {"build", input.seconds_build()},
@@ -201,11 +232,11 @@ ExitCode run(const VerifyArguments& arguments, Console& console) {
     json["warnings"] = to_json(console.warnings());
     console.print(text(json));
   } else if (!console.options().quiet) {
-    console.print(text_of(results, arguments, directions, is_hull));
+    console.print(text_of(verdict));
   }
-  if (is_hull) return ExitCode::done;
+  if (verdict.is_hull) return ExitCode::done;
   throw CheckFailed(arguments.hull + ": is no convex hull of the model within " +
-                    number(arguments.relative(), 3) + " of its diagonal: " + faults_of(results));
+                    number(relative, 3) + " of its diagonal: " + faults_of(verdict));
 }
 
 }  // namespace
@@ -217,7 +248,7 @@ Command add_verify(CLI::App& parent) {
       "Examples:\n"
       "  taut verify hull.ply teapot.bpt\n"
       "  taut verify hull.stl teapot.bpt --relative 1e-3\n"
-      "  taut verify teapot.hull.json teapot.bpt --relative 1e-9   an exact hull");
+      "  taut verify teapot.hull.json teapot.bpt   an exact hull");
   const auto arguments = std::make_shared<VerifyArguments>();
   command.app
       ->add_option(
@@ -226,8 +257,9 @@ Command add_verify(CLI::App& parent) {
       ->required()
       ->option_text("FILE");
   add_inputs(*command.app, arguments->inputs);
-  add_positive(*command.app, "--relative", arguments->given_relative,
-               "Tolerance as a fraction of the model's diagonal, default 1e-4")
+  add_positive(
+      *command.app, "--relative", arguments->given_relative,
+      "Tolerance as a fraction of the model's diagonal, default 1e-4,\n1e-12 for an exact hull")
       ->type_name("R");
   command.run = [arguments](Console& console) { return run(*arguments, console); };
   return command;

@@ -1,0 +1,91 @@
+#include "taut/io/document_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "boundaries.h"
+#include "models.h"
+#include "taut/hull/convex_hull.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+constexpr double pi = std::numbers::pi;
+
+DocumentMeasures measured(const HullDocument& hull, const Scene& scene) {
+  const DocumentGeometry geometry(hull, scene.frame().center, 0);
+  const ContactGeometry contacts(scene);
+  const ContactSystem system(contacts);
+  return measure(geometry, DocumentOutlines(geometry, system));
+}
+
+DocumentMeasures measured(const KnownBoundary& known) {
+  return measured(hull_document(known.scene, known.boundary), known.scene);
+}
+
+DocumentMeasures measured(const Shape& shape) {
+  const Scene scene = make_scene(shape);
+  HullOptions options;
+  options.relative = 1e-2;
+  return measured(hull_document(scene, *convex_hull(scene, options).boundary), scene);
+}
+
+TEST(DocumentMeasures, OfATetrahedron) {
+  const DocumentMeasures found = measured(tetrahedron_boundary());
+  EXPECT_NEAR(found.volume, 1.0 / 6, 1e-14);
+  EXPECT_NEAR(found.area, (3 + std::sqrt(3)) / 2, 1e-14);
+  // Half the sum of lengths times outer angles, over 2 pi.
+  const double short_sides = 3 * (pi / 2);
+  const double long_sides = 3 * std::sqrt(2) * (pi - std::acos(1 / std::sqrt(3)));
+  EXPECT_NEAR(found.mean_width, (short_sides + long_sides) / (4 * pi), 1e-13);
+  EXPECT_LE(glm::length(found.vector_area), 1e-14);
+  EXPECT_EQ(found.interpolation, 0);
+}
+
+TEST(DocumentMeasures, OfTwoSpheres) {
+  constexpr double r = 0.5, D = 3, c = (1 - r) / D;
+  const double area = 2 * pi * (1 + c) + 2 * pi * r * r * (1 - c) + pi * (1 + r) * D * (1 - c * c);
+  const double width = (1 + c) + r * (1 - c) + D * (1 - c * c) / 2;
+  for (const dvec3& shift : {dvec3(0.0), dvec3(100, -50, 20)}) {
+    const DocumentMeasures found = measured(two_spheres_boundary(skew_rotation(), shift));
+    EXPECT_NEAR(found.area, area, 1e-10);
+    EXPECT_NEAR(found.mean_width, width, 1e-11);
+    EXPECT_LE(glm::length(found.vector_area), 1e-10);
+  }
+}
+
+/// Two facets within circles: along the edges that these are, and of the points alone.
+TEST(DocumentMeasures, OfACylinder) {
+  const KnownBoundary known = cylinder_boundary();
+  HullDocument hull = hull_document(known.scene, known.boundary);
+  const DocumentMeasures found = measured(hull, known.scene);
+  EXPECT_NEAR(found.volume, 2 * pi, 1e-12);
+  EXPECT_NEAR(found.area, 6 * pi, 1e-12);
+  EXPECT_NEAR(found.mean_width, 1 + pi / 2, 1e-11);
+  EXPECT_EQ(found.interpolation, 0);
+
+  for (HullDocument::Curve& curve : hull.curves) curve.kind = HullCurveKind::bitangent;
+  const DocumentMeasures near = measured(hull, known.scene);
+  EXPECT_NEAR(near.volume, 2 * pi, 1e-7);
+  EXPECT_NEAR(near.mean_width, 1 + pi / 2, 1e-7);
+  EXPECT_GE(near.interpolation, std::abs(near.volume / (2 * pi) - 1));
+  EXPECT_LE(near.interpolation, 1e-5);
+}
+
+TEST(DocumentMeasures, OfTheOloid) {
+  const DocumentMeasures found = measured(oloid());
+  EXPECT_NEAR(found.area, 4 * pi, 1e-9);
+  EXPECT_NEAR(found.volume, 3.052418, 1e-6);
+}
+
+TEST(DocumentMeasures, OfAnEllipsoid) {
+  const DocumentMeasures found = measured(ellipsoid(3, 2, 1));
+  EXPECT_NEAR(found.volume, 8 * pi, 1e-9);
+}
+
+}  // namespace
+}  // namespace taut

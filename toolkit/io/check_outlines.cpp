@@ -1,0 +1,406 @@
+#include "taut/io/check_outlines.h"
+
+#include <map>
+#include <set>
+
+#include "taut/io/closest_on_curve.h"
+#include "taut/io/nearest_point.h"
+
+namespace taut {
+namespace {
+
+using Curve = HullDocument::Curve;
+using DirectedCurve = HullDocument::DirectedCurve;
+using Face = HullDocument::Face;
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+
+std::string at(const char* list, std::size_t i) {
+  return std::string(list) + "[" + std::to_string(i) + "]: ";
+}
+
+double distance_to_segment(const dvec3& p, const dvec3& a, const dvec3& b) {
+  const dvec3 side = b - a;
+  const double square = glm::dot(side, side);
+  const double s = square > 0 ? std::clamp(glm::dot(p - a, side) / square, 0.0, 1.0) : 0;
+  return glm::distance(p, a + s * side);
+}
+
+/// Checks one document.
+class OutlineCheck {
+ public:
+  OutlineCheck(const DocumentGeometry& geometry, const DocumentOutlines& outlines, double tolerance,
+               HullFaults& faults)
+      : geometry_(geometry),
+        outlines_(outlines),
+        hull_(geometry.hull()),
+        tolerance_(tolerance),
+        faults_(faults) {}
+  double run();
+
+ private:
+  void check_kind(std::size_t curve);
+  bool is_straight(const Curve& curve) const;
+  void check_edge(const Curve& curve);
+  void check_order(std::size_t face);
+  void check_sides(const Face& scroll);
+  void check_ruling_ends(const Curve& curve, const Face& scroll);
+  void check_patch(std::size_t face);
+  void check_free_stretches(std::size_t face);
+  void check_loop(const Face& face, const HullDocument::Loop& loop);
+  double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
+  void check_tracks();
+  void check_facet(std::size_t face);
+  std::vector<dvec3> points_of(const std::vector<int>& curves) const;
+  std::vector<dvec3> points_of(const std::vector<DirectedCurve>& curves) const;
+
+  const DocumentGeometry& geometry_;
+  const DocumentOutlines& outlines_;
+  const HullDocument& hull_;
+  double tolerance_;
+  HullFaults& faults_;
+  double off_ = 0;
+};
+
+double OutlineCheck::run() {
+  for (std::size_t i = 0; i < hull_.curves.size(); ++i) check_kind(i);
+  for (std::size_t i = 0; i < hull_.faces.size(); ++i) {
+    const Face& face = hull_.faces[i];
+    if (face.kind == FaceKind::patch) check_patch(i);
+    if (face.kind == FaceKind::facet) check_facet(i);
+    if (face.kind != FaceKind::scroll) continue;
+    check_order(i);
+    check_sides(face);
+  }
+  check_tracks();
+  return off_;
+}
+
+bool OutlineCheck::is_straight(const Curve& curve) const {
+  return std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec3& p) {
+    return distance_to_segment(p, curve.points.front(), curve.points.back()) <= tolerance_;
+  });
+}
+
+void OutlineCheck::check_kind(std::size_t i) {
+  const Curve& curve = hull_.curves[i];
+  if (curve.faces[0] < 0 || curve.faces[1] < 0) return;
+  const std::array<const Face*, 2> faces = {&hull_.faces[to_size(curve.faces[0])],
+                                            &hull_.faces[to_size(curve.faces[1])]};
+  int patches = 0;
+  for (const Face* face : faces) patches += face->kind == FaceKind::patch ? 1 : 0;
+  const auto wrong = [&](const char* what) { faults_.add("kinds", at("curves", i) + what); };
+  const bool on_edge = curve.source >= 0 && geometry_.source(curve.source).kind == SourceKind::edge;
+  switch (curve.kind) {
+    case HullCurveKind::edge:
+      if (!on_edge) return wrong("an edge without one of the model's");
+      return check_edge(curve);
+    case HullCurveKind::join:
+      if (faces[0]->source < 0 || faces[1]->source < 0) return wrong("a join not between sources");
+      if (faces[0]->source == faces[1]->source) wrong("a join within one source face");
+      break;
+    case HullCurveKind::bitangent:
+      if (patches != 1) wrong("a bitangent curve not along one patch");
+      break;
+    case HullCurveKind::ruling:
+      if (patches > 0) wrong("a ruling along a patch");
+      if (!is_straight(curve)) wrong("a ruling that is not straight");
+      for (const Face* face : faces) {
+        if (face->kind == FaceKind::scroll) check_ruling_ends(curve, *face);
+      }
+  }
+  if (curve.source >= 0) wrong("only edges have a source");
+}
+
+void OutlineCheck::check_edge(const Curve& curve) {
+  const int pieces = int(geometry_.source(curve.source).patches.size());
+  for (const dvec3& point : curve.points) {
+    const dvec3 p = geometry_.local(point);
+    double best = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < pieces && best > 0; ++i) {
+      const auto jet = [&](double t) { return geometry_.jet(curve.source, {i, dvec2(t, 0)}); };
+      best = std::min(best, closest_on_curve(p, 0, 1, jet).distance);
+    }
+    raise(off_, best);
+  }
+}
+
+/// From one ruling to the next, n and the contacts go on: each step makes an acute angle with the
+/// one before.
+void OutlineCheck::check_order(std::size_t f) {
+  const std::vector<HullDocument::Ruling>& rulings = hull_.faces[f].rulings;
+  const double size = hull_.diagonal > 0 ? hull_.diagonal : 1;
+  using Step = std::array<dvec3, 3>;
+  Step last{};
+  bool any = false;
+  double area = 0;
+  for (std::size_t i = 0; i + 1 < rulings.size(); ++i) {
+    const HullDocument::Ruling& from = rulings[i];
+    const HullDocument::Ruling& to = rulings[i + 1];
+    const Step step = {to.n - from.n, (to.a.p - from.a.p) / size, (to.b.p - from.b.p) / size};
+    area += glm::dot(from.n, glm::cross(step[1] + step[2], (from.b.p - from.a.p) / size));
+    double length = 0;
+    double along = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      length += glm::dot(step[k], step[k]);
+      along += glm::dot(step[k], last[k]);
+    }
+    if (!(std::sqrt(length) > tolerance_ / size)) continue;
+    if (any && !(along > 0)) {
+      faults_.add("order", at("faces", f) + "its rulings turn back at " + at("rulings", i));
+    }
+    last = step;
+    any = true;
+  }
+  // Along them, contact a has the scroll to the left.
+  if (!(area >= -tolerance_ / size)) {
+    faults_.add("order", at("faces", f) + "its rulings run backwards");
+  }
+}
+
+std::vector<dvec3> OutlineCheck::points_of(const std::vector<int>& curves) const {
+  std::vector<dvec3> points;
+  for (const int c : curves) {
+    const std::vector<dvec3>& more = hull_.curves[to_size(c)].points;
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  return points;
+}
+
+/// The curves along a scroll's contacts have their points, but for edges: these have those of both
+/// sides, and end where the face on the other side does.
+void OutlineCheck::check_sides(const Face& scroll) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (scroll.curves[k].empty()) continue;
+    std::vector<dvec3> contacts;
+    contacts.reserve(scroll.rulings.size());
+    for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
+    const NearestPoint listed(contacts);
+    bool any_edge = false;
+    for (const int c : scroll.curves[k]) {
+      const Curve& curve = hull_.curves[to_size(c)];
+      any_edge = any_edge || curve.kind == HullCurveKind::edge;
+      if (curve.kind == HullCurveKind::edge) continue;
+      for (const dvec3& p : curve.points) raise(off_, listed.distance(p));
+    }
+    if (any_edge) continue;
+    const NearestPoint curves(points_of(scroll.curves[k]));
+    for (const dvec3& p : contacts) raise(off_, curves.distance(p));
+  }
+}
+
+/// The straight sides of a scroll are its first and its last ruling.
+void OutlineCheck::check_ruling_ends(const Curve& curve, const Face& scroll) {
+  if (scroll.rulings.empty()) return;
+  double best = std::numeric_limits<double>::infinity();
+  for (const HullDocument::Ruling* r : {&scroll.rulings.front(), &scroll.rulings.back()}) {
+    for (const bool turned : {false, true}) {
+      const dvec3& a = turned ? r->b.p : r->a.p;
+      const dvec3& b = turned ? r->a.p : r->b.p;
+      best = std::min(best, std::max(glm::distance(curve.points.front(), a),
+                                     glm::distance(curve.points.back(), b)));
+    }
+  }
+  raise(off_, best);
+}
+
+void OutlineCheck::check_patch(std::size_t f) {
+  const Face& face = hull_.faces[f];
+  if (face.regions.empty()) faults_.add("regions", at("faces", f) + "a patch without regions");
+  for (const HullDocument::Loop& loop : face.loops) {
+    if (loop.curves.empty() || loop.uv.empty()) {
+      faults_.add("regions", at("faces", f) + "an empty loop");
+    } else {
+      check_loop(face, loop);
+    }
+  }
+  check_free_stretches(f);
+}
+
+/// Where a region's outline is neither a track nor a border, its points are those of the curves.
+void OutlineCheck::check_free_stretches(std::size_t f) {
+  const Face& face = hull_.faces[f];
+  std::vector<dvec3> points;
+  for (const HullDocument::Loop& loop : face.loops) {
+    const std::vector<dvec3> more = points_of(loop.curves);
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  const NearestPoint curves(points);
+  const auto check = [&](const dvec2& uv) {
+    const std::vector<SourcePlace> places = geometry_.places(face.source, uv);
+    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
+    raise(off_, curves.distance(geometry_.jet(face.source, places[0]).x + geometry_.origin()));
+  };
+  for (const RegionOutline& region : outlines_.regions()) {
+    if (region.face != int(f)) continue;
+    for (const std::vector<OutlineStretch>& loop : region.loops) {
+      for (const OutlineStretch& stretch : loop) {
+        if (stretch.kind != OutlineStretch::Kind::free) continue;
+        check(stretch.from);
+        check(stretch.to);
+      }
+    }
+  }
+}
+
+/// Each point of the loop that is no border's is one of its curves', and each point of these lies
+/// on the loop.
+void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) {
+  const std::vector<dvec3> points = points_of(loop.curves);
+  const NearestPoint curves(points);
+  std::vector<dvec3> own;
+  std::vector<OutlineStretch> borders;
+  own.reserve(loop.uv.size());
+  bool last_on_border = false;
+  for (std::size_t k = 0; k < loop.uv.size(); ++k) {
+    const std::size_t next = (k + 1) % loop.uv.size();
+    const OutlineStretch stretch = outlines_.stretch(face.source, loop.uv[k], loop.uv[next]);
+    const bool on_border = stretch.kind == OutlineStretch::Kind::border;
+    const std::vector<SourcePlace> places = geometry_.places(face.source, loop.uv[k]);
+    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
+    const dvec3 x = geometry_.jet(face.source, places[0]).x + geometry_.origin();
+    own.push_back(x);
+    if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(x));
+    if (on_border) borders.push_back(stretch);
+    last_on_border = on_border;
+  }
+  const NearestPoint listed(own);
+  for (const dvec3& p : points) {
+    double best = listed.distance(p);
+    for (std::size_t b = 0; b < borders.size() && best > tolerance_; ++b) {
+      best = std::min(best, distance_to_border(face.source, borders[b], p));
+    }
+    raise(off_, best);
+  }
+}
+
+double OutlineCheck::distance_to_border(int source, const OutlineStretch& stretch,
+                                        const dvec3& p) const {
+  const int k = stretch.from.x == stretch.to.x ? 1 : 0;
+  double best = std::numeric_limits<double>::infinity();
+  for (const SourcePlace& from : geometry_.places(source, stretch.from)) {
+    for (const SourcePlace& to : geometry_.places(source, stretch.to)) {
+      if (from.patch != to.patch) continue;
+      const auto along = [&](double t) {
+        SourcePlace place = from;
+        place.t[k] = t;
+        SourceJet j = geometry_.jet(source, place);
+        if (k == 1) {
+          std::swap(j.dx[0], j.dx[1]);
+          std::swap(j.dxx, j.dyy);
+        }
+        return j;
+      };
+      best =
+          std::min(best, closest_on_curve(geometry_.local(p), from.t[k], to.t[k], along).distance);
+    }
+  }
+  return best;
+}
+
+/// Each track of a scroll on a source face bounds a region, once from each side at most, and is
+/// part of the outline of the same patch, where it runs the other way about if the patch is seen
+/// from within.
+void OutlineCheck::check_tracks() {
+  using Key = std::array<double, 6>;
+  std::multiset<Key> in_regions, in_loops;
+  const auto add = [&](std::multiset<Key>& keys, int face, int source, const dvec2& from,
+                       const dvec2& to) {
+    if (outlines_.stretch(source, from, to).kind != OutlineStretch::Kind::track) return;
+    keys.insert({double(face), double(source), from.x, from.y, to.x, to.y});
+  };
+  for (int f = 0; f < int(hull_.faces.size()); ++f) {
+    const Face& face = hull_.faces[to_size(f)];
+    for (const HullDocument::Loop& loop : face.loops) {
+      for (std::size_t k = 0; k < loop.uv.size(); ++k) {
+        add(in_loops, f, face.source, loop.uv[k], loop.uv[(k + 1) % loop.uv.size()]);
+      }
+    }
+    for (const HullDocument::Region& region : face.regions) {
+      for (const std::vector<dvec2>& loop : region.loops) {
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+          const dvec2& from = loop[k];
+          const dvec2& to = loop[(k + 1) % loop.size()];
+          add(in_regions, f, face.source, region.sign > 0 ? from : to, region.sign > 0 ? to : from);
+        }
+      }
+    }
+  }
+  if (in_regions != in_loops) {
+    faults_.add("regions", "the outlines of regions are not those of their patches");
+  }
+}
+
+/// The area of the convex hull of points in a plane less that of the polygon which they make: zero
+/// if that is convex and runs counter-clockwise once.
+double lack_of_area(std::vector<dvec2> points) {
+  const auto cross = [](const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; };
+  const auto area = [&](const std::vector<dvec2>& polygon) {
+    double sum = 0;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      sum += cross(polygon[k] - polygon[0], polygon[(k + 1) % polygon.size()] - polygon[0]) / 2;
+    }
+    return sum;
+  };
+  const double own = area(points);
+  std::sort(points.begin(), points.end(),
+            [](const dvec2& a, const dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::vector<dvec2> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t base = hull.size();
+    for (const dvec2& p : points) {
+      while (hull.size() >= base + 2 &&
+             cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return area(hull) - own;
+}
+
+std::vector<dvec3> OutlineCheck::points_of(const std::vector<DirectedCurve>& curves) const {
+  std::vector<dvec3> line;
+  for (const DirectedCurve& c : curves) {
+    std::vector<dvec3> points = hull_.curves[to_size(c.first)].points;
+    if (c.second < 0) std::reverse(points.begin(), points.end());
+    line.insert(line.end(), points.begin(), points.end());
+  }
+  return line;
+}
+
+void OutlineCheck::check_facet(std::size_t f) {
+  const Face& face = hull_.faces[f];
+  if (face.boundary.size() < 3) {
+    return faults_.add("outlines", at("faces", f) + "a facet without a boundary");
+  }
+  const auto [e, g] = tangent_frame(unit(face.normal));
+  std::vector<dvec2> flat;
+  flat.reserve(face.boundary.size());
+  double girth = 0;
+  for (std::size_t k = 0; k < face.boundary.size(); ++k) {
+    const dvec3 from_first = face.boundary[k] - face.boundary[0];
+    flat.emplace_back(glm::dot(from_first, e), glm::dot(from_first, g));
+    girth += glm::distance(face.boundary[k], face.boundary[(k + 1) % face.boundary.size()]);
+  }
+  if (!(lack_of_area(flat) <= tolerance_ * girth)) {
+    faults_.add("outlines", at("faces", f) + "the facet's boundary is not convex");
+  }
+  const std::vector<dvec3> along = points_of(face.outline);
+  if (along.empty()) return faults_.add("outlines", at("faces", f) + "a facet without curves");
+  const NearestPoint curves(along);
+  const NearestPoint boundary(face.boundary);
+  for (const dvec3& p : face.boundary) raise(off_, curves.distance(p));
+  for (const dvec3& p : along) raise(off_, boundary.distance(p));
+}
+
+}  // namespace
+
+double check_outlines(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+                      double tolerance, HullFaults& faults) {
+  return OutlineCheck(geometry, outlines, tolerance, faults).run();
+}
+
+}  // namespace taut

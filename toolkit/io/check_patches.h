@@ -1,0 +1,19 @@
+#pragma once
+
+#include "taut/hull/verify.h"
+#include "taut/io/hull_faults.h"
+#include "taut/io/region_outlines.h"
+
+namespace taut {
+
+/// Checks patches at points of their sources' parameters, on grids, at random and beside all
+/// outlines. Inside of a region a point supports in the direction of the normal; of those outside
+/// of all, none does where the surface is strictly convex.
+///
+/// Returns the largest support gap of a point of a region, as a fraction of the scene's diagonal.
+/// Points that support but are left out, places in more than one region and regions on the wrong
+/// side of their outlines are faults ("regions").
+double check_patches(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+                     const Scene& scene, const VerifyOptions& options, HullFaults& faults);
+
+}  // namespace taut

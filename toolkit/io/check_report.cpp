@@ -1,0 +1,91 @@
+#include "taut/io/check_report.h"
+
+#include "taut/io/document_tree.h"
+
+namespace taut {
+namespace {
+
+const DocumentValue* find(const DocumentValue* object, std::string_view key) {
+  if (object == nullptr) return nullptr;
+  const auto* members = std::get_if<DocumentValue::Object>(&object->value);
+  if (members == nullptr) return nullptr;
+  for (const DocumentMember& member : *members) {
+    if (member.key == key) return &member.value;
+  }
+  return nullptr;
+}
+
+std::optional<double> number(const DocumentValue* value) {
+  if (value == nullptr) return std::nullopt;
+  if (const auto* whole = std::get_if<std::int64_t>(&value->value)) return double(*whole);
+  if (const auto* real = std::get_if<double>(&value->value)) return *real;
+  return std::nullopt;
+}
+
+/// Compares one report.
+class ReportCheck {
+ public:
+  ReportCheck(const DocumentValue& report, HullFaults& faults) : report_(report), faults_(faults) {}
+
+  /// What the report says, if it does, is the value but for a share of it.
+  void compare(const std::string& key, const DocumentValue* object, double value, double accuracy) {
+    const DocumentValue* said = find(object, key);
+    if (said == nullptr) return;
+    const std::optional<double> given = number(said);
+    if (given && std::abs(*given - value) <= accuracy * std::abs(value)) return;
+    faults_.add("report", "report: " + key + " is " + (given ? text(*given) : "no number") +
+                              ", not " + text(value));
+  }
+  void compare_counts(const HullDocument& hull);
+  void compare_measures(const DocumentMeasures& measures, double accuracy);
+
+ private:
+  static std::string text(double value) {
+    std::string text = std::to_string(value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+  }
+
+  const DocumentValue& report_;
+  HullFaults& faults_;
+};
+
+void ReportCheck::compare_counts(const HullDocument& hull) {
+  const auto count = [&](FaceKind kind) {
+    return double(std::count_if(hull.faces.begin(), hull.faces.end(),
+                                [&](const HullDocument::Face& f) { return f.kind == kind; }));
+  };
+  compare("dimension", &report_, hull.dimension, 0);
+  const DocumentValue* exact = find(&report_, "hull");
+  compare("patches", exact, count(FaceKind::patch), 0);
+  compare("scrolls", exact, count(FaceKind::scroll), 0);
+  compare("facets", exact, count(FaceKind::facet), 0);
+  compare("curves", exact, double(hull.curves.size()), 0);
+  compare("unresolved", exact, 0, 0);
+}
+
+void ReportCheck::compare_measures(const DocumentMeasures& measures, double accuracy) {
+  const DocumentValue* exact = find(&report_, "hull");
+  compare("volume", exact, measures.volume, accuracy);
+  compare("area", exact, measures.area, accuracy);
+  compare("mean_width", exact, measures.mean_width, accuracy);
+}
+
+}  // namespace
+
+void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
+                  double rounding, HullFaults& faults) {
+  if (hull.report.empty()) return;
+  try {
+    const DocumentValue report = parse_json("report", hull.report);
+    ReportCheck check(report, faults);
+    check.compare_counts(hull);
+    if (measures)
+      check.compare_measures(*measures, measure_accuracy + rounding + measures->interpolation);
+  } catch (const Error& error) {
+    faults.add("report", error.what());
+  }
+}
+
+}  // namespace taut

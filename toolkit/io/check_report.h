@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "taut/io/document_measures.h"
+#include "taut/io/hull_faults.h"
+
+namespace taut {
+
+/// Relative accuracy to which measures are compared: what integrals between a document's rulings
+/// reach where these end in free ends.
+inline constexpr double measure_accuracy = 1e-10;
+
+/// Compares what a document's report says of the exact hull with the document: its dimension, the
+/// numbers of faces and curves, nothing unresolved, and the measures where there are any. A
+/// document without a report has nothing to compare. `rounding`: what that of coordinates may do to
+/// the measures.
+void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
+                  double rounding, HullFaults& faults);
+
+}  // namespace taut

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "taut/io/document_geometry.h"
+
+namespace taut {
+
+/// A curve's parameter with the distance of its point from another one.
+struct ClosestOnCurve {
+  double s = 0;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+/// The point of a curve over [from, to] (or [to, from]) that is nearest to p, by Newton's method
+/// from the nearest of some samples. `jet(s)` is a SourceJet whose first parameter is the curve's.
+template <class Jet>
+ClosestOnCurve closest_on_curve(const dvec3& p, double from, double to, const Jet& jet) {
+  constexpr int samples = 16;
+  constexpr int steps = 12;
+  ClosestOnCurve best;
+  const auto consider = [&](double s) {
+    const double distance = glm::distance(jet(s).x, p);
+    if (distance < best.distance) best = {s, distance};
+  };
+  for (int i = 0; i <= samples; ++i) consider(from + (to - from) * i / samples);
+  double s = best.s;
+  for (int i = 0; i < steps; ++i) {
+    const SourceJet j = jet(s);
+    const dvec3 off = j.x - p;
+    const double second = glm::dot(j.dx[0], j.dx[0]) + glm::dot(off, j.dxx);
+    if (!(second > 0)) break;
+    s = std::clamp(s - glm::dot(off, j.dx[0]) / second, std::min(from, to), std::max(from, to));
+    consider(s);
+  }
+  return best;
+}
+
+}  // namespace taut

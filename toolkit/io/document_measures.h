@@ -1,0 +1,29 @@
+#pragma once
+
+#include "taut/io/region_outlines.h"
+
+namespace taut {
+
+/// What the faces of a hull document enclose, in model units.
+struct DocumentMeasures {
+  double volume = 0;
+  double area = 0;
+  /// Mean over all directions n of h(n) + h(-n).
+  double mean_width = 0;
+  /// Integral of the outward unit normal over all faces: zero if they make up a closed surface.
+  dvec3 vector_area = dvec3(0.0);
+  /// Estimated relative error from interpolating curves between their points.
+  double interpolation = 0;
+};
+
+/// By integrals over all faces: patches by Green's theorem in their parameters, scrolls along their
+/// rulings and facets along their edges, to some 1e-12. Of other curves about facets only points
+/// are known: these, and patches along them, are by polynomials of degree five through the points.
+///
+/// The mean width is total mean curvature over 2 pi. Creases have their share of it: the outline of
+/// each face counts with the angle between the face's normal and the direction from a point inside
+/// of the hull, whose differences are the creases' angles.
+/// Meaningless where faces are missing or contacts off their sources. @pre hull of dimension 3
+DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines);
+
+}  // namespace taut
