@@ -80,6 +80,7 @@ class GraphTracer {
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const;
+  bool lies_in_facet(const CommonSupport& s) const;
   bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int node_at(const TracedArc& traced);
@@ -189,7 +190,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     tie.add(geometry_, b.contact);
     if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < support_tie) {
       if (!is_traced(tie)) trace(tie);
-    } else {
+    } else if (!lies_in_facet(tie)) {
       fail(a.n, "two contacts that are not joined are not parted either");
     }
     return;
@@ -500,14 +501,20 @@ void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
   std::move(first, more.end(), std::back_inserter(pieces));
 }
 
+/// Whether two contacts, in a direction near that of a facet with curved sides, are in its plane.
+bool GraphTracer::lies_in_facet(const CommonSupport& s) const {
+  return std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const FacetNode& node) {
+    return lies_in(node, s.n, {s.contact[0], s.contact[1]});
+  });
+}
+
 /// Whether the seed is a facet, with other contacts beside the two: a node for it, if it is new.
 bool GraphTracer::is_facet(const CommonSupport& seed) {
   const std::vector<Contact> contacts(seed.contact.begin(), seed.contact.begin() + seed.count);
   for (const FacetNode& node : graph_.nodes) {
-    if (!node.is_crossing() && glm::distance(node.n, seed.n) < same_plane &&
-        has_contacts(node, contacts)) {
-      return true;
-    }
+    if (node.is_crossing()) continue;
+    if (lies_in(node, seed.n, contacts)) return true;
+    if (glm::distance(node.n, seed.n) < same_plane && has_contacts(node, contacts)) return true;
   }
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, seed.n, contacts);
   if (!f || !f->is_facet()) return false;
@@ -517,13 +524,17 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
 
 /// Traces the curve through a seed, both ways unless it closes.
 void GraphTracer::trace(const CommonSupport& seed) {
-  TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
-  if (ahead.end == TracedArc::End::lost) {
+  // In a facet itself the curve, if there is one, leads one way only.
+  const auto lost = [&](const char* reason) {
     if (is_facet(seed)) {
       trace_waiting();
     } else {
-      fail(seed.n, ahead.reason);
+      fail(seed.n, reason);
     }
+  };
+  TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
+  if (ahead.end == TracedArc::End::lost) {
+    lost(ahead.reason);
     return;
   }
   SeparatingArc arc;
@@ -546,8 +557,8 @@ void GraphTracer::trace(const CommonSupport& seed) {
   std::swap(turned.jet[0], turned.jet[1]);
   TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
   if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
-    fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
-                                                    : "a separating curve closes one way only");
+    lost(behind.end == TracedArc::End::lost ? behind.reason
+                                            : "a separating curve closes one way only");
     return;
   }
   const int begin = node_at(behind);
