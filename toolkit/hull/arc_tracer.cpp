@@ -614,8 +614,6 @@ bool Trace::merge() {
   const double squared = 0.5 * rho / rate;
   if (merge_at_pole(linear)) return true;
   const bool smooth = continues(geometry_, last.contact[0], last.contact[1]);
-  // On one surface or curve they run into each other, rather than pass by.
-  if (smooth && rate > slowest_merging) return false;
   Ruling end = last;
   end.n = last.n - (smooth ? squared : linear) * tangent_.n;
   const bool one_element = same_element(last.contact[0], last.contact[1]);
@@ -635,8 +633,14 @@ bool Trace::merge() {
       !same_element(geometry_.canonical(end.contact[0]), geometry_.canonical(end.contact[1]))) {
     return crosses();
   }
-  if (const std::optional<FreeEnd> exact = exact_end(end);
-      exact &&
+  std::optional<FreeEnd> exact = exact_end(end);
+  if (!exact && smooth && !one_element) {
+    // Where a join makes the end, n is no smooth function of the square.
+    Ruling straight = end;
+    straight.n = last.n - linear * tangent_.n;
+    exact = exact_end(straight);
+  }
+  if (exact &&
       glm::distance(geometry_.point(exact->contact), last.point[0]) < 2 * std::abs(linear)) {
     if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
       arc_.pieces.back().rulings.push_back(*ruling);
@@ -645,6 +649,8 @@ bool Trace::merge() {
     // A contact changes its element before.
     if (rho > 2 * least_distance) return false;
   }
+  // On one surface or curve they run into each other, rather than pass by.
+  if (smooth && rate > slowest_merging) return false;
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
