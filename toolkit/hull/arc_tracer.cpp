@@ -29,6 +29,8 @@ constexpr double correction_limit = 0.15;
 constexpr double margin_slack = 1e-12;
 /// Turns of n that are tried as the first step away from where contacts are singular.
 constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
+/// Share of such a turn by which contacts are told apart.
+constexpr double share_inward = 0.1;
 /// Normal curvature, in the scene's frame, below which a contact is taken for flat.
 constexpr double least_curvature = 1e-8;
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
@@ -70,7 +72,7 @@ class Trace {
         landmarks_(landmarks),
         at_(start) {}
 
-  TracedArc run(const Progress& progress);
+  TracedArc run(const Progress& progress, bool aside);
 
  private:
   enum class Pace { on, ended };
@@ -104,7 +106,8 @@ class Trace {
   bool is_singular(int contact) const;
   bool leave();
   bool leave(double step);
-  std::optional<CommonSupport> stepped_aside(double step) const;
+  std::optional<CommonSupport> stepped_aside(double step);
+  std::optional<Contact> aside(int i, double step, const dvec3& n);
   std::optional<std::size_t> nearest_side(const FacetContacts& facet) const;
   bool arrives(const Landmark& landmark, double length);
   bool is_closing(const CommonSupport& next, double length) const;
@@ -333,15 +336,27 @@ bool Trace::leave(double step) {
   return true;
 }
 
+/// The contact of the branch that contact i moves on in a direction beside: what supports where the
+/// direction turns a little into its region, if that is near; else where a climb leads.
+std::optional<Contact> Trace::aside(int i, double step, const dvec3& n) {
+  const Contact& own = at_.contact[std::size_t(i)];
+  const dvec3 inward = (i == 0 ? 1.0 : -1.0) * unit(at_.d());
+  const dvec3 tilted = glm::normalize(n + share_inward * step * inward);
+  const Support top = query_(tilted, own);
+  if (glm::distance(top.point, at_.jet[std::size_t(i)].x) < 0.25 * glm::length(at_.d())) {
+    const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, top.contact, tilted), n);
+    if (c) return c;
+  }
+  return pole_side(geometry_, own) ? beside_pole(geometry_, own, n) : climbed(geometry_, own, n);
+}
+
 /// The common support of the two contacts' branches where n has turned by a step along the curve.
-std::optional<CommonSupport> Trace::stepped_aside(double step) const {
+std::optional<CommonSupport> Trace::stepped_aside(double step) {
   const dvec3 along = unit(glm::cross(at_.n, at_.d()));
   CommonSupport next = at_;
   next.n = glm::normalize(at_.n + step * along);
   for (std::size_t i = 0; i < 2; ++i) {
-    const bool pole = pole_side(geometry_, at_.contact[i]).has_value();
-    const std::optional<Contact> c = pole ? beside_pole(geometry_, at_.contact[i], next.n)
-                                          : climbed(geometry_, at_.contact[i], next.n);
+    const std::optional<Contact> c = aside(int(i), step, next.n);
     if (!c) return std::nullopt;
     next.contact[i] = *c;
   }
@@ -785,8 +800,8 @@ Trace::Pace Trace::advance() {
   return Pace::on;
 }
 
-TracedArc Trace::run(const Progress& progress) {
-  if (is_singular(0) || is_singular(1)) {
+TracedArc Trace::run(const Progress& progress, bool aside) {
+  if (aside || is_singular(0) || is_singular(1)) {
     if (!leave()) lost("a separating curve cannot be followed from a pole or a flat point");
   } else if (settle()) {
     begin_piece();
@@ -805,8 +820,8 @@ TracedArc Trace::run(const Progress& progress) {
 }  // namespace
 
 TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
-                    std::span<const Landmark> landmarks, const Progress& progress) {
-  return Trace(system, query, start, landmarks).run(progress);
+                    std::span<const Landmark> landmarks, const Progress& progress, bool aside) {
+  return Trace(system, query, start, landmarks).run(progress, aside);
 }
 
 }  // namespace taut

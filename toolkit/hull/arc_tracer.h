@@ -47,9 +47,13 @@ struct TracedArc {
 /// Poles, where a patch's parameters fail, are gone through, left and arrived at along chords: the
 /// directions of poles with three and more contacts are told by `landmarks`.
 ///
+/// `aside`: the start's points are contacts of elements that it may not name (where several meet):
+/// these are found beside it.
+///
 /// @pre the start's two contacts support at its n
 /// @throws Cancelled
 TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
-                    std::span<const Landmark> landmarks, const Progress& progress);
+                    std::span<const Landmark> landmarks, const Progress& progress,
+                    bool aside = false);
 
 }  // namespace taut

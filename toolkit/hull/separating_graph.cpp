@@ -80,10 +80,13 @@ class GraphTracer {
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const;
+  bool lies_in_facet(const CommonSupport& s) const;
   bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int node_at(const TracedArc& traced);
   int add_node(const dvec3& n, FacetContacts facet);
+  static bool meets_corner(const FacetNode& node, const Ruling& r);
+  static int add_corner(FacetNode& node, const Ruling& r, int end);
   void connect_crossing(int arc, int end, int node);
   void find_planes();
   void find_poles();
@@ -189,7 +192,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     tie.add(geometry_, b.contact);
     if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < support_tie) {
       if (!is_traced(tie)) trace(tie);
-    } else {
+    } else if (!lies_in_facet(tie)) {
       fail(a.n, "two contacts that are not joined are not parted either");
     }
     return;
@@ -444,7 +447,11 @@ void GraphTracer::connect(int arc, int end, int node) {
   const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(arc)].pieces;
   const Ruling& r = end == 0 ? pieces.front().rulings.front() : pieces.back().rulings.back();
   const int side = side_of(node, r.point[end == 0 ? 0 : 1], r.point[end == 0 ? 1 : 0]);
-  if (side < 0) {
+  if (side < 0 && meets_corner(own, r)) {
+    const int corner = add_corner(own, r, end);
+    own.slots[std::size_t(corner)] = {arc, end};
+    graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
+  } else if (side < 0) {
     fail(own.n, "a separating curve meets a facet in none of its sides");
   } else if (own.slots[std::size_t(side)].arc >= 0) {
     fail(own.n, "two separating curves leave a facet across one side");
@@ -452,6 +459,29 @@ void GraphTracer::connect(int arc, int end, int node) {
     own.slots[std::size_t(side)] = {arc, end};
     graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
   }
+}
+
+/// Whether two contacts that touch each other are in one corner of the facet.
+bool GraphTracer::meets_corner(const FacetNode& node, const Ruling& r) {
+  return std::any_of(node.points.begin(), node.points.end(), [&](const dvec3& p) {
+    return glm::distance(p, r.point[0]) < same_branch && glm::distance(p, r.point[1]) < same_branch;
+  });
+}
+
+/// Makes the corner in which both contacts are two, with a side of no length between them; its
+/// number.
+int GraphTracer::add_corner(FacetNode& node, const Ruling& r, int end) {
+  const auto found = std::find_if(node.points.begin(), node.points.end(), [&](const dvec3& p) {
+    return glm::distance(p, r.point[0]) < same_branch;
+  });
+  const auto k = found - node.points.begin();
+  node.contacts[std::size_t(k)] = r.contact[end == 0 ? 0 : 1];
+  node.contacts.insert(node.contacts.begin() + k + 1, r.contact[end == 0 ? 1 : 0]);
+  node.points.insert(node.points.begin() + k + 1, node.points[std::size_t(k)]);
+  // What left across the corner's next side does so from the second of the two.
+  node.slots.insert(node.slots.begin() + k, FacetNode::Slot());
+  if (!node.sides.empty()) node.sides.insert(node.sides.begin() + k, EdgeStretch());
+  return int(k);
 }
 
 /// Adds an arc that ends in a crossing to those that leave it, in their order about its direction.
@@ -500,14 +530,20 @@ void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
   std::move(first, more.end(), std::back_inserter(pieces));
 }
 
+/// Whether two contacts, in a direction near that of a facet with curved sides, are in its plane.
+bool GraphTracer::lies_in_facet(const CommonSupport& s) const {
+  return std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const FacetNode& node) {
+    return lies_in(node, s.n, {s.contact[0], s.contact[1]});
+  });
+}
+
 /// Whether the seed is a facet, with other contacts beside the two: a node for it, if it is new.
 bool GraphTracer::is_facet(const CommonSupport& seed) {
   const std::vector<Contact> contacts(seed.contact.begin(), seed.contact.begin() + seed.count);
   for (const FacetNode& node : graph_.nodes) {
-    if (!node.is_crossing() && glm::distance(node.n, seed.n) < same_plane &&
-        has_contacts(node, contacts)) {
-      return true;
-    }
+    if (node.is_crossing()) continue;
+    if (lies_in(node, seed.n, contacts)) return true;
+    if (glm::distance(node.n, seed.n) < same_plane && has_contacts(node, contacts)) return true;
   }
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, seed.n, contacts);
   if (!f || !f->is_facet()) return false;
@@ -517,13 +553,17 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
 
 /// Traces the curve through a seed, both ways unless it closes.
 void GraphTracer::trace(const CommonSupport& seed) {
-  TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
-  if (ahead.end == TracedArc::End::lost) {
+  // In a facet itself the curve, if there is one, leads one way only.
+  const auto lost = [&](const char* reason) {
     if (is_facet(seed)) {
       trace_waiting();
     } else {
-      fail(seed.n, ahead.reason);
+      fail(seed.n, reason);
     }
+  };
+  TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
+  if (ahead.end == TracedArc::End::lost) {
+    lost(ahead.reason);
     return;
   }
   SeparatingArc arc;
@@ -546,8 +586,8 @@ void GraphTracer::trace(const CommonSupport& seed) {
   std::swap(turned.jet[0], turned.jet[1]);
   TracedArc behind = trace_arc(system_, query_, turned, landmarks_, progress_);
   if (behind.end == TracedArc::End::lost || behind.end == TracedArc::End::closed) {
-    fail(seed.n, behind.end == TracedArc::End::lost ? behind.reason
-                                                    : "a separating curve closes one way only");
+    lost(behind.end == TracedArc::End::lost ? behind.reason
+                                            : "a separating curve closes one way only");
     return;
   }
   const int begin = node_at(behind);
@@ -592,15 +632,19 @@ void GraphTracer::trace_waiting() {
   while (!waiting_.empty() && !given_up()) {
     const int node = waiting_.back();
     waiting_.pop_back();
-    const std::size_t count = graph_.nodes[std::size_t(node)].contacts.size();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < graph_.nodes[std::size_t(node)].contacts.size(); ++i) {
       const FacetNode& own = graph_.nodes[std::size_t(node)];
       if (own.slots[i].arc >= 0 || own.is_curved(i)) continue;
       CommonSupport start;
       start.n = own.n;
       start.add(geometry_, own.contacts[i]);
-      start.add(geometry_, own.contacts[(i + 1) % count]);
+      start.add(geometry_, own.contacts[(i + 1) % own.contacts.size()]);
       TracedArc traced = trace_arc(system_, query_, start, landmarks_, progress_);
+      const bool stays =
+          traced.end == TracedArc::End::plane && glm::distance(traced.n, start.n) < same_plane;
+      if (stays || traced.end == TracedArc::End::lost) {
+        traced = trace_arc(system_, query_, start, landmarks_, progress_, true);
+      }
       if (traced.end == TracedArc::End::lost || traced.end == TracedArc::End::closed) {
         fail(start.n, traced.end == TracedArc::End::lost
                           ? traced.reason

@@ -290,9 +290,15 @@ void Stitcher::make_facets() {
     face.kind = FaceKind::facet;
     face.n = node.n;
     face.offset = glm::dot(node.points.front(), node.n);
-    face.contacts = node.contacts;
-    face.points = node.points;
-    face.sides = node.sides;
+    for (std::size_t k = 0; k < node.points.size(); ++k) {
+      // Corners are one for each of the contacts that touch each other in them.
+      const bool repeated = !node.is_curved(k) && node.points.size() > 1 &&
+                            node.points[k] == node.points[(k + 1) % node.points.size()];
+      if (repeated) continue;
+      face.contacts.push_back(node.contacts[k]);
+      face.points.push_back(node.points[k]);
+      if (!node.sides.empty()) face.sides.push_back(node.sides[k]);
+    }
     boundary_.faces.push_back(std::move(face));
   }
 }
