@@ -5,15 +5,17 @@
 #include <utility>
 
 #include "boundaries.h"
-#include "models.h"
+#include "sound_hull.h"
 #include "taut/hull/convex_hull.h"
+#include "truths.h"
 
 namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-constexpr double exact = 3e-14;
+/// What boundaries that are put together by hand are held to.
+constexpr double nearly_exact = 3e-14;
 
 VerifyOptions quick() {
   VerifyOptions options;
@@ -21,17 +23,18 @@ VerifyOptions quick() {
   return options;
 }
 
-HullVerification verified(const KnownBoundary& known) {
+HullVerification verified_boundary(const KnownBoundary& known) {
   return verify(hull_document(known.scene, known.boundary), known.scene, quick());
 }
 
 TEST(VerifyHull, ExactBoundariesPass) {
   for (const dvec3& shift : {dvec3(0.0), dvec3(3, -2, 1)}) {
-    const HullVerification facets = verified(tetrahedron_boundary(shift));
-    EXPECT_TRUE(facets.is_hull(exact)) << facets.euler << " " << facets.flatness;
+    const HullVerification facets = verified_boundary(tetrahedron_boundary(shift));
+    EXPECT_TRUE(facets.is_hull(nearly_exact)) << facets.euler << " " << facets.flatness;
     EXPECT_EQ(facets.directions, 4 + 2000);
-    const HullVerification spheres = verified(two_spheres_boundary(skew_rotation(), shift));
-    EXPECT_TRUE(spheres.is_hull(exact));
+    const HullVerification spheres =
+        verified_boundary(two_spheres_boundary(skew_rotation(), shift));
+    EXPECT_TRUE(spheres.is_hull(nearly_exact));
     EXPECT_EQ(spheres.euler, 2);
     EXPECT_EQ(spheres.uncovered, 0);
     EXPECT_GT(spheres.tangency + spheres.off_source, 0) << "something was measured";
@@ -42,8 +45,8 @@ TEST(VerifyHull, FacetsWithCurvedSidesPass) {
   for (const KnownBoundary& known :
        {cylinder_boundary(), cylinder_boundary(skew_rotation(), dvec3(3, -2, 1)), cap_boundary(0.6),
         half_torus_boundary(2, 0.5), torus_boundary(2, 0.5), paraboloid_boundary()}) {
-    const HullVerification found = verified(known);
-    EXPECT_TRUE(found.is_hull(exact)) << found.euler << " " << found.uncovered;
+    const HullVerification found = verified_boundary(known);
+    EXPECT_TRUE(found.is_hull(nearly_exact)) << found.euler << " " << found.uncovered;
     EXPECT_EQ(found.euler, 2);
   }
 }
@@ -124,6 +127,31 @@ TEST(VerifyHull, EveryDamageIsFound) {
             }).uncovered,
             20);
 }
+
+/// What taut hull writes of a model passes taut verify.
+void expect_written_hull_passes(const Shape& shape) {
+  const Sound sound = sound_hull(shape);
+  for (const DocumentEncoding encoding : {DocumentEncoding::json, DocumentEncoding::cbor}) {
+    const HullDocument read = read_hull(to_document(sound.hull, encoding), "hull", encoding);
+    const HullVerification found = verified(read, sound.scene);
+    EXPECT_TRUE(found.is_hull(exact)) << text_of(found);
+  }
+}
+
+class VerifyTruths : public testing::TestWithParam<Truth> {};
+
+TEST_P(VerifyTruths, Pass) { expect_written_hull_passes(GetParam().shape); }
+TEST_P(VerifyTruths, TurnedPass) {
+  expect_written_hull_passes(mapped(GetParam().shape, skew_rotation(), {0.1, -0.2, 0.3}));
+}
+
+std::string test_name(const testing::TestParamInfo<Truth>& info) {
+  std::string name;
+  for (const char c : info.param.name) name += std::isalnum(c) != 0 ? c : '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Hulls, VerifyTruths, testing::ValuesIn(truths()), test_name);
 
 TEST(VerifyHull, OfAnotherModelFails) {
   const KnownBoundary known = two_spheres_boundary();

@@ -39,15 +39,24 @@ class OutlineCheck {
   double run();
 
  private:
+  /// A stretch along a side of one of a source's Bezier patches.
+  struct Border {
+    int source = -1;
+    OutlineStretch stretch;
+  };
   void check_kind(std::size_t curve);
   bool is_straight(const Curve& curve) const;
   void check_edge(const Curve& curve);
   void check_order(std::size_t face);
-  void check_sides(const Face& scroll);
+  void check_sides(std::size_t face);
   void check_ruling_ends(const Curve& curve, const Face& scroll);
   void check_patch(std::size_t face);
   void check_free_stretches(std::size_t face);
   void check_loop(const Face& face, const HullDocument::Loop& loop);
+  std::vector<Border> borders_of(const Face& scroll, std::size_t contact) const;
+  void add_borders_of(int face, std::vector<Border>& borders) const;
+  double distance(const dvec3& p, const NearestPoint& points,
+                  const std::vector<Border>& borders) const;
   double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
   void check_tracks();
   void check_facet(std::size_t face);
@@ -70,7 +79,7 @@ double OutlineCheck::run() {
     if (face.kind == FaceKind::facet) check_facet(i);
     if (face.kind != FaceKind::scroll) continue;
     check_order(i);
-    check_sides(face);
+    check_sides(i);
   }
   check_tracks();
   return off_;
@@ -167,26 +176,69 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<int>& curves) const
   return points;
 }
 
-/// The curves along a scroll's contacts have their points, but for edges: these have those of both
-/// sides, and end where the face on the other side does.
-void OutlineCheck::check_sides(const Face& scroll) {
+/// Where both run along borders, a scroll's contacts and the curve along them need not have the
+/// same points, but either lies on the other's border. An edge has the points of both sides, and
+/// ends where the face on the other side does.
+void OutlineCheck::check_sides(std::size_t f) {
+  const Face& scroll = hull_.faces[f];
   for (std::size_t k = 0; k < 2; ++k) {
     if (scroll.curves[k].empty()) continue;
     std::vector<dvec3> contacts;
     contacts.reserve(scroll.rulings.size());
     for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
     const NearestPoint listed(contacts);
+    const std::vector<Border> own = borders_of(scroll, k);
+    std::vector<Border> others;
     bool any_edge = false;
     for (const int c : scroll.curves[k]) {
       const Curve& curve = hull_.curves[to_size(c)];
       any_edge = any_edge || curve.kind == HullCurveKind::edge;
       if (curve.kind == HullCurveKind::edge) continue;
-      for (const dvec3& p : curve.points) raise(off_, listed.distance(p));
+      for (const dvec3& p : curve.points) raise(off_, distance(p, listed, own));
+      const int other = curve.faces[curve.faces[0] == int(f) ? 1 : 0];
+      if (other >= 0) add_borders_of(other, others);
     }
     if (any_edge) continue;
     const NearestPoint curves(points_of(scroll.curves[k]));
-    for (const dvec3& p : contacts) raise(off_, curves.distance(p));
+    for (const dvec3& p : contacts) raise(off_, distance(p, curves, others));
   }
+}
+
+/// Along a scroll's contacts, between neighbouring rulings.
+std::vector<OutlineCheck::Border> OutlineCheck::borders_of(const Face& scroll,
+                                                           std::size_t k) const {
+  std::vector<Border> borders;
+  for (std::size_t i = 0; i + 1 < scroll.rulings.size(); ++i) {
+    const HullDocument::Contact& from = k == 0 ? scroll.rulings[i].a : scroll.rulings[i].b;
+    const HullDocument::Contact& to = k == 0 ? scroll.rulings[i + 1].a : scroll.rulings[i + 1].b;
+    if (from.source != to.source || geometry_.source(from.source).kind != SourceKind::face)
+      continue;
+    const auto border = outlines_.border(from.source, parameters(from), parameters(to));
+    if (border) borders.push_back({from.source, *border});
+  }
+  return borders;
+}
+
+/// Of a patch's regions.
+void OutlineCheck::add_borders_of(int face, std::vector<Border>& borders) const {
+  for (const RegionOutline& region : outlines_.regions()) {
+    if (region.face != face) continue;
+    for (const std::vector<OutlineStretch>& loop : region.loops) {
+      for (const OutlineStretch& stretch : loop) {
+        if (stretch.kind != OutlineStretch::Kind::border) continue;
+        borders.push_back({hull_.faces[to_size(face)].source, stretch});
+      }
+    }
+  }
+}
+
+double OutlineCheck::distance(const dvec3& p, const NearestPoint& points,
+                              const std::vector<Border>& borders) const {
+  double best = points.distance(p);
+  for (std::size_t b = 0; b < borders.size() && best > tolerance_; ++b) {
+    best = std::min(best, distance_to_border(borders[b].source, borders[b].stretch, p));
+  }
+  return best;
 }
 
 /// The straight sides of a scroll are its first and its last ruling.
@@ -249,7 +301,7 @@ void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) 
   const std::vector<dvec3> points = points_of(loop.curves);
   const NearestPoint curves(points);
   std::vector<dvec3> own;
-  std::vector<OutlineStretch> borders;
+  std::vector<Border> borders;
   own.reserve(loop.uv.size());
   bool last_on_border = false;
   for (std::size_t k = 0; k < loop.uv.size(); ++k) {
@@ -261,17 +313,11 @@ void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) 
     const dvec3 x = geometry_.jet(face.source, places[0]).x + geometry_.origin();
     own.push_back(x);
     if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(x));
-    if (on_border) borders.push_back(stretch);
+    if (on_border) borders.push_back({face.source, stretch});
     last_on_border = on_border;
   }
   const NearestPoint listed(own);
-  for (const dvec3& p : points) {
-    double best = listed.distance(p);
-    for (std::size_t b = 0; b < borders.size() && best > tolerance_; ++b) {
-      best = std::min(best, distance_to_border(face.source, borders[b], p));
-    }
-    raise(off_, best);
-  }
+  for (const dvec3& p : points) raise(off_, distance(p, listed, borders));
 }
 
 double OutlineCheck::distance_to_border(int source, const OutlineStretch& stretch,

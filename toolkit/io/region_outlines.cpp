@@ -129,31 +129,34 @@ void DocumentOutlines::add_tracks(const DocumentGeometry& geometry) {
   }
 }
 
-bool DocumentOutlines::on_border(int source, int patch, const dvec2& from, const dvec2& to) const {
-  const HullDocument::Patch& own = geometry_.source(source).patches[to_size(patch)];
-  for (int k = 0; k < 2; ++k) {
-    if (from[k] != to[k]) continue;
-    const Interval& domain = own.domain[to_size(k)];
-    if (from[k] == domain.lower || from[k] == domain.upper) return true;
-  }
-  return false;
+std::optional<OutlineStretch> DocumentOutlines::border(int source, const dvec2& from,
+                                                       const dvec2& to) const {
+  const auto along_side = [&](const HullDocument::Patch& patch) {
+    for (int k = 0; k < 2; ++k) {
+      const Interval& domain = patch.domain[to_size(k)];
+      if (from[k] == to[k] && (from[k] == domain.lower || from[k] == domain.upper)) return true;
+    }
+    return false;
+  };
+  const std::vector<HullDocument::Patch>& patches = geometry_.source(source).patches;
+  const double size = std::max(1.0, std::max(glm::length(from), glm::length(to)));
+  // No longer than this where it passes from one Bezier patch into another.
+  const bool short_one = glm::distance(from, to) <= geometry_.noise() * size;
+  if (!short_one && std::none_of(patches.begin(), patches.end(), along_side)) return std::nullopt;
+  OutlineStretch stretch;
+  stretch.kind = OutlineStretch::Kind::border;
+  stretch.from = from;
+  stretch.to = to;
+  return stretch;
 }
 
 OutlineStretch DocumentOutlines::stretch(int source, const dvec2& from, const dvec2& to) const {
   const auto track = tracks_.find({double(source), from.x, from.y, to.x, to.y});
   if (track != tracks_.end()) return track->second;
+  if (const auto along_side = border(source, from, to)) return *along_side;
   OutlineStretch stretch;
   stretch.from = from;
   stretch.to = to;
-  const int patches = int(geometry_.source(source).patches.size());
-  const double size = std::max(1.0, std::max(glm::length(from), glm::length(to)));
-  // No longer than this where it passes from one Bezier patch into another.
-  if (glm::distance(from, to) <= geometry_.noise() * size) {
-    stretch.kind = OutlineStretch::Kind::border;
-  }
-  for (int i = 0; i < patches; ++i) {
-    if (on_border(source, i, from, to)) stretch.kind = OutlineStretch::Kind::border;
-  }
   return stretch;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "taut/io/document_rulings.h"
 
 namespace taut {
@@ -71,6 +73,8 @@ class DocumentOutlines {
   const std::vector<int>& regions_of(int source) const;
   /// The stretch between two points of an outline on a source.
   OutlineStretch stretch(int source, const dvec2& from, const dvec2& to) const;
+  /// The same along a side of one of its Bezier patches, be it a track; none if it is not.
+  std::optional<OutlineStretch> border(int source, const dvec2& from, const dvec2& to) const;
   /// Whether a region of the source may contain the place.
   bool covers(int source, const dvec2& uv) const;
 
@@ -78,7 +82,6 @@ class DocumentOutlines {
   void add_tracks(const DocumentGeometry& geometry);
   void add_regions(const DocumentGeometry& geometry);
   static void join_free_stretches(std::vector<OutlineStretch>& loop);
-  bool on_border(int source, int patch, const dvec2& from, const dvec2& to) const;
 
   using Key = std::array<double, 5>;
   const DocumentGeometry& geometry_;

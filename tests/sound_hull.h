@@ -1,0 +1,30 @@
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "models.h"
+#include "taut/io/verify_hull.h"
+
+namespace taut_test {
+
+/// What exact hulls are held to.
+inline constexpr double exact = 1e-12;
+
+/// A scene with the document of its hull, which has a report.
+struct Sound {
+  taut::Scene scene;
+  taut::HullDocument hull;
+};
+
+Sound sound_hull(const Shape& shape);
+
+taut::HullVerification verified(const taut::HullDocument& hull, const taut::Scene& scene);
+
+/// Names of all checks that fail.
+std::set<std::string> failed(const taut::HullVerification& v);
+
+/// These, all faults and all that was measured.
+std::string text_of(const taut::HullVerification& v);
+
+}  // namespace taut_test
