@@ -271,8 +271,8 @@ bool Trace::pass_pole(int contact, Side side, double length) {
   }
   pole.evaluate(geometry_);
   const double ahead = length_to(pole);
-  if (std::abs(glm::dot(pole.d(), pole.n)) > support_tie || ahead < 0 || ahead > 2 * length ||
-      query_(pole.n, pole.contact[i]).h > glm::dot(pole.jet[i].x, pole.n) + support_tie) {
+  if (std::abs(glm::dot(pole.d(), pole.n)) > geometry_.tie() || ahead < 0 || ahead > 2 * length ||
+      query_(pole.n, pole.contact[i]).h > glm::dot(pole.jet[i].x, pole.n) + geometry_.tie()) {
     return false;
   }
   at_ = pole;
@@ -388,7 +388,7 @@ std::optional<CommonSupport> Trace::stepped_aside(double step) {
   }
   next.evaluate(geometry_);
   if ((moved && !corrected()) ||
-      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + support_tie) {
+      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + geometry_.tie()) {
     return std::nullopt;
   }
   return next;
@@ -499,7 +499,7 @@ bool Trace::crosses() {
     const Contact& c = end->contact[i];
     if (std::min({c.u, 1 - c.u, c.v, 1 - c.v}) < -parameter_slack) return false;
   }
-  if (query_(end->n, end->contact[0]).h > glm::dot(end->jet[0].x, end->n) + support_tie) {
+  if (query_(end->n, end->contact[0]).h > glm::dot(end->jet[0].x, end->n) + geometry_.tie()) {
     return false;
   }
   push(*end);
@@ -565,7 +565,7 @@ std::optional<FreeEnd> Trace::exact_end(const Ruling& near) {
   const std::optional<FreeEnd> end = kind ? polished(geometry_, *kind) : std::nullopt;
   if (!end) return std::nullopt;
   const double height = glm::dot(geometry_.point(end->contact), end->n);
-  return query_(end->n, near.contact[0]).h <= height + support_tie ? end : std::nullopt;
+  return query_(end->n, near.contact[0]).h <= height + geometry_.tie() ? end : std::nullopt;
 }
 
 /// The contact at the pole that its patch has at x, at the same parameter along the side; none if
@@ -607,7 +607,7 @@ bool Trace::merge_at_pole(double linear) {
     dvec3 n = unit_normal(geometry_, *c0);
     if (glm::dot(n, at_.n) < 0) n = -n;
     if (glm::distance(n, at_.n - linear * tangent_.n) > reach ||
-        query_(n, *c0).h > glm::dot(x, n) + support_tie) {
+        query_(n, *c0).h > glm::dot(x, n) + geometry_.tie()) {
       continue;
     }
     end = {n, {*c0, *c1}, {x, x}};
@@ -675,7 +675,7 @@ bool Trace::merge() {
   const Support top = query_(end.n, last.contact[0]);
   // The nearer the contacts, the better the extrapolation; until rounding spoils it. About a free
   // end heights differ by the fourth power of distances, at a border by the third.
-  const double slack = rho > least_distance ? support_tie : rho * rho * rho;
+  const double slack = rho > least_distance ? geometry_.tie() : rho * rho * rho;
   if (top.h - glm::dot(x, end.n) > slack || glm::distance(top.point, x) > 4 * rho) {
     return false;
   }
@@ -840,7 +840,7 @@ Trace::Pace Trace::advance() {
     return ended(TracedArc::End::closed);
   }
   const Support top = query_(next->n, next->contact[0]);
-  if (top.h > glm::dot(next->jet[0].x, next->n) + support_tie) {
+  if (top.h > glm::dot(next->jet[0].x, next->n) + geometry_.tie()) {
     return surpassed(*next, top.contact);
   }
   const bool moved = length_to(*next) > margin_slack;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "taut/core/tolerances.h"
@@ -9,6 +10,7 @@
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/free_ends.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/surface_seeds.h"
 
@@ -27,6 +29,10 @@ constexpr double nearly_opposite = -0.9;
 constexpr double least_part = 0.05;
 /// Weight by which a direction between two keeps clear of a plane's between them.
 constexpr double beside_plane = 1.25;
+/// Turn, in radians, from a free end to where its curve's contacts have parted.
+constexpr double end_step = 1e-3;
+/// Free ends that are nearer are one.
+constexpr double same_end = 1e-4;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too: hundreds of times what generic models
@@ -88,6 +94,13 @@ class GraphTracer {
   static bool meets_corner(const FacetNode& node, const Ruling& r);
   static int add_corner(FacetNode& node, const Ruling& r, int end);
   void connect_crossing(int arc, int end, int node);
+  struct PieceContact {
+    int arc, piece, contact;
+  };
+  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells) const;
+  bool crosses(const PieceContact& trace, const PatchCell& cell) const;
+  bool is_reached(const FreeEnd& end) const;
+  void part_beside(const FreeEnd& end);
   void find_planes();
   void find_poles();
   bool is_in_plane(const dvec3& n) const;
@@ -101,9 +114,6 @@ class GraphTracer {
   long first_cells_ = 0;
   long cell_limit_ = 0;
   bool stopped_ = false;
-  struct PieceContact {
-    int arc, piece, contact;
-  };
   std::map<std::pair<int, int>, std::vector<PieceContact>> traces_;  // by instance and patch
   std::vector<Box> boxes_;                                           // of the arcs' directions
   std::vector<Landmark> landmarks_;
@@ -174,7 +184,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
     const double next = t - value / slope;
     t = next > lower && next < upper ? next : 0.5 * (lower + upper);
     if (upper - lower < parting_tie) {
-      if (std::abs(value) < support_tie) return s;
+      if (std::abs(value) < geometry_.tie()) return s;
       return std::nullopt;
     }
   }
@@ -190,7 +200,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     tie.n = a.n;
     tie.add(geometry_, a.contact);
     tie.add(geometry_, b.contact);
-    if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < support_tie) {
+    if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < geometry_.tie()) {
       if (!is_traced(tie)) trace(tie);
     } else if (!lies_in_facet(tie)) {
       fail(a.n, "two contacts that are not joined are not parted either");
@@ -211,7 +221,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
       seed && glm::distance(seed->n, a.n) > least && glm::distance(seed->n, b.n) > least;
   if (seed && !divides) {
     const Sighting there = seen(seed->n, seed->contact[0]);
-    if (glm::dot(there.x, seed->n) <= glm::dot(seed->jet[0].x, seed->n) + support_tie) {
+    if (glm::dot(there.x, seed->n) <= glm::dot(seed->jet[0].x, seed->n) + geometry_.tie()) {
       trace(*seed);
       return;
     }
@@ -219,7 +229,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   dvec3 n = divides ? seed->n : glm::normalize(a.n + b.n);
   if (is_in_plane(n)) n = glm::normalize(a.n + beside_plane * b.n);
   const Sighting middle = seen(n, a.contact);
-  if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + support_tie) {
+  if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + geometry_.tie()) {
     trace(*seed);
     return;
   }
@@ -316,7 +326,7 @@ bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
 bool GraphTracer::has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const {
   const double offset = glm::dot(node.points.front(), node.n);
   return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
-    return glm::dot(geometry_.point(c), node.n) >= offset - support_tie;
+    return glm::dot(geometry_.point(c), node.n) >= offset - geometry_.tie();
   });
 }
 
@@ -401,7 +411,7 @@ void GraphTracer::find_poles() {
         const dvec3 x = geometry_.point(c);
         if (normal == dvec3(0.0)) continue;
         for (const dvec3& n : {normal, -normal}) {
-          if (query_(n, c).h > glm::dot(x, n) + support_tie) continue;
+          if (query_(n, c).h > glm::dot(x, n) + geometry_.tie()) continue;
           const bool known =
               std::any_of(landmarks_.begin(), landmarks_.end(),
                           [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
@@ -662,6 +672,69 @@ void GraphTracer::trace_waiting() {
   }
 }
 
+/// The mixed cells through which no contact of a curve that was traced runs.
+std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& cells) const {
+  std::vector<CulledCell> result;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(result), [&](const CulledCell& cell) {
+    if (cell.state != CellState::mixed ||
+        geometry_.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0})) {
+      return false;
+    }
+    const auto found = traces_.find({cell.instance, cell.patch});
+    return found == traces_.end() ||
+           std::none_of(found->second.begin(), found->second.end(),
+                        [&](const PieceContact& trace) { return crosses(trace, cell.cell); });
+  });
+  return result;
+}
+
+/// Whether the box of two successive rulings' contacts meets the cell.
+bool GraphTracer::crosses(const PieceContact& trace, const PatchCell& cell) const {
+  const std::vector<Ruling>& rulings =
+      graph_.arcs[std::size_t(trace.arc)].pieces[std::size_t(trace.piece)].rulings;
+  const Interval u = cell.u();
+  const Interval v = cell.v();
+  for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+    const Contact& a = rulings[k].contact[std::size_t(trace.contact)];
+    const Contact& b = rulings[k + 1].contact[std::size_t(trace.contact)];
+    if (std::min(a.u, b.u) <= u.upper && std::max(a.u, b.u) >= u.lower &&
+        std::min(a.v, b.v) <= v.upper && std::max(a.v, b.v) >= v.lower) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether a curve that was traced ends in the free end.
+bool GraphTracer::is_reached(const FreeEnd& end) const {
+  const dvec3 x = geometry_.point(end.contact);
+  for (const SeparatingArc& arc : graph_.arcs) {
+    for (const std::size_t e : {0U, 1U}) {
+      if (arc.closed || arc.facet[e] >= 0) continue;
+      const Ruling& last =
+          e == 0 ? arc.pieces.front().rulings.front() : arc.pieces.back().rulings.back();
+      if (glm::distance(last.n, end.n) < same_end && glm::distance(last.point[0], x) < same_end) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Seeks the curve that ends in the free end between directions to both sides of it, where the
+/// contacts have parted.
+void GraphTracer::part_beside(const FreeEnd& end) {
+  const dvec3 ahead = glm::cross(end.n, end.along);
+  for (const double sense : {1.0, -1.0}) {
+    const auto beside = [&](double side) {
+      return seen(
+          glm::normalize(end.n + sense * end_step * ahead + side * end_step * end_step * end.along),
+          end.contact);
+    };
+    part(beside(1), beside(-1), 0);
+  }
+}
+
 SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
   first_cells_ = query_.cells();
@@ -696,6 +769,9 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
       const int b = f.vertex[(k + 1) % 3];
       if (a < b) part(sightings[std::size_t(a)], sightings[std::size_t(b)], 0);
     }
+  }
+  for (const FreeEnd& end : free_ends(geometry_, query_, uncrossed(cells))) {
+    if (!given_up() && !is_reached(end)) part_beside(end);
   }
   graph_.newton_iterations = system_.iterations();
   return std::move(graph_);
