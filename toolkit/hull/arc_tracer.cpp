@@ -93,7 +93,7 @@ class Trace {
   }
   static double square(const dvec3& x) { return glm::dot(x, x); }
 
-  std::optional<Event> first_event(const CommonSupport& next, double length) const;
+  std::optional<Event> first_event(const CommonSupport& next, double length, bool& known) const;
   std::optional<Event> solved_event(const CommonSupport& next, double share, int contact,
                                     const ContactExit& exit) const;
   double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
@@ -214,8 +214,11 @@ std::optional<Event> Trace::solved_event(const CommonSupport& next, double share
   return event;
 }
 
-/// The first margin on the way to `next` that is crossed there.
-std::optional<Event> Trace::first_event(const CommonSupport& next, double length) const {
+/// The first margin on the way to `next` that is crossed there. Not `known` if it is not found
+/// where.
+std::optional<Event> Trace::first_event(const CommonSupport& next, double length,
+                                        bool& known) const {
+  known = true;
   std::optional<Event> first;
   for (int i = 0; i < 2; ++i) {
     for (const ContactExit& exit : exits_[std::size_t(i)]) {
@@ -224,7 +227,10 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
       const double before = std::max(margin(at_, i, exit), 0.0);
       const double share = before / (before - after);
       const std::optional<Event> event = solved_event(next, share, i, exit);
-      if (!event || event->length > length + margin_slack) continue;
+      if (!event || event->length > length + margin_slack) {
+        known = false;
+        continue;
+      }
       if (!first || event->length < first->length) first = event;
     }
   }
@@ -585,7 +591,7 @@ bool Trace::merge_at_pole(double linear) {
     const dvec3 x = geometry_.point(at_pole(end.contact[0], side));
     const auto c0 = at_pole_of(geometry_, end.contact[0], x);
     const auto c1 = at_pole_of(geometry_, end.contact[1], x);
-    if (!c0 || !c1 ||
+    if (!c0 || !c1 || c0->instance != c1->instance ||
         std::max(glm::distance(end.point[0], x), glm::distance(end.point[1], x)) > reach) {
       continue;
     }
@@ -818,7 +824,9 @@ Trace::Pace Trace::advance() {
                ? Pace::on
                : shorter("a separating curve cannot be followed past a pole");
   }
-  const std::optional<Event> event = first_event(*next, step_);
+  bool known = true;
+  const std::optional<Event> event = first_event(*next, step_, known);
+  if (!known) return shorter("a separating curve cannot be followed over a border");
   if (event) next = event->support;
   if (is_closing(*next, step_)) {
     close();
