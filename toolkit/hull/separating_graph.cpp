@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/arc_tracer.h"
@@ -51,6 +52,10 @@ constexpr double overlap = 0.2;
 constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
+/// The circle about a pole's normal on which curves are sought.
+constexpr double circle_radius = 1e-3;
+constexpr int circle_samples = 64;
+constexpr int circle_halvings = 10;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
 
@@ -103,6 +108,9 @@ class GraphTracer {
   void part_beside(const FreeEnd& end);
   void find_planes();
   void find_poles();
+  void add_pole(const dvec3& n, const Contact& c);
+  void part_about(const dvec3& n, const Contact& pole);
+  void part_closely(const Sighting& a, const Sighting& b, int depth);
   bool is_in_plane(const dvec3& n) const;
   void fail(const dvec3& n, const char* reason);
 
@@ -117,7 +125,8 @@ class GraphTracer {
   std::map<std::pair<int, int>, std::vector<PieceContact>> traces_;  // by instance and patch
   std::vector<Box> boxes_;                                           // of the arcs' directions
   std::vector<Landmark> landmarks_;
-  std::vector<int> waiting_;  // nodes whose slots may be open
+  std::vector<std::pair<dvec3, Contact>> poles_;  // that support, with their normals
+  std::vector<int> waiting_;                      // nodes whose slots may be open
 };
 
 /// One spot is told once.
@@ -412,6 +421,7 @@ void GraphTracer::find_poles() {
         if (normal == dvec3(0.0)) continue;
         for (const dvec3& n : {normal, -normal}) {
           if (query_(n, c).h > glm::dot(x, n) + geometry_.tie()) continue;
+          add_pole(n, c);
           const bool known =
               std::any_of(landmarks_.begin(), landmarks_.end(),
                           [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
@@ -424,6 +434,43 @@ void GraphTracer::find_poles() {
       }
     }
   }
+}
+
+/// Once for all patches that meet in it.
+void GraphTracer::add_pole(const dvec3& n, const Contact& c) {
+  const dvec3 x = geometry_.point(c);
+  const bool known = std::any_of(poles_.begin(), poles_.end(), [&](const auto& pole) {
+    return glm::distance(pole.first, n) < same_plane &&
+           glm::distance(geometry_.point(pole.second), x) < same_branch;
+  });
+  if (!known) poles_.emplace_back(n, c);
+}
+
+/// Finds and traces the curves that begin in a pole: they cross a small circle about its normal.
+void GraphTracer::part_about(const dvec3& n, const Contact& pole) {
+  const std::array<dvec3, 2> frame = tangent_frame(n);
+  std::vector<Sighting> circle;
+  circle.reserve(circle_samples);
+  for (int k = 0; k < circle_samples; ++k) {
+    const double angle = 2 * std::numbers::pi * k / circle_samples;
+    const dvec3 aside = std::cos(angle) * frame[0] + std::sin(angle) * frame[1];
+    circle.push_back(seen(glm::normalize(n + circle_radius * aside), pole));
+  }
+  for (std::size_t k = 0; k < circle.size(); ++k) {
+    part_closely(circle[k], circle[(k + 1) % circle.size()], circle_halvings);
+  }
+}
+
+/// Halfway between two whose contacts are farther apart than to first order, the two branches may
+/// be there only near the curve: a climb from farther off would lead from the one to the other.
+void GraphTracer::part_closely(const Sighting& a, const Sighting& b, int depth) {
+  if (depth == 0 || (is_near(a, b) && is_near(b, a))) {
+    part(a, b, 0);
+    return;
+  }
+  const Sighting middle = seen(glm::normalize(a.n + b.n), a.contact);
+  part_closely(a, middle, depth - 1);
+  part_closely(middle, b, depth - 1);
 }
 
 /// The side of a facet from its contact at the one point to that at the other; -1 if there is none.
@@ -759,6 +806,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
     const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
     if (seed && !is_traced(*seed)) trace(*seed);
   }
+  for (const auto& [n, pole] : poles_) part_about(n, pole);
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
