@@ -72,7 +72,8 @@ Sample tolerances(const Sample& magnitude) {
 /// A region with what its integrals need.
 struct Region {
   const PatchRegion* region = nullptr;
-  /// Where inner integrals along u begin.
+  /// The parameter that inner integrals run along, 0: u, 1: v, and where they begin.
+  int inner = 0;
   double base = 0;
   dvec3 origin = dvec3(0.0);
 
@@ -360,7 +361,9 @@ class Summation {
  private:
   dvec3 interior_point() const;
   void find_uses();
-  double base(const PatchRegion& region) const;
+  int inner_parameter(const PatchRegion& region) const;
+  bool is_collapsed(const PatchRegion& region, Side side) const;
+  double base(const PatchRegion& region, int inner) const;
 
   void add_piece(std::size_t arc, std::size_t piece);
   bool bounds_normals(const Region& region, const TrimStretch& stretch) const;
@@ -371,7 +374,8 @@ class Summation {
 
   void add_scroll(const Moving& m, Sample& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
-  void add_line(const Region& region, double u, double v, double rate, double weight, Sample& sum);
+  void add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
+                Sample& sum);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -421,29 +425,48 @@ dvec3 Summation::interior_point() const {
   return count > 0 ? sum / count : sum;
 }
 
+bool Summation::is_collapsed(const PatchRegion& region, Side side) const {
+  const Contact c = {region.instance, SourceKind::face, region.patch, 0, 0};
+  return geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
+}
+
+/// The parameter that runs along more collapsed sides. It is ill-defined next to them, and its rate
+/// along traces that end there, but integrals along it vanish with the distance; across it, they
+/// would multiply its noise.
+int Summation::inner_parameter(const PatchRegion& region) const {
+  const auto collapsed = [&](Side side) { return is_collapsed(region, side) ? 1 : 0; };
+  const int along_u = collapsed(Side::v0) + collapsed(Side::v1);
+  const int along_v = collapsed(Side::u0) + collapsed(Side::u1);
+  return along_v > along_u ? 1 : 0;
+}
+
 /// A place for inner integrals to begin that keeps them short along traces, or makes them vanish
-/// along a border. Any is right: what differs depends on v alone, and its integral around a loop is
-/// zero.
-double Summation::base(const PatchRegion& region) const {
-  bool right = false, left = false;
+/// along a border; on a collapsed side, as there the outer parameter is ill-defined. Any is right:
+/// what differs depends on the outer parameter alone, and its integral around a loop is zero.
+double Summation::base(const PatchRegion& region, int inner) const {
+  const Side lower_side = inner == 0 ? Side::u0 : Side::v0;
+  const Side upper_side = inner == 0 ? Side::u1 : Side::v1;
+  if (is_collapsed(region, lower_side)) return 0;
+  if (is_collapsed(region, upper_side)) return 1;
+  bool lower = false, upper = false;
   Interval range{1, 0};
   for (const std::vector<TrimStretch>& loop : region.loops) {
     for (const TrimStretch& stretch : loop) {
       if (stretch.arc < 0) {
-        left |= stretch.side == Side::u0;
-        right |= stretch.side == Side::u1;
+        lower |= stretch.side == lower_side;
+        upper |= stretch.side == upper_side;
         continue;
       }
       const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
       for (const Ruling& ruling : arc.pieces[std::size_t(stretch.piece)].rulings) {
-        const double u = ruling.contact[std::size_t(stretch.contact)].u;
-        range.lower = std::min(range.lower, u);
-        range.upper = std::max(range.upper, u);
+        const double at = parameters(ruling.contact[std::size_t(stretch.contact)])[inner];
+        range.lower = std::min(range.lower, at);
+        range.upper = std::max(range.upper, at);
       }
     }
   }
   if (range.lower <= range.upper) return 0.5 * range.lower + 0.5 * range.upper;
-  return right && !left ? 1 : 0;
+  return upper && !lower ? 1 : 0;
 }
 
 void Summation::find_uses() {
@@ -460,7 +483,8 @@ void Summation::find_uses() {
     }
     for (const PatchRegion& region : face.regions) {
       const int number = int(regions_.size());
-      regions_.push_back({&region, base(region), origin_});
+      const int inner = inner_parameter(region);
+      regions_.push_back({&region, inner, base(region, inner), origin_});
       for (const std::vector<TrimStretch>& loop : region.loops) {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc < 0) continue;
@@ -473,22 +497,26 @@ void Summation::find_uses() {
 }
 
 /// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
-/// of f from the base to u along u; `rate` is dv/ds.
-void Summation::add_line(const Region& region, double u, double v, double rate, double weight,
+/// of f from the base to u along u, or that of -G du, G the same along v.
+void Summation::add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
                          Sample& sum) {
-  if (u == region.base || rate == 0) return;
+  const int inner = region.inner;
+  const double end = p[inner];
+  const double across = inner == 0 ? rate.y : -rate.x;
+  if (end == region.base || across == 0) return;
   Sums line;
   const auto f = [&](double at, double, Sample& sample) {
-    add_patch(geometry_.jet(region.contact(at, v)), region, 1, sample);
+    const Contact c = inner == 0 ? region.contact(at, p.y) : region.contact(p.x, at);
+    add_patch(geometry_.jet(c), region, 1, sample);
   };
-  if (std::abs(u - region.base) < 0.25) {
-    integrate<8>(f, tolerances, region.base, u, line);
+  if (std::abs(end - region.base) < 0.25) {
+    integrate<8>(f, tolerances, region.base, end, line);
   } else {
-    integrate<16>(f, tolerances, region.base, u, line);
+    integrate<16>(f, tolerances, region.base, end, line);
   }
   for (std::size_t k = 0; k < quantities; ++k) {
-    sum[k] += rate * double(line.value[k]);
-    sums_.error[k] += std::abs(weight * rate) * line.error[k];
+    sum[k] += across * double(line.value[k]);
+    sums_.error[k] += std::abs(weight * across) * line.error[k];
   }
 }
 
@@ -560,8 +588,8 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
       for (const Trace& trace : traces) {
         const auto i = std::size_t(trace.contact);
         const Contact& c = m.at.contact[i];
-        add_line(regions_[std::size_t(trace.region)], c.u, c.v, trace.direction * m.dp[i].y, weight,
-                 sample);
+        add_line(regions_[std::size_t(trace.region)], parameters(c), trace.direction * m.dp[i],
+                 weight, sample);
       }
     };
     integrate<6>(f, tolerances, 0, 1, sums_);
@@ -585,11 +613,12 @@ bool Summation::bounds_normals(const Region& region, const TrimStretch& stretch)
 void Summation::add_border(const Region& region, const TrimStretch& stretch) {
   const bool of_v = along_v(stretch.side);
   const bool edge = bounds_normals(region, stretch);
-  if (!of_v && !edge) return;
+  const bool of_line = of_v == (region.inner == 0);
+  if (!of_line && !edge) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
   const auto f = [&](double t, double weight, Sample& sample) {
     const dvec2 p = on_side(stretch.side, t);
-    if (of_v) add_line(region, p.x, p.y, 1, weight, sample);
+    if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample);
     if (!edge) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
