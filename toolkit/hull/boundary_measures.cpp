@@ -193,39 +193,80 @@ class RulingInterval {
       : system_(system), from_(from), to_(to), square_(chord_square(from, to)) {
     const bool begins = merged(from);
     const bool ends = merged(to);
-    if (begins == ends) return;
-    free_end_ = begins ? 0 : 1;
-    fit_free_end(begins ? from : to, begins ? to : from);
+    if (begins == ends) {
+      fit();
+    } else {
+      free_end_ = begins ? 0 : 1;
+      fit_free_end(begins ? from : to, begins ? to : from);
+    }
   }
 
   bool empty() const { return square_ == 0; }
 
   Moving operator()(double s) const {
     if (free_end_ >= 0) return near_free_end(s);
-    Moving m;
-    m.at = CommonSupport(system_.geometry(), ruling_between(system_, from_, to_, s));
-    // ruling_between() divides the chord in the ratio s, so the chord's share in the tangent tells
-    // the speed.
-    if (const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr)) {
-      const double share = glm::dot(to_.n - from_.n, t->n) +
-                           glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
-                           glm::dot(to_.point[1] - from_.point[1], t->x[1]);
-      const double speed = square_ / share;
-      // An arc ten times its chord is none that was traced.
-      if (std::abs(speed) < 10 * std::sqrt(square_)) {
-        m.move(*t, speed);
-        return m;
-      }
-    }
-    m.dn = to_.n - from_.n;
-    for (std::size_t i = 0; i < 2; ++i) {
-      m.dp[i] = parameters(to_.contact[i]) - parameters(from_.contact[i]);
-    }
-    m.complete();
+    Moving m = moving(from_, polynomial_, s, 1);
+    const Moving start = m;
+    const bool solved = solve_share(m, s);
+    // Otherwise, or if it is another solution, the polynomial is better.
+    if (!solved || chord_square(start.at.ruling(), m.at.ruling()) > square_ / 4) return start;
+    find_speed(m);
     return m;
   }
 
  private:
+  static RulingState place(const Moving& m) {
+    return state(m.at.n, parameters(m.at.contact[0]), parameters(m.at.contact[1]));
+  }
+  static RulingState rate(const Moving& m) { return state(m.dn, m.dp[0], m.dp[1]); }
+
+  /// Between the ends, with their slopes unless these are noise (next to a pole, say): where
+  /// Newton's method begins.
+  void fit() {
+    double s = 0;
+    for (const Ruling* end : {&from_, &to_}) {
+      Moving m;
+      m.at = CommonSupport(system_.geometry(), *end);
+      if (find_speed(m) && !bends(from_, to_, m)) {
+        polynomial_.add(s, place(m), rate(m));
+      } else {
+        polynomial_.add(s, place(m));
+      }
+      s = 1;
+    }
+  }
+
+  /// The ruling in the plane across the chord that divides it in the ratio s, as ruling_between()
+  /// has it, near m.
+  bool solve_share(Moving& m, double s) const {
+    const dvec3 dn = (to_.n - from_.n) / square_;
+    return system_.solve(m.at, [&](const CommonSupport& at) {
+      LinearEquation e;
+      e.n = dn;
+      e.residual = glm::dot(at.n - from_.n, dn) - s;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const dvec3 g = (to_.point[i] - from_.point[i]) / square_;
+        e.residual += glm::dot(at.jet[i].x - from_.point[i], g);
+        e.add_point(at, int(i), g);
+      }
+      return e;
+    });
+  }
+
+  /// Derivatives with respect to the share of the chord, which its share in the tangent tells.
+  bool find_speed(Moving& m) const {
+    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+    if (!t) return false;
+    const double share = glm::dot(to_.n - from_.n, t->n) +
+                         glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
+                         glm::dot(to_.point[1] - from_.point[1], t->x[1]);
+    const double speed = square_ / share;
+    // An arc ten times its chord is none that was traced.
+    if (!(std::abs(speed) < 10 * std::sqrt(square_))) return false;
+    m.move(*t, speed);
+    return true;
+  }
+
   /// Next to a free end the contacts, and n, are smooth functions of r, their distance in units of
   /// the last ruling's length (mathematics: near an A3 end, m +- rho e; a B3 end, linear). They are
   /// interpolated from the end and rulings from r = 1/4 on, with slopes.
@@ -237,24 +278,20 @@ class RulingInterval {
     Moving m;
     m.at = CommonSupport(system_.geometry(), longer);
     const double square = glm::dot(m.at.d(), m.at.d());
-    const auto own = [](const Moving& at) {
-      return state(at.at.n, parameters(at.at.contact[0]), parameters(at.at.contact[1]));
-    };
-    const auto rate = [](const Moving& at) { return state(at.dn, at.dp[0], at.dp[1]); };
     const RulingState begin = state(end.n, parameters(end.contact[0]), parameters(end.contact[1]));
     polynomial_.add(0, begin);
-    if (!find_slope(m, 1, square) || bends(end, m)) {
+    if (!find_slope(m, 1, square) || bends(end, longer, m)) {
       // Too far from the end, or too close to it for the tangent: straight.
-      polynomial_.add(1, own(m));
+      polynomial_.add(1, place(m));
       return;
     }
-    polynomial_.add(1, own(m), rate(m));
+    polynomial_.add(1, place(m), rate(m));
     for (const double r : {0.75, 0.5, 0.25}) {
       const double length = r * std::sqrt(square);
       if (length * length * length < std::sqrt(rounding_unit)) break;
       Moving next = moving(end, polynomial_, r, 1);
       if (!solve_length(next, r, square, end) || !find_slope(next, r, square)) break;
-      polynomial_.add(r, own(next), rate(next));
+      polynomial_.add(r, place(next), rate(next));
     }
   }
 
@@ -266,11 +303,23 @@ class RulingInterval {
     return true;
   }
 
-  bool bends(const Ruling& end, const Moving& m) const {
+  /// The derivatives in m are not those of a curve that runs about straight between the two.
+  static bool bends(const Ruling& begin, const Ruling& end, const Moving& m) {
     for (std::size_t i = 0; i < 2; ++i) {
-      const dvec2 straight = parameters(m.at.contact[i]) - parameters(end.contact[i]);
+      const dvec2 straight = parameters(end.contact[i]) - parameters(begin.contact[i]);
       const dvec2 bend = m.dp[i] - straight;
       if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
+    }
+    return false;
+  }
+
+  /// The contacts have moved farther than half the way from the end to where they started.
+  static bool is_far(const CommonSupport& start, const CommonSupport& at, const Ruling& end) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec2 p = parameters(start.contact[i]);
+      const dvec2 change = parameters(at.contact[i]) - p;
+      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
+      if (glm::dot(change, change) > glm::dot(way, way)) return true;
     }
     return false;
   }
@@ -286,15 +335,8 @@ class RulingInterval {
       e.add_point(at, 1, -d);
       return e;
     });
-    if (!solved) return false;
-    for (std::size_t i = 0; i < 2; ++i) {
-      // Not another solution, like the one with the contacts exchanged.
-      const dvec2 p = parameters(start.contact[i]);
-      const dvec2 change = parameters(m.at.contact[i]) - p;
-      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
-      if (glm::dot(change, change) > glm::dot(way, way)) return false;
-    }
-    return true;
+    // Not another solution, like the one with the contacts exchanged.
+    return solved && !is_far(start, m.at, end);
   }
 
   Moving moving(const Ruling& elements, const RulingPolynomial& polynomial, double r,
