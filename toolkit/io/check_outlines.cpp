@@ -1,6 +1,8 @@
 #include "taut/io/check_outlines.h"
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "taut/io/closest_on_curve.h"
@@ -59,7 +61,11 @@ class OutlineCheck {
                   const std::vector<Border>& borders) const;
   double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
   void check_tracks();
+  using SideJet = std::function<SourceJet(double)>;
+  std::optional<SideJet> side_jet(const Face& facet, std::size_t side) const;
   void check_facet(std::size_t face);
+  void check_facet_sides(std::size_t face);
+  bool is_convex(const std::vector<dvec3>& points, const dvec3& normal) const;
   std::vector<dvec3> points_of(const std::vector<int>& curves) const;
   std::vector<dvec3> points_of(const std::vector<DirectedCurve>& curves) const;
 
@@ -156,7 +162,8 @@ void OutlineCheck::check_order(std::size_t f) {
     }
     if (!(std::sqrt(length) > tolerance_ / size)) continue;
     if (any && !(along > 0)) {
-      faults_.add("order", at("faces", f) + "its rulings turn back at " + at("rulings", i));
+      faults_.add("order", at("faces", f) + "its rulings turn back after rulings[" +
+                               std::to_string(i) + "]");
     }
     last = step;
     any = true;
@@ -417,23 +424,81 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<DirectedCurve>& cur
   return line;
 }
 
+/// Points that run about a convex polygon, counter-clockwise seen against the normal.
+bool OutlineCheck::is_convex(const std::vector<dvec3>& points, const dvec3& normal) const {
+  const auto [e, g] = tangent_frame(unit(normal));
+  std::vector<dvec2> flat;
+  flat.reserve(points.size());
+  double girth = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const dvec3 from_first = points[k] - points[0];
+    flat.emplace_back(glm::dot(from_first, e), glm::dot(from_first, g));
+    girth += glm::distance(points[k], points[(k + 1) % points.size()]);
+  }
+  return lack_of_area(flat) <= tolerance_ * girth;
+}
+
+/// The facet's curves run along its sides, and these the same way about.
+void OutlineCheck::check_facet_sides(std::size_t f) {
+  constexpr int parts = 4;
+  const Face& face = hull_.faces[f];
+  const std::size_t count = face.contacts.size();
+  if (count == 0) return faults_.add("outlines", at("faces", f) + "a facet without contacts");
+  std::vector<dvec3> polygon;
+  polygon.reserve(parts * count);
+  const std::vector<dvec3> along = points_of(face.outline);
+  std::vector<double> off(along.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto side = side_jet(face, k);
+    if (!side) return raise(off_, std::numeric_limits<double>::infinity());
+    for (int i = 0; i < parts; ++i) {
+      polygon.push_back((*side)(double(i) / parts).x + geometry_.origin());
+    }
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      if (off[i] <= tolerance_) continue;
+      off[i] = std::min(off[i], closest_on_curve(geometry_.local(along[i]), 0, 1, *side).distance);
+    }
+  }
+  for (const double distance : off) raise(off_, distance);
+  if (!is_convex(polygon, face.normal)) {
+    faults_.add("outlines", at("faces", f) + "the facet's sides are not convex");
+  }
+}
+
+/// A side over [0, 1]; none if it is in no one Bezier patch.
+std::optional<OutlineCheck::SideJet> OutlineCheck::side_jet(const Face& facet,
+                                                            std::size_t k) const {
+  if (k >= facet.sides.size() || facet.sides[k].source < 0) {
+    const dvec3 a = geometry_.local(facet.contacts[k].p);
+    const dvec3 d = geometry_.local(facet.contacts[(k + 1) % facet.contacts.size()].p) - a;
+    return [a, d](double s) { return SourceJet{1, a + s * d, {d, dvec3(0.0)}}; };
+  }
+  const HullDocument::Side& side = facet.sides[k];
+  const HullDocument::Contact from = {side.source, side.from, dvec3(0.0)};
+  const HullDocument::Contact to = {side.source, side.to, dvec3(0.0)};
+  for (const SourcePlace& p : geometry_.places(from)) {
+    for (const SourcePlace& q : geometry_.places(to)) {
+      if (p.patch != q.patch) continue;
+      return [this, source = side.source, p, d = q.t - p.t](double s) {
+        SourceJet j = geometry_.jet(source, {p.patch, p.t + s * d});
+        j.dxx = d.x * d.x * j.dxx + 2 * d.x * d.y * j.dxy + d.y * d.y * j.dyy;
+        j.dx[0] = d.x * j.dx[0] + d.y * j.dx[1];
+        return j;
+      };
+    }
+  }
+  return std::nullopt;
+}
+
 void OutlineCheck::check_facet(std::size_t f) {
   const Face& face = hull_.faces[f];
   if (face.boundary.size() < 3) {
     return faults_.add("outlines", at("faces", f) + "a facet without a boundary");
   }
-  const auto [e, g] = tangent_frame(unit(face.normal));
-  std::vector<dvec2> flat;
-  flat.reserve(face.boundary.size());
-  double girth = 0;
-  for (std::size_t k = 0; k < face.boundary.size(); ++k) {
-    const dvec3 from_first = face.boundary[k] - face.boundary[0];
-    flat.emplace_back(glm::dot(from_first, e), glm::dot(from_first, g));
-    girth += glm::distance(face.boundary[k], face.boundary[(k + 1) % face.boundary.size()]);
-  }
-  if (!(lack_of_area(flat) <= tolerance_ * girth)) {
+  if (!is_convex(face.boundary, face.normal)) {
     faults_.add("outlines", at("faces", f) + "the facet's boundary is not convex");
   }
+  check_facet_sides(f);
   const std::vector<dvec3> along = points_of(face.outline);
   if (along.empty()) return faults_.add("outlines", at("faces", f) + "a facet without curves");
   const NearestPoint curves(along);

@@ -11,7 +11,7 @@ namespace taut {
 /// - "order": the rulings of a scroll follow each other without turning back;
 /// - "regions": the tracks of scrolls on a patch bound one of its regions each, on the same side,
 ///   and each loop of a patch has the parameters of its curves;
-/// - "outlines": a facet's outline is convex and what its curves make it.
+/// - "outlines": a facet's outline is convex and what its curves make it, and so are its sides.
 ///
 /// Returns the largest distance by which a curve is off one of its two faces, or a face's own
 /// outline off its curves. `tolerance`: in model units, for what is one point or a straight line.
