@@ -48,9 +48,13 @@ class OutlineCheck {
   };
   void check_kind(std::size_t curve);
   bool is_straight(const Curve& curve) const;
+  bool is_edge(int source) const {
+    return source >= 0 && geometry_.source(source).kind == SourceKind::edge;
+  }
   void check_edge(const Curve& curve);
+  double distance_to_edge(int edge, const dvec3& p) const;
   void check_order(std::size_t face);
-  void check_sides(std::size_t face);
+  void check_sides(std::size_t face, std::size_t contact);
   void check_ruling_ends(const Curve& curve, const Face& scroll);
   void check_patch(std::size_t face);
   void check_free_stretches(std::size_t face);
@@ -85,7 +89,7 @@ double OutlineCheck::run() {
     if (face.kind == FaceKind::facet) check_facet(i);
     if (face.kind != FaceKind::scroll) continue;
     check_order(i);
-    check_sides(i);
+    for (const std::size_t k : {0U, 1U}) check_sides(i, k);
   }
   check_tracks();
   return off_;
@@ -105,13 +109,12 @@ void OutlineCheck::check_kind(std::size_t i) {
   int patches = 0;
   for (const Face* face : faces) patches += face->kind == FaceKind::patch ? 1 : 0;
   const auto wrong = [&](const char* what) { faults_.add("kinds", at("curves", i) + what); };
-  const bool on_edge = curve.source >= 0 && geometry_.source(curve.source).kind == SourceKind::edge;
   switch (curve.kind) {
     case HullCurveKind::edge:
-      if (!on_edge) return wrong("an edge without one of the model's");
+      if (!is_edge(curve.source)) return wrong("an edge without one of the model's");
       return check_edge(curve);
     case HullCurveKind::join:
-      if (faces[0]->source < 0 || faces[1]->source < 0) return wrong("a join not between sources");
+      if (patches != 2) return wrong("a join not between two patches");
       if (faces[0]->source == faces[1]->source) wrong("a join within one source face");
       break;
     case HullCurveKind::bitangent:
@@ -128,16 +131,17 @@ void OutlineCheck::check_kind(std::size_t i) {
 }
 
 void OutlineCheck::check_edge(const Curve& curve) {
-  const int pieces = int(geometry_.source(curve.source).patches.size());
-  for (const dvec3& point : curve.points) {
-    const dvec3 p = geometry_.local(point);
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < pieces && best > 0; ++i) {
-      const auto jet = [&](double t) { return geometry_.jet(curve.source, {i, dvec2(t, 0)}); };
-      best = std::min(best, closest_on_curve(p, 0, 1, jet).distance);
-    }
-    raise(off_, best);
+  for (const dvec3& p : curve.points) raise(off_, distance_to_edge(curve.source, p));
+}
+
+double OutlineCheck::distance_to_edge(int edge, const dvec3& p) const {
+  const int pieces = int(geometry_.source(edge).patches.size());
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < pieces && best > 0; ++i) {
+    const auto jet = [&](double t) { return geometry_.jet(edge, {i, dvec2(t, 0)}); };
+    best = std::min(best, closest_on_curve(geometry_.local(p), 0, 1, jet).distance);
   }
+  return best;
 }
 
 /// From one ruling to the next, n and the contacts go on: each step makes an acute angle with the
@@ -186,28 +190,33 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<int>& curves) const
 /// Where both run along borders, a scroll's contacts and the curve along them need not have the
 /// same points, but either lies on the other's border. An edge has the points of both sides, and
 /// ends where the face on the other side does.
-void OutlineCheck::check_sides(std::size_t f) {
+void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
   const Face& scroll = hull_.faces[f];
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (scroll.curves[k].empty()) continue;
-    std::vector<dvec3> contacts;
-    contacts.reserve(scroll.rulings.size());
-    for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
-    const NearestPoint listed(contacts);
-    const std::vector<Border> own = borders_of(scroll, k);
-    std::vector<Border> others;
-    bool any_edge = false;
-    for (const int c : scroll.curves[k]) {
-      const Curve& curve = hull_.curves[to_size(c)];
-      any_edge = any_edge || curve.kind == HullCurveKind::edge;
-      if (curve.kind == HullCurveKind::edge) continue;
-      for (const dvec3& p : curve.points) raise(off_, distance(p, listed, own));
-      const int other = curve.faces[curve.faces[0] == int(f) ? 1 : 0];
-      if (other >= 0) add_borders_of(other, others);
+  if (scroll.curves[k].empty()) return;
+  std::vector<dvec3> contacts;
+  contacts.reserve(scroll.rulings.size());
+  for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
+  const NearestPoint listed(contacts);
+  const std::vector<Border> own = borders_of(scroll, k);
+  std::vector<Border> others;
+  std::set<int> edges;
+  for (const int c : scroll.curves[k]) {
+    const Curve& curve = hull_.curves[to_size(c)];
+    if (curve.kind == HullCurveKind::edge) {
+      if (is_edge(curve.source)) edges.insert(curve.source);
+      continue;
     }
-    if (any_edge) continue;
-    const NearestPoint curves(points_of(scroll.curves[k]));
-    for (const dvec3& p : contacts) raise(off_, distance(p, curves, others));
+    for (const dvec3& p : curve.points) raise(off_, distance(p, listed, own));
+    const int other = curve.faces[curve.faces[0] == int(f) ? 1 : 0];
+    if (other >= 0) add_borders_of(other, others);
+  }
+  const NearestPoint curves(points_of(scroll.curves[k]));
+  for (const dvec3& p : contacts) {
+    double off = distance(p, curves, others);
+    for (const int edge : edges) {
+      if (off > tolerance_) off = std::min(off, distance_to_edge(edge, p));
+    }
+    raise(off_, off);
   }
 }
 

@@ -6,7 +6,7 @@
 namespace taut {
 
 /// Checks where the curves of a hull document run, and what lies along them:
-/// - "kinds": a join is between faces of two sources, a bitangent along one patch, an edge on an
+/// - "kinds": a join is between patches of two sources, a bitangent along one patch, an edge on an
 ///   edge of the model, a ruling straight and along no patch;
 /// - "order": the rulings of a scroll follow each other without turning back;
 /// - "regions": the tracks of scrolls on a patch bound one of its regions each, on the same side,
