@@ -388,8 +388,8 @@ class BoundaryCheck {
         facts_.overshoot = std::max(facts_.overshoot, glm::dot(x, n) - s.h);
       }
       const Contact c = geometry_.canonical(s.contact);
-      const Contact own = geometry_.first(s.contact);
-      const bool on_face = own.kind == SourceKind::face && may_lie_on_patch(own);
+      const Contact at = geometry_.first(s.contact);
+      const bool on_face = at.kind == SourceKind::face && may_lie_on_patch(at);
       if (on_face || (c.kind != SourceKind::face && may_lie_on_curve(c))) continue;
       ++facts_.misses;
       facts_.missed = n;
@@ -441,7 +441,7 @@ class BoundaryCheck {
     for (int i = 0; i < int(model.instances().size()); ++i) {
       const taut::Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
       for (int p = 0; p < int(part.patches().size()); ++p) {
-        if (geometry_.is_repeated({i, SourceKind::face, p, 0, 0})) continue;
+        if (geometry_.is_repeated({i, SourceKind::face, p, 0, 0})) continue;  // told as the first
         for (int k = 0; k < each; ++k) {
           const double u = uniform(random, 0, 1);
           const double v = uniform(random, 0, 1);

@@ -287,25 +287,35 @@ TEST(ContactGeometry, SidesAndEndsMeetTheirPiecesAndVertices) {
         of_patch(bilinear({dvec3(-1, -1, 1), dvec3(-1, -1, 0), b, a}));
   struct Case {
     Shape shape;
-    std::vector<int> sides, ends;  // numbers of pieces and vertices by numbers of these
+    std::vector<int> sides, ruled, ends;  // numbers of pieces and vertices by numbers of these
   };
   const std::vector<Case> cases = {
-      {box(1, 2, 3), {0, 0, 12}, {0, 0, 0, 8}},
-      {solid_cylinder(1, 2), {0, 0, 8}, {}},
-      {cone(1, 2), {0, 4}, {1}},
-      {fan, {0, 9, 0, 1}, {0, 0, 6, 0, 2}},
-      {{{}, {segment(a, b), twisted_cubic()}, {dvec3(2, 2, 2)}}, {2}, {1, 2, 1}},
+      {box(1, 2, 3), {12}, {0, 0, 12}, {0, 0, 0, 8}},
+      {solid_cylinder(1, 2), {8}, {0, 0, 8}, {}},
+      {cone(1, 2), {4}, {0, 4}, {1}},
+      {spherical_cap(0.6), {0, 4}, {4}, {}},
+      {spherical_cap(0.6) + disc(std::sqrt(1 - 0.4 * 0.4), 0.4), {0, 4}, {0, 4}, {}},
+      {torus(2, 0.5), {0, 0, 8}, {8}, {}},  // the crests
+      {fan, {10}, {0, 9, 0, 1}, {0, 0, 6, 0, 2}},
+      {{{}, {segment(a, b), twisted_cubic()}, {dvec3(2, 2, 2)}}, {2}, {2}, {1, 2, 1}},
   };
   for (const Case& each : cases) {
     const Scene scene = make_scene(each.shape);
     const ContactGeometry geometry(scene);
     const Part& part = scene.model().parts()[0];
     std::vector<int> sides(each.sides.size());
+    std::vector<int> ruled(each.ruled.size());
     std::vector<int> ends(each.ends.size());
     for (int p = 0; p < int(part.pieces().size()); ++p) {
-      const auto& own = geometry.sides({0, SourceKind::edge, p, 0, 0});
-      ++sides.at(own.size());
-      for (const ContactGeometry::PieceSide& s : own) {
+      const Contact piece{0, SourceKind::edge, p, 0, 0};
+      std::vector<ContactGeometry::PieceSide> all = geometry.sides(piece);
+      const auto& of_ruled = geometry.ruled_sides(piece);
+      ++sides.at(all.size());
+      ++ruled.at(of_ruled.size());
+      for (const auto& s : all) EXPECT_FALSE(geometry.is_ruled({0, SourceKind::face, s.patch}));
+      for (const auto& s : of_ruled) EXPECT_TRUE(geometry.is_ruled({0, SourceKind::face, s.patch}));
+      all.insert(all.end(), of_ruled.begin(), of_ruled.end());
+      for (const ContactGeometry::PieceSide& s : all) {
         for (const double t : {0.0, 0.2, 1.0}) {
           const double along = s.reversed ? 1 - t : t;
           Contact c{0, SourceKind::face, s.patch, along, along};
@@ -335,8 +345,135 @@ TEST(ContactGeometry, SidesAndEndsMeetTheirPiecesAndVertices) {
       }
     }
     EXPECT_EQ(sides, each.sides);
+    EXPECT_EQ(ruled, each.ruled);
     EXPECT_EQ(ends, each.ends);
   }
+}
+
+TEST(ContactGeometry, CurvesArePlacedPieces) {
+  const Scene scene = scattered(4, 5);
+  const ContactGeometry geometry(scene);
+  int checked = 0;
+  for (int i = 0; i < int(scene.model().instances().size()); ++i) {
+    const Part& part = geometry.part({i, SourceKind::edge, 0, 0, 0});
+    for (int p = 0; p < int(part.pieces().size()); ++p) {
+      const BezierCurve curve = geometry.curve({i, SourceKind::edge, p, 0, 0});
+      for (const double t : {0.0, 0.3, 1.0}) {
+        EXPECT_LT(glm::distance(point(curve, t), geometry.point({i, SourceKind::edge, p, t, 0})),
+                  2e-15);
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(ContactGeometry, StraightPiecesAndRuledPatches) {
+  struct Case {
+    const char* name;
+    Shape shape;
+    int straight, ruled;  // of the pieces and patches
+  };
+  const std::vector<Case> cases = {
+      {"box", box(1, 2, 3), 12, 6},
+      {"cylinder", solid_cylinder(1, 2), 0, 12},
+      {"cap", spherical_cap(0.6), 0, 0},
+      {"paraboloid", paraboloid(), 0, 0},
+      {"saddle of lines", bilinear_saddle(), 4, 1},
+      {"filleted box", filleted_box(1, 2, 3, 0.2), 0, 18},
+      {"a cubic that is a segment",
+       {{},
+        {as_nurbs(BezierCurve{{{0, 0, 0, 1}, {0.1, 0.1, 0, 1}, {0.5, 0.5, 0, 1}, {1, 1, 0, 1}}})},
+        {{0, 1, 2}}},
+       1,
+       0},
+      {"a curve that is bent a little",
+       {{},
+        {as_nurbs(BezierCurve{{{0, 0, 0, 1}, {0.5, 0.5 + 1e-9, 0, 1}, {1, 1, 0, 1}}})},
+        {{0, 1, 2}}},
+       0,
+       0},
+  };
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.name);
+    const Scene scene = make_scene(mapped(each.shape, skew_rotation()));
+    const ContactGeometry geometry(scene);
+    const Part& part = scene.model().parts()[0];
+    int straight = 0;
+    int ruled = 0;
+    for (int p = 0; p < int(part.pieces().size()); ++p) {
+      straight += geometry.is_straight({0, SourceKind::edge, p, 0, 0}) ? 1 : 0;
+    }
+    for (int p = 0; p < int(part.patches().size()); ++p) {
+      ruled += geometry.is_ruled({0, SourceKind::face, p, 0, 0}) ? 1 : 0;
+    }
+    EXPECT_EQ(straight, each.straight);
+    EXPECT_EQ(ruled, each.ruled);
+  }
+}
+
+/// The contact near c that supports in a direction, by Newton's method on the slopes' squares.
+Contact moved_to(const ContactGeometry& geometry, Contact c, const dvec3& n) {
+  for (int k = 0; k < 20; ++k) {
+    const ContactJet j = geometry.jet(c);
+    const glm::dmat2 hessian(glm::dot(j.dxx, n), glm::dot(j.dxy, n), glm::dot(j.dxy, n),
+                             j.dimension == 2 ? glm::dot(j.dyy, n) : 1);
+    const dvec2 step = glm::inverse(hessian) * dvec2(glm::dot(j.dx[0], n), glm::dot(j.dx[1], n));
+    c.u -= step.x;
+    c.v -= step.y;
+  }
+  return c;
+}
+
+TEST(ParameterRate, AgreesWithDifferences) {
+  const Scene scene = make_scene(mapped(ellipsoid(3, 2, 1), skew_rotation()) +
+                                 Shape{{}, {circle({1, 2, 3}, {1, 0.2, 0}, {0, 0.5, 0.5})}, {}});
+  const ContactGeometry geometry(scene);
+  Random random(9);
+  for (const SourceKind kind : {SourceKind::face, SourceKind::edge}) {
+    for (int k = 0; k < 50; ++k) {
+      const Contact c{0, kind, pick(random, 0, 3), uniform(random, 0.2, 0.8),
+                      kind == SourceKind::face ? uniform(random, 0.2, 0.8) : 0};
+      const ContactJet j = geometry.jet(c);
+      // A direction that supports there: along the normal, or across the curve and outward.
+      dvec3 n = glm::cross(j.dx[0], j.dx[1]);
+      if (kind == SourceKind::edge) n = -j.dxx + glm::dot(j.dxx, unit(j.dx[0])) * unit(j.dx[0]);
+      n = unit(n);
+      if (glm::dot(j.dxx, n) > 0) n = -n;
+      dvec3 dn = random_direction(random);
+      dn -= glm::dot(dn, n) * n;
+      const std::optional<dvec2> rate = parameter_rate(j, n, dn);
+      ASSERT_TRUE(rate);
+      const double h = 1e-5;
+      const Contact ahead = moved_to(geometry, c, n + h * dn);
+      const Contact behind = moved_to(geometry, c, n - h * dn);
+      EXPECT_NEAR((ahead.u - behind.u) / (2 * h), rate->x, 1e-8);
+      EXPECT_NEAR((ahead.v - behind.v) / (2 * h), rate->y, 1e-8);
+    }
+  }
+}
+
+TEST(ParameterRate, NoneWithoutAStrictMaximum) {
+  const dvec3 n(0, 0, 1);
+  const dvec3 dn(1, 0, 0);
+  ContactJet j;
+  EXPECT_EQ(parameter_rate(j, n, dn), dvec2(0.0));  // a vertex rests
+  j.dimension = 1;
+  j.dx[0] = {1, 0, 0};
+  EXPECT_FALSE(parameter_rate(j, n, dn));  // a straight curve
+  j.dxx = {0, 0, 0.5};
+  EXPECT_FALSE(parameter_rate(j, n, dn));  // a minimum
+  j.dxx = {0, 0, -0.5};
+  EXPECT_EQ(parameter_rate(j, n, dn), dvec2(2, 0));
+  j.dimension = 2;
+  j.dx[1] = {0, 1, 0};
+  EXPECT_FALSE(parameter_rate(j, n, dn));  // a cylinder
+  j.dyy = {0, 0, 1};
+  EXPECT_FALSE(parameter_rate(j, n, dn));  // a saddle
+  j.dyy = {0, 0, -0.5};
+  EXPECT_EQ(parameter_rate(j, n, dn), dvec2(2, 0));
+  j.dxy = {0, 0, 0.5};
+  EXPECT_FALSE(parameter_rate(j, n, dn));  // a saddle's limit
 }
 
 }  // namespace

@@ -511,5 +511,92 @@ TEST(ContactSystem, GivesUpWhereThereIsNoSolution) {
   }
 }
 
+/// Two surfaces or curves that support in directions about n, started a little off.
+std::optional<CommonSupport> crossing_near(const Group& group, const ContactGeometry& geometry,
+                                           const dvec3& n) {
+  CommonSupport s;
+  s.n = unit(n);
+  for (int k = 0; k < 2; ++k) s.add(geometry, group.contact(k, s.n));
+  return ContactSystem(geometry).crossing(s);
+}
+
+/// A torus about the origin and an axis, by a rotation that takes z there.
+Element tube(const dmat3& turn) {
+  return {mapped(torus(1, 0.25), turn), [=](const dvec3& n) {
+            const double z = glm::dot(n, turn[2]);
+            return std::sqrt(std::max(0.0, 1 - z * z)) + 0.25;
+          }};
+}
+
+struct CrossingCase {
+  std::string name;
+  std::vector<Element> elements;
+  dvec3 n, x;  // in the model
+};
+
+std::vector<CrossingCase> crossing_cases() {
+  std::vector<CrossingCase> all;
+  const dmat3 quarter(1, 0, 0, 0, 0, -1, 0, 1, 0);  // takes z to y
+  for (const bool turned : {false, true}) {
+    const dmat3 R = turned ? skew_rotation() : dmat3(1.0);
+    const dvec3 shift = turned ? dvec3(0.4, -0.3, 0.2) : dvec3(0.0);
+    const std::string name = turned ? ", turned" : "";
+    // The circles' starts, where pieces end, lie elsewhere.
+    const auto about = [&](const dvec3& across) {
+      return ring(shift, R * (0.6 * dvec3(1, 0, 0) + 0.8 * across),
+                  R * (-0.8 * dvec3(1, 0, 0) + 0.6 * across));
+    };
+    const dmat3 around(0.6, 0.8, 0, -0.8, 0.6, 0, 0, 0, 1);  // off the seams
+    for (const double side : {1.0, -1.0}) {
+      const dvec3 n = R * dvec3(side, 0, 0);
+      all.push_back({"circles" + name, {about({0, 1, 0}), about({0, 0, 1})}, n, shift + n});
+      all.push_back({"tori" + name, {tube(R * around), tube(R * quarter * around)}, n, 1.25 * n});
+    }
+  }
+  return all;
+}
+
+TEST(Crossing, WhereTwoContactsAreOnePoint) {
+  Random random(21);
+  for (const CrossingCase& each : crossing_cases()) {
+    SCOPED_TRACE(each.name);
+    const Group group(each.elements);
+    const ContactGeometry geometry(group.scene);
+    const dvec3 x = group.scene.frame().to_frame(each.x);
+    for (int k = 0; k < 20; ++k) {
+      const auto s = crossing_near(group, geometry, each.n + 0.2 * random_direction(random));
+      ASSERT_TRUE(s) << k;
+      EXPECT_LT(glm::distance(s->n, each.n), 1e-14);
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LT(glm::distance(s->jet[i].x, x), 1e-14);
+        EXPECT_EQ(s->contact[i].instance, int(i));
+      }
+    }
+  }
+}
+
+TEST(Crossing, NoneWhereTheyDoNotMeet) {
+  struct Case {
+    const char* name;
+    std::vector<Element> elements;
+  };
+  const dvec3 x(0.6, 0.8, 0);
+  const dvec3 y(-0.8, 0.6, 0);
+  const dvec3 u(0.6, 0, 0.8);
+  const dvec3 v(-0.8, 0, 0.6);
+  const std::vector<Case> cases = {
+      {"circles of two sizes", {ring(dvec3(0.0), x, y), ring(dvec3(0.0), 0.9 * u, 0.9 * v)}},
+      {"just not", {ring(dvec3(0.0), x, y), ring({1e-9, 0, 0}, u, v)}},
+      {"circles in parallel planes", {ring(dvec3(0.0), x, y), ring({0, 0, 1}, x, y)}},
+      {"balls", {ball(1, {0, 0, 0}), ball(0.5, {0.2, 0.1, 0})}},
+      {"points", {dot({0, 0, 0}), dot({1, 0, 0})}},
+  };
+  for (const Case& each : cases) {
+    const Group group(each.elements);
+    const ContactGeometry geometry(group.scene);
+    EXPECT_FALSE(crossing_near(group, geometry, dvec3(1, 0.1, 0.05))) << each.name;
+  }
+}
+
 }  // namespace
 }  // namespace taut

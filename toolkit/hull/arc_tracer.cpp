@@ -48,6 +48,8 @@ constexpr double least_cosine = 0.99;
 /// the square root of two, to less (0.6 and more were seen) where third derivatives are not
 /// continuous.
 constexpr double slowest_merging = -0.05;
+/// Share of two contacts' distance by which they may miss a pole into which they run.
+constexpr double pole_share = 0.02;
 /// Steps below this share of the distance between two contacts are stuck.
 constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.
@@ -114,6 +116,7 @@ class Trace {
   void close();
   std::optional<FreeEnd> exact_end(const Ruling& near);
   bool merge();
+  bool merge_at_pole(double linear);
   bool crosses();
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
@@ -565,6 +568,55 @@ std::optional<FreeEnd> Trace::exact_end(const Ruling& near) {
   return query_(end->n, near.contact[0]).h <= height + support_tie ? end : std::nullopt;
 }
 
+/// The contact at the pole that its patch has at x, at the same parameter along the side; none if
+/// it has none there.
+std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact& c,
+                                  const dvec3& x) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const Contact there = at_pole(c, side);
+    if (is_pole(geometry, c, side) && glm::distance(geometry.point(there), x) < join_distance) {
+      return there;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Ends the arc where both contacts run straight into one pole. Curvatures differ along the ways
+/// out of it: its surface, to second order homogeneous about it, may touch a plane twice however
+/// near to it. `linear` is their distance over its rate.
+bool Trace::merge_at_pole(double linear) {
+  Ruling end = at_.ruling();
+  const double reach = pole_share * glm::length(at_.d());
+  for (std::size_t i = 0; i < 2; ++i) {
+    end.point[i] -= linear * tangent_.x[i];
+    end.contact[i].u = std::clamp(end.contact[i].u - linear * tangent_.parameter[i].x, 0.0, 1.0);
+    end.contact[i].v = std::clamp(end.contact[i].v - linear * tangent_.parameter[i].y, 0.0, 1.0);
+  }
+  for (const Side side : all_sides) {
+    if (end.contact[0].kind != SourceKind::face || !is_pole(geometry_, end.contact[0], side)) {
+      continue;
+    }
+    const dvec3 x = geometry_.point(at_pole(end.contact[0], side));
+    const auto c0 = at_pole_of(geometry_, end.contact[0], x);
+    const auto c1 = at_pole_of(geometry_, end.contact[1], x);
+    if (!c0 || !c1 ||
+        std::max(glm::distance(end.point[0], x), glm::distance(end.point[1], x)) > reach) {
+      continue;
+    }
+    dvec3 n = unit_normal(geometry_, *c0);
+    if (glm::dot(n, at_.n) < 0) n = -n;
+    if (glm::distance(n, at_.n - linear * tangent_.n) > reach ||
+        query_(n, *c0).h > glm::dot(x, n) + support_tie) {
+      continue;
+    }
+    end = {n, {*c0, *c1}, {x, x}};
+    arc_.pieces.back().rulings.push_back(end);
+    return true;
+  }
+  return false;
+}
+
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
 /// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
 /// are in one element, the parameters' mean are smooth functions of its square.
@@ -575,9 +627,8 @@ bool Trace::merge() {
   // f(0) = f - rho f' for a function of rho, f - rho f' / 2 for one of its square.
   const double linear = rho / rate;
   const double squared = 0.5 * rho / rate;
+  if (merge_at_pole(linear)) return true;
   const bool smooth = continues(geometry_, last.contact[0], last.contact[1]);
-  // On one surface or curve they run into each other, rather than pass by.
-  if (smooth && rate > slowest_merging) return false;
   Ruling end = last;
   end.n = last.n - (smooth ? squared : linear) * tangent_.n;
   const bool one_element = same_element(last.contact[0], last.contact[1]);
@@ -597,8 +648,14 @@ bool Trace::merge() {
       !same_element(geometry_.canonical(end.contact[0]), geometry_.canonical(end.contact[1]))) {
     return crosses();
   }
-  if (const std::optional<FreeEnd> exact = exact_end(end);
-      exact &&
+  std::optional<FreeEnd> exact = exact_end(end);
+  if (!exact && smooth && !one_element) {
+    // Where a join makes the end, n is no smooth function of the square.
+    Ruling straight = end;
+    straight.n = last.n - linear * tangent_.n;
+    exact = exact_end(straight);
+  }
+  if (exact &&
       glm::distance(geometry_.point(exact->contact), last.point[0]) < 2 * std::abs(linear)) {
     if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
       arc_.pieces.back().rulings.push_back(*ruling);
@@ -607,6 +664,8 @@ bool Trace::merge() {
     // A contact changes its element before.
     if (rho > 2 * least_distance) return false;
   }
+  // On one surface or curve they run into each other, rather than pass by.
+  if (smooth && rate > slowest_merging) return false;
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
