@@ -380,6 +380,254 @@ TEST(VerifyFaults, InCurvedHullsAreFound) {
                  [](auto& h) { patch_of(h).regions.clear(); }}});
 }
 
+using Side = HullDocument::Side;
+
+/// The first curved side of a facet.
+Side& curved_side_of(HullDocument::Face& facet) {
+  for (Side& side : facet.sides) {
+    if (side.source >= 0) return side;
+  }
+  throw std::logic_error("no curved side");
+}
+
+Side& curved_side_of(HullDocument& hull) {
+  for (HullDocument::Face& face : hull.faces) {
+    const bool curved = std::any_of(face.sides.begin(), face.sides.end(),
+                                    [](const Side& side) { return side.source >= 0; });
+    if (curved) return curved_side_of(face);
+  }
+  throw std::logic_error("no facet with a curved side");
+}
+
+/// The facet that the curved side is of.
+HullDocument::Face& round_facet_of(HullDocument& hull) {
+  for (HullDocument::Face& face : hull.faces) {
+    if (!face.sides.empty()) return face;
+  }
+  throw std::logic_error("no facet with a curved side");
+}
+
+HullDocument::Curve& closed_curve_of(HullDocument& hull) {
+  for (HullDocument::Curve& curve : hull.curves) {
+    if (curve.points.size() > 2) return curve;
+  }
+  throw std::logic_error("no curve");
+}
+
+/// What may go wrong with any facet that has a curved side.
+std::vector<Damage> faults_of_curved_sides(double size) {
+  return {{"a side's beginning is moved", "off_source",
+           [](auto& h) { curved_side_of(h).from[0] += 1e-9; }},
+          {"a side's end is moved", "off_source",
+           [](auto& h) {
+             Side& side = curved_side_of(h);
+             for (std::size_t k = 0; k < side.to.size(); ++k) {
+               side.to[k] += 1e-9 * (side.from[k] - side.to[k]);
+             }
+           }},
+          {"a side is called straight", "off_outline", [](auto& h) { curved_side_of(h) = {}; }},
+          {"all sides are called straight", "off_outline",
+           [](auto& h) { round_facet_of(h).sides.clear(); }},
+          {"a side is none", "off_source",
+           [](auto& h) {
+             Side& side = curved_side_of(h);
+             side.to = side.from;
+           }},
+          {"a side runs backwards", "off_source",
+           [](auto& h) {
+             Side& side = curved_side_of(h);
+             std::swap(side.from, side.to);
+           }},
+          {"contacts and sides are in the opposite order", "outlines",
+           [](auto& h) {
+             HullDocument::Face& facet = round_facet_of(h);
+             std::reverse(facet.contacts.begin(), facet.contacts.end());
+             std::reverse(facet.sides.begin(), facet.sides.end());
+             std::rotate(facet.sides.begin(), facet.sides.begin() + 1, facet.sides.end());
+             for (Side& side : facet.sides) std::swap(side.from, side.to);
+           }},
+          {"the boundary runs backwards", "outlines",
+           [](auto& h) {
+             auto& boundary = round_facet_of(h).boundary;
+             std::reverse(boundary.begin(), boundary.end());
+           }},
+          {"a boundary's point is moved", "off_outline",
+           [=](auto& h) {
+             auto& boundary = round_facet_of(h).boundary;
+             const dvec3 along = unit(boundary[2] - boundary[1]);
+             boundary[1] += 1e-9 * size * along;
+           }},
+          {"the rim is passed backwards", "closed",
+           [](auto& h) { round_facet_of(h).outline[0].second *= -1; }},
+          {"a facet is left out", "complete",
+           [](auto& h) { remove_face(h, int(&round_facet_of(h) - h.faces.data())); }},
+          {"a facet's offset is wrong", "flatness",
+           [=](auto& h) { round_facet_of(h).offset += 1e-9 * size; }},
+          {"a facet is shifted", "hull_outside",
+           [=](auto& h) {
+             auto& facet = round_facet_of(h);
+             facet.offset += 1e-9 * size;
+             for (auto& p : facet.boundary) p += 1e-9 * size * facet.normal;
+             for (auto& c : facet.contacts) c.p += 1e-9 * size * facet.normal;
+           }},
+          {"a facet's plane is turned", "flatness",
+           [](auto& h) {
+             dvec3& n = round_facet_of(h).normal;
+             n = unit(n + 1e-9 * tangent_frame(n)[0]);
+           }},
+          {"a curve is lifted", "off_outline",
+           [=](auto& h) {
+             for (dvec3& p : closed_curve_of(h).points) {
+               p += 1e-9 * size * tangent_frame(round_facet_of(h).normal)[0];
+             }
+           }},
+          {"a curve is called a join", "kinds",
+           [](auto& h) {
+             HullDocument::Curve& curve = closed_curve_of(h);
+             curve.kind = HullCurveKind::join;
+             curve.source = -1;
+           }},
+          {"a curve is called a ruling", "kinds",
+           [](auto& h) {
+             HullDocument::Curve& curve = closed_curve_of(h);
+             curve.kind = HullCurveKind::ruling;
+             curve.source = -1;
+           }},
+          {"a facet's label is left out, or another one than none", "labels", [](auto& h) {
+             HullDocument::Face& facet = round_facet_of(h);
+             facet.source = facet.source >= 0 ? -1 : 0;
+           }}};
+}
+
+void exchange_labels(HullDocument& hull, FaceKind kind) {
+  std::vector<HullDocument::Face*> faces;
+  for (HullDocument::Face& face : hull.faces) {
+    if (face.kind == kind && face.source >= 0) faces.push_back(&face);
+  }
+  std::swap(faces.at(0)->source, faces.at(1)->source);
+}
+
+TEST(VerifyFaults, InASolidCylinderAreFound) {
+  const Sound sound = sound_hull(solid_cylinder(1, 2));
+  expect_found(sound, faults_of_curved_sides(sound.hull.diagonal));
+  expect_found(
+      sound,
+      {{"a scroll's source is not told", "labels", [](auto& h) { scroll_of(h).source = -1; }},
+       {"a scroll's source is a facet's", "labels",
+        [](auto& h) { scroll_of(h).source = facet_of(h).source; }},
+       {"a facet's source is the scroll's", "labels",
+        [](auto& h) { facet_of(h).source = scroll_of(h).source; }},
+       {"a scroll's source is an edge", "labels",
+        [](auto& h) { scroll_of(h).source = h.curves[0].source; }},
+       {"facets' sources are exchanged", "labels",
+        [](auto& h) { exchange_labels(h, FaceKind::facet); }},
+       {"two facets are exchanged", "closed", [](auto& h) { std::swap(h.faces[1], h.faces[2]); }},
+       {"a curve's source is missing", "kinds", [](auto& h) { h.curves[0].source = -1; }},
+       {"a curve is another edge", "off_outline",
+        [](auto& h) { h.curves[0].source = h.curves[1].source; }},
+       {"an edge is called a bitangent", "kinds",
+        [](auto& h) { h.curves[0].kind = HullCurveKind::bitangent; }},
+       {"a scroll's curve is missing", "closed", [](auto& h) { scroll_of(h).curves[1].clear(); }},
+       {"a scroll's sides are exchanged", "off_outline",
+        [](auto& h) { std::swap(scroll_of(h).curves[0], scroll_of(h).curves[1]); }}});
+}
+
+TEST(VerifyFaults, InATorusAreFound) {
+  const Sound sound = sound_hull(torus(2, 0.5));
+  expect_found(sound, faults_of_curved_sides(sound.hull.diagonal));
+  const auto inner = [](HullDocument& h) {
+    HullDocument::Face face;
+    face.kind = FaceKind::patch;
+    face.source = 0;
+    const std::set<int> outer = [&] {
+      std::set<int> patches;
+      for (const auto& region : patch_of(h).regions) patches.insert(region.patch);
+      return patches;
+    }();
+    for (int i = 0; i < int(h.sources[0].patches.size()); ++i) {
+      if (outer.contains(i)) continue;
+      const auto& domain = h.sources[0].patches[std::size_t(i)].domain;
+      const Interval& u = domain[0];
+      const Interval& v = domain[1];
+      face.regions.push_back({i, patch_of(h).regions[0].sign, {}});
+      face.regions.back().loops = {
+          {{u.lower, v.lower}, {u.upper, v.lower}, {u.upper, v.upper}, {u.lower, v.upper}}};
+    }
+    return face;
+  };
+  expect_found(
+      sound,
+      {{"the inner side is another patch", "patch_outside",
+        [&](auto& h) { h.faces.push_back(inner(h)); }},
+       {"the inner side is part of the patch", "patch_outside",
+        [&](auto& h) {
+          for (const auto& region : inner(h).regions) patch_of(h).regions.push_back(region);
+        }},
+       {"the inner side stands for the outer one", "covered",
+        [&](auto& h) { patch_of(h).regions = inner(h).regions; }},
+       {"discs are exchanged", "closed", [](auto& h) { std::swap(h.faces[1], h.faces[2]); }},
+       {"a seam is called an edge", "kinds",
+        [](auto& h) { h.curves[0].kind = HullCurveKind::edge; }},
+       {"curves are exchanged", "flatness",
+        [](auto& h) { std::swap(h.curves[0].points, h.curves[1].points); }},
+       {"a disc has the patch's source", "labels", [](auto& h) { facet_of(h).source = 0; }}});
+}
+
+TEST(VerifyFaults, InACapAreFound) {
+  const Sound sound = sound_hull(spherical_cap(0.6));
+  expect_found(sound, faults_of_curved_sides(sound.hull.diagonal));
+}
+
+TEST(VerifyFaults, InAParaboloidAreFound) {
+  const Sound sound = sound_hull(paraboloid());
+  expect_found(sound, faults_of_curved_sides(sound.hull.diagonal));
+  expect_found(sound, {{"a straight side runs along an edge", "flatness", [](auto& h) {
+                          HullDocument::Face& facet = h.faces.back();
+                          facet.sides.resize(facet.contacts.size());
+                          facet.sides[0] = curved_side_of(h);
+                        }}});
+}
+
+TEST(VerifyFaults, InAFilletedBoxAreFound) {
+  const Sound sound = sound_hull(filleted_box(1, 2, 3, 0.2));
+  const double size = sound.hull.diagonal;
+  expect_found(
+      sound,
+      {{"facets' sources are exchanged", "labels",
+        [](auto& h) { exchange_labels(h, FaceKind::facet); }},
+       {"scrolls' sources are exchanged", "labels",
+        [](auto& h) { exchange_labels(h, FaceKind::scroll); }},
+       {"patches' sources are exchanged", "off_outline",
+        [](auto& h) { exchange_labels(h, FaceKind::patch); }},
+       {"a facet's source is not told", "labels", [](auto& h) { facet_of(h).source = -1; }},
+       {"a scroll's source is not told", "labels", [](auto& h) { scroll_of(h).source = -1; }},
+       {"a scroll is left out", "complete",
+        [](auto& h) { remove_face(h, int(first_of(h, FaceKind::scroll))); }},
+       {"a facet is left out", "complete",
+        [](auto& h) { remove_face(h, int(first_of(h, FaceKind::facet))); }},
+       {"two scrolls are exchanged", "closed",
+        [](auto& h) {
+          const std::size_t first = first_of(h, FaceKind::scroll);
+          std::swap(h.faces[first], h.faces[first + 1]);
+        }},
+       {"a border's point is moved along it", "off_outline",
+        [&](auto& h) {
+          auto& points = closed_curve_of(h).points;
+          points[3] += 1e-5 * size * unit(points[4] - points[3]);
+        }},
+       {"a border's point is moved across", "off_outline",
+        [&](auto& h) {
+          const dvec3& n = scroll_of(h).rulings[3].n;
+          closed_curve_of(h).points[3] += 1e-9 * size * n;
+        }},
+       {"a border is called a join", "kinds",
+        [](auto& h) { closed_curve_of(h).kind = HullCurveKind::ruling; }},
+       {"a ruling is moved along its border", "tangency",
+        [](auto& h) { scroll_of(h).rulings[4].a.uv[0] += 1e-6; }},
+       {"a facet's offset is wrong", "flatness",
+        [&](auto& h) { facet_of(h).offset -= 1e-9 * size; }}});
+}
+
 TEST(VerifyFaults, HullsOfOtherModelsAreFound) {
   const Sound sound = sound_hull(two_spheres(1, 0.5, 3));
   for (const double change : {1e-9, 1e-3}) {
@@ -400,7 +648,7 @@ TEST(VerifyFaults, AreNamed) {
   change_number(sound.hull.report, "unresolved", 1, 2);
   const HullVerification v = verified(sound.hull, sound.scene);
   ASSERT_EQ(v.faults.size(), 2U) << text_of(v);
-  EXPECT_EQ(v.faults[0].text, "curves[1]: a join not between sources");
+  EXPECT_EQ(v.faults[0].text, "curves[1]: a join not between two patches");
   EXPECT_EQ(v.faults[1].text, "report: unresolved is 2, not 0");
 }
 

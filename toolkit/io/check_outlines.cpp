@@ -1,6 +1,8 @@
 #include "taut/io/check_outlines.h"
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "taut/io/closest_on_curve.h"
@@ -46,9 +48,13 @@ class OutlineCheck {
   };
   void check_kind(std::size_t curve);
   bool is_straight(const Curve& curve) const;
+  bool is_edge(int source) const {
+    return source >= 0 && geometry_.source(source).kind == SourceKind::edge;
+  }
   void check_edge(const Curve& curve);
+  double distance_to_edge(int edge, const dvec3& p) const;
   void check_order(std::size_t face);
-  void check_sides(std::size_t face);
+  void check_sides(std::size_t face, std::size_t contact);
   void check_ruling_ends(const Curve& curve, const Face& scroll);
   void check_patch(std::size_t face);
   void check_free_stretches(std::size_t face);
@@ -59,7 +65,11 @@ class OutlineCheck {
                   const std::vector<Border>& borders) const;
   double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
   void check_tracks();
+  using SideJet = std::function<SourceJet(double)>;
+  std::optional<SideJet> side_jet(const Face& facet, std::size_t side) const;
   void check_facet(std::size_t face);
+  void check_facet_sides(std::size_t face);
+  bool is_convex(const std::vector<dvec3>& points, const dvec3& normal) const;
   std::vector<dvec3> points_of(const std::vector<int>& curves) const;
   std::vector<dvec3> points_of(const std::vector<DirectedCurve>& curves) const;
 
@@ -79,7 +89,7 @@ double OutlineCheck::run() {
     if (face.kind == FaceKind::facet) check_facet(i);
     if (face.kind != FaceKind::scroll) continue;
     check_order(i);
-    check_sides(i);
+    for (const std::size_t k : {0U, 1U}) check_sides(i, k);
   }
   check_tracks();
   return off_;
@@ -99,13 +109,12 @@ void OutlineCheck::check_kind(std::size_t i) {
   int patches = 0;
   for (const Face* face : faces) patches += face->kind == FaceKind::patch ? 1 : 0;
   const auto wrong = [&](const char* what) { faults_.add("kinds", at("curves", i) + what); };
-  const bool on_edge = curve.source >= 0 && geometry_.source(curve.source).kind == SourceKind::edge;
   switch (curve.kind) {
     case HullCurveKind::edge:
-      if (!on_edge) return wrong("an edge without one of the model's");
+      if (!is_edge(curve.source)) return wrong("an edge without one of the model's");
       return check_edge(curve);
     case HullCurveKind::join:
-      if (faces[0]->source < 0 || faces[1]->source < 0) return wrong("a join not between sources");
+      if (patches != 2) return wrong("a join not between two patches");
       if (faces[0]->source == faces[1]->source) wrong("a join within one source face");
       break;
     case HullCurveKind::bitangent:
@@ -122,16 +131,17 @@ void OutlineCheck::check_kind(std::size_t i) {
 }
 
 void OutlineCheck::check_edge(const Curve& curve) {
-  const int pieces = int(geometry_.source(curve.source).patches.size());
-  for (const dvec3& point : curve.points) {
-    const dvec3 p = geometry_.local(point);
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < pieces && best > 0; ++i) {
-      const auto jet = [&](double t) { return geometry_.jet(curve.source, {i, dvec2(t, 0)}); };
-      best = std::min(best, closest_on_curve(p, 0, 1, jet).distance);
-    }
-    raise(off_, best);
+  for (const dvec3& p : curve.points) raise(off_, distance_to_edge(curve.source, p));
+}
+
+double OutlineCheck::distance_to_edge(int edge, const dvec3& p) const {
+  const int pieces = int(geometry_.source(edge).patches.size());
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < pieces && best > 0; ++i) {
+    const auto jet = [&](double t) { return geometry_.jet(edge, {i, dvec2(t, 0)}); };
+    best = std::min(best, closest_on_curve(geometry_.local(p), 0, 1, jet).distance);
   }
+  return best;
 }
 
 /// From one ruling to the next, n and the contacts go on: each step makes an acute angle with the
@@ -156,7 +166,8 @@ void OutlineCheck::check_order(std::size_t f) {
     }
     if (!(std::sqrt(length) > tolerance_ / size)) continue;
     if (any && !(along > 0)) {
-      faults_.add("order", at("faces", f) + "its rulings turn back at " + at("rulings", i));
+      faults_.add("order", at("faces", f) + "its rulings turn back after rulings[" +
+                               std::to_string(i) + "]");
     }
     last = step;
     any = true;
@@ -179,28 +190,33 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<int>& curves) const
 /// Where both run along borders, a scroll's contacts and the curve along them need not have the
 /// same points, but either lies on the other's border. An edge has the points of both sides, and
 /// ends where the face on the other side does.
-void OutlineCheck::check_sides(std::size_t f) {
+void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
   const Face& scroll = hull_.faces[f];
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (scroll.curves[k].empty()) continue;
-    std::vector<dvec3> contacts;
-    contacts.reserve(scroll.rulings.size());
-    for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
-    const NearestPoint listed(contacts);
-    const std::vector<Border> own = borders_of(scroll, k);
-    std::vector<Border> others;
-    bool any_edge = false;
-    for (const int c : scroll.curves[k]) {
-      const Curve& curve = hull_.curves[to_size(c)];
-      any_edge = any_edge || curve.kind == HullCurveKind::edge;
-      if (curve.kind == HullCurveKind::edge) continue;
-      for (const dvec3& p : curve.points) raise(off_, distance(p, listed, own));
-      const int other = curve.faces[curve.faces[0] == int(f) ? 1 : 0];
-      if (other >= 0) add_borders_of(other, others);
+  if (scroll.curves[k].empty()) return;
+  std::vector<dvec3> contacts;
+  contacts.reserve(scroll.rulings.size());
+  for (const HullDocument::Ruling& r : scroll.rulings) contacts.push_back(k == 0 ? r.a.p : r.b.p);
+  const NearestPoint listed(contacts);
+  const std::vector<Border> own = borders_of(scroll, k);
+  std::vector<Border> others;
+  std::set<int> edges;
+  for (const int c : scroll.curves[k]) {
+    const Curve& curve = hull_.curves[to_size(c)];
+    if (curve.kind == HullCurveKind::edge) {
+      if (is_edge(curve.source)) edges.insert(curve.source);
+      continue;
     }
-    if (any_edge) continue;
-    const NearestPoint curves(points_of(scroll.curves[k]));
-    for (const dvec3& p : contacts) raise(off_, distance(p, curves, others));
+    for (const dvec3& p : curve.points) raise(off_, distance(p, listed, own));
+    const int other = curve.faces[curve.faces[0] == int(f) ? 1 : 0];
+    if (other >= 0) add_borders_of(other, others);
+  }
+  const NearestPoint curves(points_of(scroll.curves[k]));
+  for (const dvec3& p : contacts) {
+    double off = distance(p, curves, others);
+    for (const int edge : edges) {
+      if (off > tolerance_) off = std::min(off, distance_to_edge(edge, p));
+    }
+    raise(off_, off);
   }
 }
 
@@ -417,23 +433,81 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<DirectedCurve>& cur
   return line;
 }
 
+/// Points that run about a convex polygon, counter-clockwise seen against the normal.
+bool OutlineCheck::is_convex(const std::vector<dvec3>& points, const dvec3& normal) const {
+  const auto [e, g] = tangent_frame(unit(normal));
+  std::vector<dvec2> flat;
+  flat.reserve(points.size());
+  double girth = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const dvec3 from_first = points[k] - points[0];
+    flat.emplace_back(glm::dot(from_first, e), glm::dot(from_first, g));
+    girth += glm::distance(points[k], points[(k + 1) % points.size()]);
+  }
+  return lack_of_area(flat) <= tolerance_ * girth;
+}
+
+/// The facet's curves run along its sides, and these the same way about.
+void OutlineCheck::check_facet_sides(std::size_t f) {
+  constexpr int parts = 4;
+  const Face& face = hull_.faces[f];
+  const std::size_t count = face.contacts.size();
+  if (count == 0) return faults_.add("outlines", at("faces", f) + "a facet without contacts");
+  std::vector<dvec3> polygon;
+  polygon.reserve(parts * count);
+  const std::vector<dvec3> along = points_of(face.outline);
+  std::vector<double> off(along.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto side = side_jet(face, k);
+    if (!side) return raise(off_, std::numeric_limits<double>::infinity());
+    for (int i = 0; i < parts; ++i) {
+      polygon.push_back((*side)(double(i) / parts).x + geometry_.origin());
+    }
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      if (off[i] <= tolerance_) continue;
+      off[i] = std::min(off[i], closest_on_curve(geometry_.local(along[i]), 0, 1, *side).distance);
+    }
+  }
+  for (const double distance : off) raise(off_, distance);
+  if (!is_convex(polygon, face.normal)) {
+    faults_.add("outlines", at("faces", f) + "the facet's sides are not convex");
+  }
+}
+
+/// A side over [0, 1]; none if it is in no one Bezier patch.
+std::optional<OutlineCheck::SideJet> OutlineCheck::side_jet(const Face& facet,
+                                                            std::size_t k) const {
+  if (k >= facet.sides.size() || facet.sides[k].source < 0) {
+    const dvec3 a = geometry_.local(facet.contacts[k].p);
+    const dvec3 d = geometry_.local(facet.contacts[(k + 1) % facet.contacts.size()].p) - a;
+    return [a, d](double s) { return SourceJet{1, a + s * d, {d, dvec3(0.0)}}; };
+  }
+  const HullDocument::Side& side = facet.sides[k];
+  const HullDocument::Contact from = {side.source, side.from, dvec3(0.0)};
+  const HullDocument::Contact to = {side.source, side.to, dvec3(0.0)};
+  for (const SourcePlace& p : geometry_.places(from)) {
+    for (const SourcePlace& q : geometry_.places(to)) {
+      if (p.patch != q.patch) continue;
+      return [this, source = side.source, p, d = q.t - p.t](double s) {
+        SourceJet j = geometry_.jet(source, {p.patch, p.t + s * d});
+        j.dxx = d.x * d.x * j.dxx + 2 * d.x * d.y * j.dxy + d.y * d.y * j.dyy;
+        j.dx[0] = d.x * j.dx[0] + d.y * j.dx[1];
+        return j;
+      };
+    }
+  }
+  return std::nullopt;
+}
+
 void OutlineCheck::check_facet(std::size_t f) {
   const Face& face = hull_.faces[f];
   if (face.boundary.size() < 3) {
     return faults_.add("outlines", at("faces", f) + "a facet without a boundary");
   }
-  const auto [e, g] = tangent_frame(unit(face.normal));
-  std::vector<dvec2> flat;
-  flat.reserve(face.boundary.size());
-  double girth = 0;
-  for (std::size_t k = 0; k < face.boundary.size(); ++k) {
-    const dvec3 from_first = face.boundary[k] - face.boundary[0];
-    flat.emplace_back(glm::dot(from_first, e), glm::dot(from_first, g));
-    girth += glm::distance(face.boundary[k], face.boundary[(k + 1) % face.boundary.size()]);
-  }
-  if (!(lack_of_area(flat) <= tolerance_ * girth)) {
+  if (!is_convex(face.boundary, face.normal)) {
     faults_.add("outlines", at("faces", f) + "the facet's boundary is not convex");
   }
+  check_facet_sides(f);
   const std::vector<dvec3> along = points_of(face.outline);
   if (along.empty()) return faults_.add("outlines", at("faces", f) + "a facet without curves");
   const NearestPoint curves(along);

@@ -1,5 +1,9 @@
 #include "taut/io/check_report.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
+
 #include "taut/io/document_tree.h"
 
 namespace taut {
@@ -40,11 +44,11 @@ class ReportCheck {
   void compare_measures(const DocumentMeasures& measures, double accuracy);
 
  private:
+  /// All digits: what differs may do so in the last ones.
   static std::string text(double value) {
-    std::string text = std::to_string(value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return {digits.data(), end.ptr};
   }
 
   const DocumentValue& report_;

@@ -11,6 +11,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
+#include "taut/io/check_labels.h"
 #include "taut/io/check_outlines.h"
 #include "taut/io/check_patches.h"
 #include "taut/io/check_report.h"
@@ -241,7 +242,8 @@ void HullVerifier::check_geometry() {
       check_contact(c, face.normal);
       raise(result_.flatness, off_plane(c.p));
     }
-    for (std::size_t k = 0; k < face.sides.size(); ++k) check_side(face, k);
+    const std::size_t sides = std::min(face.sides.size(), face.contacts.size());
+    for (std::size_t k = 0; k < sides; ++k) check_side(face, k);
     for (const dvec3& p : face.boundary) raise(result_.flatness, off_plane(p));
     for (const auto& [curve, sense] : face.outline) {
       for (const dvec3& p : hull_.curves[to_size(curve)].points) {
@@ -268,6 +270,7 @@ void HullVerifier::check_faces() {
   if (hull_.dimension >= 2) {
     const double tolerance = (same_point + rounding_) * diagonal_;
     raise(result_.off_outline, relative(check_outlines(geometry_, outlines, tolerance, faults_)));
+    check_labels(geometry_, scene_, faults_);
   }
   if (hull_.dimension == 3) {
     measures = measure(geometry_, outlines);
