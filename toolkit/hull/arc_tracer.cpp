@@ -36,7 +36,7 @@ constexpr double least_curvature = 1e-8;
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
 constexpr double border_slack = 1e-9;
 /// Pieces shorter than this are none.
-constexpr double shortest_piece = 1e-9;
+constexpr double shortest_piece = 1e-7;
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_slack = 1e-9;
 constexpr int step_limit = 4000;
@@ -127,6 +127,7 @@ class Trace {
   Pace advance();
   bool settle();
   void begin_piece();
+  void move_to(Ruling& ruling, const Ruling& place) const;
   void drop_empty_pieces();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
 
@@ -760,6 +761,17 @@ void Trace::begin_piece() {
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
 }
 
+/// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
+/// they reach there.
+void Trace::move_to(Ruling& ruling, const Ruling& place) const {
+  ruling.n = place.n;
+  ruling.point = place.point;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact c = snapped(geometry_, place.contact[i], shortest_piece);
+    if (const auto own = in_element(c, ruling.contact[i])) ruling.contact[i] = *own;
+  }
+}
+
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
 /// or the arc ends in it: their neighbours meet there.
 void Trace::drop_empty_pieces() {
@@ -773,13 +785,9 @@ void Trace::drop_empty_pieces() {
   };
   for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
     if (!is_empty(pieces[k])) continue;
-    // What ends the arc is told by its last ruling.
-    if (k + 1 == pieces.size()) {
-      Ruling& last = pieces[k - 1].rulings.back();
-      const Ruling& end = pieces[k].rulings.back();
-      last.n = end.n;
-      last.point = end.point;
-    }
+    // What begins and ends the arc is told by its first ruling and its last.
+    if (k == 0) move_to(pieces[1].rulings.front(), pieces[0].rulings.front());
+    if (k + 1 == pieces.size()) move_to(pieces[k - 1].rulings.back(), pieces[k].rulings.back());
     pieces.erase(pieces.begin() + std::ptrdiff_t(k));
   }
 }
