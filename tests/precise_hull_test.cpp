@@ -189,6 +189,20 @@ TEST(PreciseHull, StructureIsInvariant) {
   }
 }
 
+/// Of a curve alone few directions are sampled: where these show its ends only, the mesh meets what
+/// lies between them.
+TEST(PreciseHull, TurnedCurvesAreFound) {
+  const Truth truth = truth_named("twisted cubic");
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    const Scene scene = make_scene(mapped(truth.shape, random_rotation(random)));
+    const Hull hull = precise_hull(scene, options());
+    expect_complete(*hull.boundary);
+    EXPECT_EQ(counts(*hull.boundary), (Counts{0, 2, 0, 2}));
+    expect_truth(scene, hull, truth);
+  }
+}
+
 /// Far away the surfaces' pieces no longer meet exactly: the structure stays where it does not
 /// depend on that.
 TEST(PreciseHull, StructureHoldsFarAway) {
