@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "boundaries.h"
+#include "exact_checks.h"
 #include "models.h"
 #include "reference.h"
 #include "taut/bounds/support_query.h"
@@ -824,6 +825,40 @@ TEST(BoundaryMeasures, ParaboloidWithItsWalls) {
   EXPECT_NEAR(m.mean_width / (curvature / (2 * pi)), 1, 1e-9);
   EXPECT_LT(m.accuracy, 1e-12);
 }
+
+/// Without every other ruling inside of pieces.
+HullBoundary thinned(HullBoundary boundary) {
+  for (SeparatingArc& arc : boundary.arcs) {
+    for (ArcPiece& piece : arc.pieces) {
+      std::vector<Ruling> kept;
+      kept.reserve(piece.rulings.size());
+      for (std::size_t k = 0; k < piece.rulings.size(); ++k) {
+        if (k % 2 == 0 || k + 1 == piece.rulings.size()) kept.push_back(piece.rulings[k]);
+      }
+      piece.rulings = std::move(kept);
+    }
+  }
+  return boundary;
+}
+
+class MeasuresOf : public testing::TestWithParam<unsigned> {};
+
+/// Of traced boundaries, teapot and blobs: those are measured as exactly as half the rulings tell.
+TEST_P(MeasuresOf, RulingsDoNotMatter) {
+  const Scene scene = make_scene(GetParam() == 0 ? teapot() : blob(GetParam()));
+  const Hull hull = boundary_of(scene);
+  expect_complete(*hull.boundary);
+  const BoundaryMeasures m = measures_of(scene, hull);
+  const BoundaryMeasures few = measure(scene, ContactGeometry(scene), thinned(*hull.boundary));
+  EXPECT_LT(m.accuracy, 1e-10);
+  EXPECT_NEAR(m.volume / few.volume, 1, 1e-9);
+  EXPECT_NEAR(m.area / few.area, 1, 1e-9);
+  EXPECT_NEAR(m.mean_width / few.mean_width, 1, 1e-9);
+}
+
+/// Half-way between two rulings of blob 37 Newton's method does not converge from the middle of
+/// their chord.
+INSTANTIATE_TEST_SUITE_P(TeapotAndBlobs, MeasuresOf, testing::Values(0, 2, 5, 29, 37));
 
 }  // namespace
 }  // namespace taut

@@ -327,6 +327,24 @@ TEST(BoundaryMesh, FacetsWithCurvedSides) {
   }
 }
 
+/// About as many as chords whose sagitta is nearly half the tolerance, however sharp the rim is.
+TEST(BoundaryMesh, NoMoreCornersOnRimsThanTheyNeed) {
+  for (const double height : {0.6, 0.3, 0.1}) {
+    SCOPED_TRACE(height);
+    const KnownBoundary known = cap_boundary(height);
+    const Hull hull = boundary_mesh(known.scene, ContactGeometry(known.scene),
+                                    std::make_shared<const HullBoundary>(known.boundary),
+                                    {.relative = 1e-4, .threads = 1, .progress = {}});
+    int corners = 0;
+    for (const auto v : hull.mesh.vertices()) {
+      corners += std::abs(hull.mesh.point(v)[2] - (1 - height)) < 1e-12 ? 1 : 0;
+    }
+    const double radius = std::sqrt(height * (2 - height));
+    const double sagitta = 0.45 * 1e-4 * known.scene.diagonal();
+    EXPECT_LT(corners, 1.1 * pi / std::acos(1 - sagitta / radius));
+  }
+}
+
 TEST(BoundaryMesh, WholeEllipsoid) {
   const Scene scene = make_scene(ellipsoid(3, 2, 1));
   const ContactGeometry geometry(scene);

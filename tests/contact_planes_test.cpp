@@ -140,6 +140,7 @@ std::vector<PlanesCase> planes_cases() {
       {"a flat scene", arc(), {{up, o, 1}, {down, o, 1}}},
       {"one arc", with_points(arc(), {{0, 0.3, 1}}), {{down, o, 1}}},
       {"a nearly plane curve", nearly_plane(1e-9), {}},
+      {"one that bends the other way", nearly_plane(-1e-9), {}},
       {"one that is plane to rounding", nearly_plane(1e-14), {{up, o, 1}}},
   };
 }

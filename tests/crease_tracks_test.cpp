@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "models.h"
 
@@ -31,7 +33,7 @@ struct Tracked {
   void expect_names_contacts(const CreaseTracks::Stretch& s) const {
     for (const CreaseTracks::Track& t : {s.low, s.high}) {
       if (t.empty()) continue;
-      EXPECT_NE(t.arc >= 0, t.region >= 0);
+      EXPECT_EQ((t.arc >= 0 ? 1 : 0) + (t.region >= 0 ? 1 : 0) + (t.node >= 0 ? 1 : 0), 1);
       if (t.arc < 0) continue;
       ASSERT_TRUE(t.contact == 0 || t.contact == 1);
       const auto& rulings = graph.arcs[std::size_t(t.arc)].pieces[std::size_t(t.piece)].rulings;
@@ -113,6 +115,71 @@ TEST(CreaseTracks, BordersOfPatches) {
     ASSERT_EQ(all.size(), back.size());
     for (std::size_t k = 0; k < all.size(); ++k) EXPECT_NEAR(all[k], 1 - back[k], 1e-15);
     for (std::size_t k = 0; k + 1 < all.size(); ++k) EXPECT_LT(all[k], all[k + 1]);
+  }
+}
+
+/// What lies beside edges, by its kind.
+enum class Beside { nothing, scroll, patch, facet };
+
+Beside kind_of(const CreaseTracks::Track& t) {
+  if (t.arc >= 0) return Beside::scroll;
+  if (t.region >= 0) return Beside::patch;
+  return t.node >= 0 ? Beside::facet : Beside::nothing;
+}
+
+struct FacetCase {
+  const char* name;
+  Shape shape;
+  Beside other;  ///< what lies on the facets' other side
+  double length;
+};
+
+/// Facets are tracks of the edges that they have for sides, and lie to their left.
+TEST(CreaseTracks, FacetsWithCurvedSides) {
+  constexpr double pi = 3.14159265358979323846;
+  const std::vector<FacetCase> cases = {
+      {"cylinder", cylinder(1, 2), Beside::scroll, 4 * pi},
+      {"solid cone", solid_cone(1, 2), Beside::scroll, 2 * pi},
+      {"cap", spherical_cap(0.6), Beside::patch, 2 * pi * std::sqrt(1 - 0.4 * 0.4)},
+      {"torus", torus(2, 0.5), Beside::patch, 2 * 4 * pi},
+      {"paraboloid", paraboloid(), Beside::patch, 4 * (std::sqrt(5.0) + 0.5 * std::asinh(2.0))},
+      {"a circle and a point beside it",
+       {{}, {circle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})}, {{2, 0, 0}, {0.5, 0, -2}}},
+       Beside::scroll,
+       2 * pi - 2 * pi / 3},
+  };
+  for (const FacetCase& each : cases) {
+    for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+      SCOPED_TRACE(each.name);
+      const Tracked scene(mapped(each.shape, turn));
+      EXPECT_TRUE(scene.unresolved.empty());
+      const CreaseTracks tracks(scene.geometry, scene.graph, scene.regions);
+      double length = 0;
+      for (const CreaseTracks::Stretch& s : tracks.overlay()) {
+        scene.expect_names_contacts(s);
+        if (s.low.node < 0 && s.high.node < 0) continue;
+        const bool low = s.low.node >= 0;
+        EXPECT_EQ(kind_of(low ? s.high : s.low), each.other);
+        // Seen from outside the facet lies to the left of its sides, along the parameter or back.
+        const FacetNode& node = scene.graph.nodes[std::size_t((low ? s.low : s.high).node)];
+        const auto jet_at = [&](double t) {
+          return scene.geometry.jet({s.instance, SourceKind::edge, s.piece, t, 0});
+        };
+        dvec3 middle(0.0);
+        for (const dvec3& x : node.points) middle += x / double(node.points.size());
+        const ContactJet j = jet_at(0.5 * (s.from + s.to));
+        const double left = glm::dot(glm::cross(node.n, j.dx[0]), middle - j.x);
+        EXPECT_EQ(left > 0, low);
+        // Simpson's rule on the speed.
+        constexpr int steps = 64;
+        for (int k = 0; k <= steps; ++k) {
+          const double weight = k == 0 || k == steps ? 1 : k % 2 == 1 ? 4 : 2;
+          const double speed = glm::length(jet_at(s.from + (s.to - s.from) * k / steps).dx[0]);
+          length += weight * speed * (s.to - s.from) / (3 * steps);
+        }
+      }
+      EXPECT_NEAR(length / scene.scene.frame().scale, each.length, 1e-6);
+    }
   }
 }
 

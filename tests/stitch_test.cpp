@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "boundary_checks.h"
 #include "models.h"
@@ -138,6 +141,110 @@ TEST(Stitch, SharpEdges) {
   for (const HullCurve& c : cushion.boundary->curves) {
     EXPECT_EQ(c.source >= 0, c.kind == HullCurveKind::edge);
     EXPECT_TRUE(c.faces[0] >= 0 && c.faces[1] >= 0);
+  }
+}
+
+/// A half sphere about the origin, over z = 0.
+Shape half_sphere() {
+  const BezierCurve arc{{{0, 0, 1, 1}, homogeneous({1, 0, 1}, std::sqrt(0.5)), {1, 0, 0, 1}}};
+  return {{revolved(as_nurbs(arc))}, {}, {}};
+}
+
+Shape over(const Shape& shape) { return mapped(shape, {1, 0, 0, 0, -1, 0, 0, 0, -1}); }
+
+/// What lies to the left and to the right of curves, as kinds in ascending order.
+using Between = std::array<FaceKind, 2>;
+
+struct CurveCase {
+  const char* name;
+  Shape shape;
+  Counts counts;
+  /// Of its curves, that are all alike.
+  HullCurveKind kind;
+  Between between;
+  bool closed;
+};
+
+std::vector<CurveCase> curve_cases() {
+  const Between scroll_facet = {FaceKind::scroll, FaceKind::facet};
+  const Between patch_facet = {FaceKind::patch, FaceKind::facet};
+  const Between patch_scroll = {FaceKind::patch, FaceKind::scroll};
+  const Shape lid = disc(std::sqrt(1 - 0.4 * 0.4), 0.4);
+  return {
+      {"cylinder", cylinder(1, 2), {0, 1, 2, 0, 2, 0, 0}, HullCurveKind::edge, scroll_facet, true},
+      {"solid cylinder",
+       solid_cylinder(1, 2),
+       {0, 1, 2, 0, 2, 0, 0},
+       HullCurveKind::edge,
+       scroll_facet,
+       true},
+      {"cone", solid_cone(1, 2), {0, 1, 1, 0, 1, 0, 0}, HullCurveKind::edge, scroll_facet, true},
+      {"torus", torus(2, 0.5), {1, 0, 2, 2, 0, 0, 0}, HullCurveKind::bitangent, patch_facet, true},
+      {"cap", spherical_cap(0.6), {1, 0, 1, 0, 1, 0, 0}, HullCurveKind::edge, patch_facet, true},
+      {"cap on its lid",
+       spherical_cap(0.6) + lid,
+       {1, 0, 1, 0, 1, 0, 0},
+       HullCurveKind::edge,
+       patch_facet,
+       true},
+      {"capsule",
+       cylinder(1, 2) + shifted(half_sphere(), {0, 0, 2}) + over(half_sphere()),
+       {2, 1, 0, 2, 0, 0, 0},
+       HullCurveKind::bitangent,
+       patch_scroll,
+       true},
+      {"box",
+       box(1, 2, 3),
+       {0, 0, 6, 0, 0, 0, 12},
+       HullCurveKind::ruling,
+       {FaceKind::facet, FaceKind::facet},
+       false},
+      {"tori about one centre",
+       torus(1, 0.25) + mapped(torus(1, 0.25), {1, 0, 0, 0, 0, -1, 0, 1, 0}),
+       {4, 4, 0, 8, 0, 0, 0},
+       HullCurveKind::bitangent,
+       patch_scroll,
+       false},
+      {"perpendicular circles",
+       perpendicular_circles(),
+       {0, 4, 0, 0, 4, 0, 0},
+       HullCurveKind::edge,
+       {FaceKind::scroll, FaceKind::scroll},
+       false},
+  };
+}
+
+/// The kinds of faces about all curves, and whether they close up.
+TEST(Stitch, CurvesBetweenRuledFacesAndFacets) {
+  for (const CurveCase& each : curve_cases()) {
+    for (const bool turned : {false, true}) {
+      SCOPED_TRACE(each.name + std::string(turned ? ", turned" : ""));
+      const Stitched s(turned ? mapped(each.shape, skew_rotation()) : each.shape);
+      s.expect_sound();
+      EXPECT_EQ(s.counts(), each.counts);
+      for (const HullCurve& c : s.boundary->curves) {
+        EXPECT_EQ(c.kind, each.kind);
+        EXPECT_EQ(c.closed, each.closed);
+        EXPECT_EQ(c.source >= 0, c.kind == HullCurveKind::edge);
+        ASSERT_TRUE(c.faces[0] >= 0 && c.faces[1] >= 0);
+        Between kinds = {s.boundary->faces[std::size_t(c.faces[0])].kind,
+                         s.boundary->faces[std::size_t(c.faces[1])].kind};
+        std::sort(kinds.begin(), kinds.end());
+        EXPECT_EQ(kinds, each.between);
+        if (c.closed) {
+          EXPECT_EQ(c.points.front(), c.points.back());
+        }
+      }
+    }
+  }
+}
+
+/// A half sphere on a cylinder that goes on from it smoothly, with a sharp rim below.
+TEST(Stitch, SeamsOfRuledFacesAreBitangents) {
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Stitched dome(mapped(cylinder(1, 2) + shifted(half_sphere(), {0, 0, 2}), turn));
+    dome.expect_sound();
+    EXPECT_EQ(dome.counts(), (Counts{1, 1, 1, 1, 1, 0, 0}));
   }
 }
 

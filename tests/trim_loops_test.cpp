@@ -182,5 +182,103 @@ TEST(HalfArcs, GoRoundTheirRegions) {
   EXPECT_EQ(next_half_arc(graph, {0, 0}).arc, -1);
 }
 
+/// A facet with these sides, across which arcs begin (end 0) or end (end 1).
+FacetNode facet_with(const std::vector<FacetNode::Slot>& slots, const std::vector<bool>& curved) {
+  FacetNode node;
+  node.slots = slots;
+  node.points.resize(slots.size());
+  node.contacts.resize(slots.size());
+  for (std::size_t k = 0; k < curved.size(); ++k) {
+    EdgeStretch side;
+    if (curved[k]) side = {0, int(k), 0, 1};
+    node.sides.push_back(side);
+  }
+  return node;
+}
+
+bool is(const HalfArc& half, int arc, int contact) {
+  return half.arc == arc && half.contact == contact;
+}
+
+TEST(HalfArcs, PassCurvedSides) {
+  // Sides, counter-clockwise: straight, two curved ones, straight, curved.
+  SeparatingGraph graph;
+  graph.arcs.resize(2);
+  graph.nodes = {facet_with({{0, 0}, {}, {}, {1, 1}, {}}, {false, true, true, false, true})};
+  graph.arcs[0].facet = {0, -1};
+  graph.arcs[1].facet = {-1, 0};
+  // Contact 0 of arc 0 is walked against it, to the facet; it goes on with the side before.
+  EXPECT_TRUE(is(next_half_arc(graph, {0, 0}), 1, 0));
+  EXPECT_TRUE(is(next_half_arc(graph, {1, 1}), 0, 1));
+  // Their other ends are free.
+  EXPECT_TRUE(is(next_half_arc(graph, {0, 1}), 0, 0));
+  EXPECT_TRUE(is(next_half_arc(graph, {1, 0}), 1, 1));
+  // One straight side: its arc follows itself around the facet.
+  SeparatingGraph half_disc;
+  half_disc.arcs.resize(1);
+  half_disc.arcs[0].facet = {0, -1};
+  half_disc.nodes = {facet_with({{}, {0, 0}, {}}, {true, false, true})};
+  EXPECT_TRUE(is(next_half_arc(half_disc, {0, 0}), 0, 1));
+}
+
+TEST(HalfArcs, AtCrossings) {
+  // Two contacts that change places: four curves end in one point, in order about it.
+  SeparatingGraph graph;
+  graph.arcs.resize(4);
+  FacetNode node;
+  node.contacts.resize(1);
+  node.points.resize(1);
+  node.slots = {{0, 0}, {1, 1}, {2, 0}, {3, 1}};
+  EXPECT_TRUE(node.is_crossing());
+  graph.nodes = {node};
+  for (const int k : {0, 2}) graph.arcs[std::size_t(k)].facet = {0, -1};
+  for (const int k : {1, 3}) graph.arcs[std::size_t(k)].facet = {-1, 0};
+  EXPECT_TRUE(is(next_half_arc(graph, {0, 0}), 3, 0));
+  EXPECT_TRUE(is(next_half_arc(graph, {3, 1}), 2, 1));
+  EXPECT_TRUE(is(next_half_arc(graph, {2, 0}), 1, 0));
+  EXPECT_TRUE(is(next_half_arc(graph, {1, 1}), 0, 1));
+}
+
+/// In a graph that was traced half-arcs are permuted, in cycles along which the contact at the end
+/// of one is that at the beginning of the next, facets' curved sides apart.
+void expect_cycles(const Shape& shape, int half_arcs, int cycles) {
+  const Trimmed trimmed(shape);
+  EXPECT_TRUE(trimmed.unresolved.empty());
+  const SeparatingGraph& graph = trimmed.graph;
+  std::map<std::pair<int, int>, int> entered;
+  int found = 0;
+  for (int a = 0; a < int(graph.arcs.size()); ++a) {
+    for (const int contact : {0, 1}) {
+      if (entered[{a, contact}] > 0) continue;
+      ++found;
+      HalfArc half{a, contact};
+      for (int k = 0; k < 1000; ++k) {
+        half = next_half_arc(graph, half);
+        ASSERT_GE(half.arc, 0);
+        ++entered[{half.arc, half.contact}];
+        if (is(half, a, contact)) break;
+      }
+      EXPECT_TRUE(is(half, a, contact));
+    }
+  }
+  for (const auto& each : entered) EXPECT_EQ(each.second, 1);
+  EXPECT_EQ(int(entered.size()), half_arcs);
+  EXPECT_EQ(found, cycles);
+}
+
+TEST(HalfArcs, OfTracedGraphs) {
+  const Shape ring{{}, {circle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})}, {}};
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    expect_cycles(mapped(two_spheres(1, 0.5, 3), turn), 2, 2);
+    // Four scrolls that end in two crossings: each circle has two regions.
+    expect_cycles(mapped(perpendicular_circles(), turn), 8, 4);
+    expect_cycles(
+        mapped(torus(1, 0.25) + mapped(torus(1, 0.25), {1, 0, 0, 0, 0, -1, 0, 1, 0}), turn), 8, 4);
+    // A disc, a point in its plane and one below: three regions, that of the disc with two arcs to
+    // the one point and one to the other, and one between the points.
+    expect_cycles(mapped(ring + Shape{{}, {}, {{3, 0, 0}, {0.5, 0, -2}}}, turn), 8, 3);
+  }
+}
+
 }  // namespace
 }  // namespace taut

@@ -41,6 +41,7 @@ struct SceneFrame {
   dvec3 to_frame(const dvec3& x) const { return (x - center) * scale; }
   dvec3 to_model(const dvec3& x) const { return x / scale + center; }
   double length_to_model(double length) const { return length / scale; }
+  double length_to_frame(double length) const { return length * scale; }
 };
 
 /// The frame of a scene whose model has this control box (Model::control_box).

@@ -21,7 +21,7 @@ constexpr double turn_limit = 0.97;
 constexpr double turn_small = 0.995;
 constexpr double growth = 1.6;
 /// A plane may lie behind the last ruling by this much: a third contact that surpasses the two by
-/// less than support_tie went unseen.
+/// less than geometry_.tie() went unseen.
 constexpr double plane_slack = 1e-6;
 /// How far the corrector may move the prediction, as a share of the step.
 constexpr double correction_limit = 0.15;
@@ -48,7 +48,9 @@ constexpr double least_cosine = 0.99;
 /// the square root of two, to less (0.6 and more were seen) where third derivatives are not
 /// continuous.
 constexpr double slowest_merging = -0.05;
-/// Share of two contacts' distance by which they may miss a pole into which they run.
+/// Two contacts that run into a pole are no farther from it, and miss it by no more than the share
+/// of their distance.
+constexpr double pole_reach = 8e-3;
 constexpr double pole_share = 0.02;
 /// Steps below this share of the distance between two contacts are stuck.
 constexpr double stuck_share = 0.01;
@@ -95,7 +97,7 @@ class Trace {
   }
   static double square(const dvec3& x) { return glm::dot(x, x); }
 
-  std::optional<Event> first_event(const CommonSupport& next, double length) const;
+  std::optional<Event> first_event(const CommonSupport& next, double length, bool& known) const;
   std::optional<Event> solved_event(const CommonSupport& next, double share, int contact,
                                     const ContactExit& exit) const;
   double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
@@ -116,7 +118,8 @@ class Trace {
   void close();
   std::optional<FreeEnd> exact_end(const Ruling& near);
   bool merge();
-  bool merge_at_pole(double linear);
+  bool merge_at_pole();
+  bool runs_into(const dvec3& pole);
   bool crosses();
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
@@ -217,8 +220,11 @@ std::optional<Event> Trace::solved_event(const CommonSupport& next, double share
   return event;
 }
 
-/// The first margin on the way to `next` that is crossed there.
-std::optional<Event> Trace::first_event(const CommonSupport& next, double length) const {
+/// The first margin on the way to `next` that is crossed there. Not `known` if it is not found
+/// where.
+std::optional<Event> Trace::first_event(const CommonSupport& next, double length,
+                                        bool& known) const {
+  known = true;
   std::optional<Event> first;
   for (int i = 0; i < 2; ++i) {
     for (const ContactExit& exit : exits_[std::size_t(i)]) {
@@ -227,7 +233,10 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
       const double before = std::max(margin(at_, i, exit), 0.0);
       const double share = before / (before - after);
       const std::optional<Event> event = solved_event(next, share, i, exit);
-      if (!event || event->length > length + margin_slack) continue;
+      if (!event || event->length > length + margin_slack) {
+        known = false;
+        continue;
+      }
       if (!first || event->length < first->length) first = event;
     }
   }
@@ -253,7 +262,7 @@ Contact at_pole(Contact c, Side side) {
   return c;
 }
 
-/// Goes to a pole, where the patch's parameters fail, if the curve does so to within support_tie,
+/// Goes to a pole, where the patch's parameters fail, if the curve does so to within geometry_.tie(),
 /// and on beyond it.
 bool Trace::pass_pole(int contact, Side side, double length) {
   const auto i = std::size_t(contact);
@@ -271,8 +280,8 @@ bool Trace::pass_pole(int contact, Side side, double length) {
   }
   pole.evaluate(geometry_);
   const double ahead = length_to(pole);
-  if (std::abs(glm::dot(pole.d(), pole.n)) > support_tie || ahead < 0 || ahead > 2 * length ||
-      query_(pole.n, pole.contact[i]).h > glm::dot(pole.jet[i].x, pole.n) + support_tie) {
+  if (std::abs(glm::dot(pole.d(), pole.n)) > geometry_.tie() || ahead < 0 || ahead > 2 * length ||
+      query_(pole.n, pole.contact[i]).h > glm::dot(pole.jet[i].x, pole.n) + geometry_.tie()) {
     return false;
   }
   at_ = pole;
@@ -388,7 +397,7 @@ std::optional<CommonSupport> Trace::stepped_aside(double step) {
   }
   next.evaluate(geometry_);
   if ((moved && !corrected()) ||
-      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + support_tie) {
+      query_(next.n, next.contact[0]).h > glm::dot(next.jet[0].x, next.n) + geometry_.tie()) {
     return std::nullopt;
   }
   return next;
@@ -499,7 +508,7 @@ bool Trace::crosses() {
     const Contact& c = end->contact[i];
     if (std::min({c.u, 1 - c.u, c.v, 1 - c.v}) < -parameter_slack) return false;
   }
-  if (query_(end->n, end->contact[0]).h > glm::dot(end->jet[0].x, end->n) + support_tie) {
+  if (query_(end->n, end->contact[0]).h > glm::dot(end->jet[0].x, end->n) + geometry_.tie()) {
     return false;
   }
   push(*end);
@@ -565,7 +574,7 @@ std::optional<FreeEnd> Trace::exact_end(const Ruling& near) {
   const std::optional<FreeEnd> end = kind ? polished(geometry_, *kind) : std::nullopt;
   if (!end) return std::nullopt;
   const double height = glm::dot(geometry_.point(end->contact), end->n);
-  return query_(end->n, near.contact[0]).h <= height + support_tie ? end : std::nullopt;
+  return query_(end->n, near.contact[0]).h <= height + geometry_.tie() ? end : std::nullopt;
 }
 
 /// The contact at the pole that its patch has at x, at the same parameter along the side; none if
@@ -584,37 +593,50 @@ std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact
 
 /// Ends the arc where both contacts run straight into one pole. Curvatures differ along the ways
 /// out of it: its surface, to second order homogeneous about it, may touch a plane twice however
-/// near to it. `linear` is their distance over its rate.
-bool Trace::merge_at_pole(double linear) {
-  Ruling end = at_.ruling();
-  const double reach = pole_share * glm::length(at_.d());
-  for (std::size_t i = 0; i < 2; ++i) {
-    end.point[i] -= linear * tangent_.x[i];
-    end.contact[i].u = std::clamp(end.contact[i].u - linear * tangent_.parameter[i].x, 0.0, 1.0);
-    end.contact[i].v = std::clamp(end.contact[i].v - linear * tangent_.parameter[i].y, 0.0, 1.0);
-  }
+/// near to it.
+bool Trace::merge_at_pole() {
+  if (at_.contact[0].kind != SourceKind::face) return false;
   for (const Side side : all_sides) {
-    if (end.contact[0].kind != SourceKind::face || !is_pole(geometry_, end.contact[0], side)) {
-      continue;
+    if (is_pole(geometry_, at_.contact[0], side) &&
+        runs_into(geometry_.point(at_pole(at_.contact[0], side)))) {
+      return true;
     }
-    const dvec3 x = geometry_.point(at_pole(end.contact[0], side));
-    const auto c0 = at_pole_of(geometry_, end.contact[0], x);
-    const auto c1 = at_pole_of(geometry_, end.contact[1], x);
-    if (!c0 || !c1 ||
-        std::max(glm::distance(end.point[0], x), glm::distance(end.point[1], x)) > reach) {
-      continue;
-    }
-    dvec3 n = unit_normal(geometry_, *c0);
-    if (glm::dot(n, at_.n) < 0) n = -n;
-    if (glm::distance(n, at_.n - linear * tangent_.n) > reach ||
-        query_(n, *c0).h > glm::dot(x, n) + support_tie) {
-      continue;
-    }
-    end = {n, {*c0, *c1}, {x, x}};
-    arc_.pieces.back().rulings.push_back(end);
-    return true;
   }
   return false;
+}
+
+/// Ends the arc in the pole at x, if both contacts run there. On straight ways: their distance need
+/// not be linear, being small where the curvatures hardly differ.
+bool Trace::runs_into(const dvec3& x) {
+  double approach = 0;
+  double speed = 0;
+  double reach = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    approach += glm::dot(x - at_.jet[i].x, tangent_.x[i]);
+    speed += square(tangent_.x[i]);
+    reach = std::max(reach, pole_share * glm::distance(at_.jet[i].x, x));
+  }
+  if (approach <= 0 || reach > pole_share * pole_reach) return false;
+  const double ahead = approach / speed;
+  Ruling end = at_.ruling();
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& c = end.contact[i];
+    c.u = std::clamp(c.u + ahead * tangent_.parameter[i].x, 0.0, 1.0);
+    c.v = std::clamp(c.v + ahead * tangent_.parameter[i].y, 0.0, 1.0);
+    const std::optional<Contact> pole = at_pole_of(geometry_, c, x);
+    if (!pole || glm::distance(at_.jet[i].x + ahead * tangent_.x[i], x) > reach) return false;
+    c = *pole;
+  }
+  if (end.contact[0].instance != end.contact[1].instance) return false;
+  end.n = unit_normal(geometry_, end.contact[0]);
+  if (glm::dot(end.n, at_.n) < 0) end.n = -end.n;
+  if (glm::distance(end.n, at_.n + ahead * tangent_.n) > reach ||
+      query_(end.n, end.contact[0]).h > glm::dot(x, end.n) + geometry_.tie()) {
+    return false;
+  }
+  end.point = {x, x};
+  arc_.pieces.back().rulings.push_back(end);
+  return true;
 }
 
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
@@ -627,7 +649,7 @@ bool Trace::merge() {
   // f(0) = f - rho f' for a function of rho, f - rho f' / 2 for one of its square.
   const double linear = rho / rate;
   const double squared = 0.5 * rho / rate;
-  if (merge_at_pole(linear)) return true;
+  if (merge_at_pole()) return true;
   const bool smooth = continues(geometry_, last.contact[0], last.contact[1]);
   Ruling end = last;
   end.n = last.n - (smooth ? squared : linear) * tangent_.n;
@@ -675,7 +697,7 @@ bool Trace::merge() {
   const Support top = query_(end.n, last.contact[0]);
   // The nearer the contacts, the better the extrapolation; until rounding spoils it. About a free
   // end heights differ by the fourth power of distances, at a border by the third.
-  const double slack = rho > least_distance ? support_tie : rho * rho * rho;
+  const double slack = rho > least_distance ? geometry_.tie() : rho * rho * rho;
   if (top.h - glm::dot(x, end.n) > slack || glm::distance(top.point, x) > 4 * rho) {
     return false;
   }
@@ -833,14 +855,16 @@ Trace::Pace Trace::advance() {
                ? Pace::on
                : shorter("a separating curve cannot be followed past a pole");
   }
-  const std::optional<Event> event = first_event(*next, step_);
+  bool known = true;
+  const std::optional<Event> event = first_event(*next, step_, known);
+  if (!known) return shorter("a separating curve cannot be followed over a border");
   if (event) next = event->support;
   if (is_closing(*next, step_)) {
     close();
     return ended(TracedArc::End::closed);
   }
   const Support top = query_(next->n, next->contact[0]);
-  if (top.h > glm::dot(next->jet[0].x, next->n) + support_tie) {
+  if (top.h > glm::dot(next->jet[0].x, next->n) + geometry_.tie()) {
     return surpassed(*next, top.contact);
   }
   const bool moved = length_to(*next) > margin_slack;

@@ -72,7 +72,8 @@ Sample tolerances(const Sample& magnitude) {
 /// A region with what its integrals need.
 struct Region {
   const PatchRegion* region = nullptr;
-  /// Where inner integrals along u begin.
+  /// The parameter that inner integrals run along, 0: u, 1: v, and where they begin.
+  int inner = 0;
   double base = 0;
   dvec3 origin = dvec3(0.0);
 
@@ -192,39 +193,80 @@ class RulingInterval {
       : system_(system), from_(from), to_(to), square_(chord_square(from, to)) {
     const bool begins = merged(from);
     const bool ends = merged(to);
-    if (begins == ends) return;
-    free_end_ = begins ? 0 : 1;
-    fit_free_end(begins ? from : to, begins ? to : from);
+    if (begins == ends) {
+      fit();
+    } else {
+      free_end_ = begins ? 0 : 1;
+      fit_free_end(begins ? from : to, begins ? to : from);
+    }
   }
 
   bool empty() const { return square_ == 0; }
 
   Moving operator()(double s) const {
     if (free_end_ >= 0) return near_free_end(s);
-    Moving m;
-    m.at = CommonSupport(system_.geometry(), ruling_between(system_, from_, to_, s));
-    // ruling_between() divides the chord in the ratio s, so the chord's share in the tangent tells
-    // the speed.
-    if (const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr)) {
-      const double share = glm::dot(to_.n - from_.n, t->n) +
-                           glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
-                           glm::dot(to_.point[1] - from_.point[1], t->x[1]);
-      const double speed = square_ / share;
-      // An arc ten times its chord is none that was traced.
-      if (std::abs(speed) < 10 * std::sqrt(square_)) {
-        m.move(*t, speed);
-        return m;
-      }
-    }
-    m.dn = to_.n - from_.n;
-    for (std::size_t i = 0; i < 2; ++i) {
-      m.dp[i] = parameters(to_.contact[i]) - parameters(from_.contact[i]);
-    }
-    m.complete();
+    Moving m = moving(from_, polynomial_, s, 1);
+    const Moving start = m;
+    const bool solved = solve_share(m, s);
+    // Otherwise, or if it is another solution, the polynomial is better.
+    if (!solved || chord_square(start.at.ruling(), m.at.ruling()) > square_ / 4) return start;
+    find_speed(m);
     return m;
   }
 
  private:
+  static RulingState place(const Moving& m) {
+    return state(m.at.n, parameters(m.at.contact[0]), parameters(m.at.contact[1]));
+  }
+  static RulingState rate(const Moving& m) { return state(m.dn, m.dp[0], m.dp[1]); }
+
+  /// Between the ends, with their slopes unless these are noise (next to a pole, say): where
+  /// Newton's method begins.
+  void fit() {
+    double s = 0;
+    for (const Ruling* end : {&from_, &to_}) {
+      Moving m;
+      m.at = CommonSupport(system_.geometry(), *end);
+      if (find_speed(m) && !bends(from_, to_, m)) {
+        polynomial_.add(s, place(m), rate(m));
+      } else {
+        polynomial_.add(s, place(m));
+      }
+      s = 1;
+    }
+  }
+
+  /// The ruling in the plane across the chord that divides it in the ratio s, as ruling_between()
+  /// has it, near m.
+  bool solve_share(Moving& m, double s) const {
+    const dvec3 dn = (to_.n - from_.n) / square_;
+    return system_.solve(m.at, [&](const CommonSupport& at) {
+      LinearEquation e;
+      e.n = dn;
+      e.residual = glm::dot(at.n - from_.n, dn) - s;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const dvec3 g = (to_.point[i] - from_.point[i]) / square_;
+        e.residual += glm::dot(at.jet[i].x - from_.point[i], g);
+        e.add_point(at, int(i), g);
+      }
+      return e;
+    });
+  }
+
+  /// Derivatives with respect to the share of the chord, which its share in the tangent tells.
+  bool find_speed(Moving& m) const {
+    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+    if (!t) return false;
+    const double share = glm::dot(to_.n - from_.n, t->n) +
+                         glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
+                         glm::dot(to_.point[1] - from_.point[1], t->x[1]);
+    const double speed = square_ / share;
+    // An arc ten times its chord is none that was traced.
+    if (!(std::abs(speed) < 10 * std::sqrt(square_))) return false;
+    m.move(*t, speed);
+    return true;
+  }
+
   /// Next to a free end the contacts, and n, are smooth functions of r, their distance in units of
   /// the last ruling's length (mathematics: near an A3 end, m +- rho e; a B3 end, linear). They are
   /// interpolated from the end and rulings from r = 1/4 on, with slopes.
@@ -236,24 +278,20 @@ class RulingInterval {
     Moving m;
     m.at = CommonSupport(system_.geometry(), longer);
     const double square = glm::dot(m.at.d(), m.at.d());
-    const auto own = [](const Moving& at) {
-      return state(at.at.n, parameters(at.at.contact[0]), parameters(at.at.contact[1]));
-    };
-    const auto rate = [](const Moving& at) { return state(at.dn, at.dp[0], at.dp[1]); };
     const RulingState begin = state(end.n, parameters(end.contact[0]), parameters(end.contact[1]));
     polynomial_.add(0, begin);
-    if (!find_slope(m, 1, square) || bends(end, m)) {
+    if (!find_slope(m, 1, square) || bends(end, longer, m)) {
       // Too far from the end, or too close to it for the tangent: straight.
-      polynomial_.add(1, own(m));
+      polynomial_.add(1, place(m));
       return;
     }
-    polynomial_.add(1, own(m), rate(m));
+    polynomial_.add(1, place(m), rate(m));
     for (const double r : {0.75, 0.5, 0.25}) {
       const double length = r * std::sqrt(square);
       if (length * length * length < std::sqrt(rounding_unit)) break;
       Moving next = moving(end, polynomial_, r, 1);
       if (!solve_length(next, r, square, end) || !find_slope(next, r, square)) break;
-      polynomial_.add(r, own(next), rate(next));
+      polynomial_.add(r, place(next), rate(next));
     }
   }
 
@@ -265,11 +303,23 @@ class RulingInterval {
     return true;
   }
 
-  bool bends(const Ruling& end, const Moving& m) const {
+  /// The derivatives in m are not those of a curve that runs about straight between the two.
+  static bool bends(const Ruling& begin, const Ruling& end, const Moving& m) {
     for (std::size_t i = 0; i < 2; ++i) {
-      const dvec2 straight = parameters(m.at.contact[i]) - parameters(end.contact[i]);
+      const dvec2 straight = parameters(end.contact[i]) - parameters(begin.contact[i]);
       const dvec2 bend = m.dp[i] - straight;
       if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
+    }
+    return false;
+  }
+
+  /// The contacts have moved farther than half the way from the end to where they started.
+  static bool is_far(const CommonSupport& start, const CommonSupport& at, const Ruling& end) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec2 p = parameters(start.contact[i]);
+      const dvec2 change = parameters(at.contact[i]) - p;
+      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
+      if (glm::dot(change, change) > glm::dot(way, way)) return true;
     }
     return false;
   }
@@ -285,15 +335,8 @@ class RulingInterval {
       e.add_point(at, 1, -d);
       return e;
     });
-    if (!solved) return false;
-    for (std::size_t i = 0; i < 2; ++i) {
-      // Not another solution, like the one with the contacts exchanged.
-      const dvec2 p = parameters(start.contact[i]);
-      const dvec2 change = parameters(m.at.contact[i]) - p;
-      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
-      if (glm::dot(change, change) > glm::dot(way, way)) return false;
-    }
-    return true;
+    // Not another solution, like the one with the contacts exchanged.
+    return solved && !is_far(start, m.at, end);
   }
 
   Moving moving(const Ruling& elements, const RulingPolynomial& polynomial, double r,
@@ -360,7 +403,9 @@ class Summation {
  private:
   dvec3 interior_point() const;
   void find_uses();
-  double base(const PatchRegion& region) const;
+  int inner_parameter(const PatchRegion& region) const;
+  bool is_collapsed(const PatchRegion& region, Side side) const;
+  double base(const PatchRegion& region, int inner) const;
 
   void add_piece(std::size_t arc, std::size_t piece);
   bool bounds_normals(const Region& region, const TrimStretch& stretch) const;
@@ -371,7 +416,8 @@ class Summation {
 
   void add_scroll(const Moving& m, Sample& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
-  void add_line(const Region& region, double u, double v, double rate, double weight, Sample& sum);
+  void add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
+                Sample& sum);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -421,29 +467,48 @@ dvec3 Summation::interior_point() const {
   return count > 0 ? sum / count : sum;
 }
 
+bool Summation::is_collapsed(const PatchRegion& region, Side side) const {
+  const Contact c = {region.instance, SourceKind::face, region.patch, 0, 0};
+  return geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
+}
+
+/// The parameter that runs along more collapsed sides. It is ill-defined next to them, and its rate
+/// along traces that end there, but integrals along it vanish with the distance; across it, they
+/// would multiply its noise.
+int Summation::inner_parameter(const PatchRegion& region) const {
+  const auto collapsed = [&](Side side) { return is_collapsed(region, side) ? 1 : 0; };
+  const int along_u = collapsed(Side::v0) + collapsed(Side::v1);
+  const int along_v = collapsed(Side::u0) + collapsed(Side::u1);
+  return along_v > along_u ? 1 : 0;
+}
+
 /// A place for inner integrals to begin that keeps them short along traces, or makes them vanish
-/// along a border. Any is right: what differs depends on v alone, and its integral around a loop is
-/// zero.
-double Summation::base(const PatchRegion& region) const {
-  bool right = false, left = false;
+/// along a border; on a collapsed side, as there the outer parameter is ill-defined. Any is right:
+/// what differs depends on the outer parameter alone, and its integral around a loop is zero.
+double Summation::base(const PatchRegion& region, int inner) const {
+  const Side lower_side = inner == 0 ? Side::u0 : Side::v0;
+  const Side upper_side = inner == 0 ? Side::u1 : Side::v1;
+  if (is_collapsed(region, lower_side)) return 0;
+  if (is_collapsed(region, upper_side)) return 1;
+  bool lower = false, upper = false;
   Interval range{1, 0};
   for (const std::vector<TrimStretch>& loop : region.loops) {
     for (const TrimStretch& stretch : loop) {
       if (stretch.arc < 0) {
-        left |= stretch.side == Side::u0;
-        right |= stretch.side == Side::u1;
+        lower |= stretch.side == lower_side;
+        upper |= stretch.side == upper_side;
         continue;
       }
       const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
       for (const Ruling& ruling : arc.pieces[std::size_t(stretch.piece)].rulings) {
-        const double u = ruling.contact[std::size_t(stretch.contact)].u;
-        range.lower = std::min(range.lower, u);
-        range.upper = std::max(range.upper, u);
+        const double at = parameters(ruling.contact[std::size_t(stretch.contact)])[inner];
+        range.lower = std::min(range.lower, at);
+        range.upper = std::max(range.upper, at);
       }
     }
   }
   if (range.lower <= range.upper) return 0.5 * range.lower + 0.5 * range.upper;
-  return right && !left ? 1 : 0;
+  return upper && !lower ? 1 : 0;
 }
 
 void Summation::find_uses() {
@@ -460,7 +525,8 @@ void Summation::find_uses() {
     }
     for (const PatchRegion& region : face.regions) {
       const int number = int(regions_.size());
-      regions_.push_back({&region, base(region), origin_});
+      const int inner = inner_parameter(region);
+      regions_.push_back({&region, inner, base(region, inner), origin_});
       for (const std::vector<TrimStretch>& loop : region.loops) {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc < 0) continue;
@@ -473,22 +539,26 @@ void Summation::find_uses() {
 }
 
 /// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
-/// of f from the base to u along u; `rate` is dv/ds.
-void Summation::add_line(const Region& region, double u, double v, double rate, double weight,
+/// of f from the base to u along u, or that of -G du, G the same along v.
+void Summation::add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
                          Sample& sum) {
-  if (u == region.base || rate == 0) return;
+  const int inner = region.inner;
+  const double end = p[inner];
+  const double across = inner == 0 ? rate.y : -rate.x;
+  if (end == region.base || across == 0) return;
   Sums line;
   const auto f = [&](double at, double, Sample& sample) {
-    add_patch(geometry_.jet(region.contact(at, v)), region, 1, sample);
+    const Contact c = inner == 0 ? region.contact(at, p.y) : region.contact(p.x, at);
+    add_patch(geometry_.jet(c), region, 1, sample);
   };
-  if (std::abs(u - region.base) < 0.25) {
-    integrate<8>(f, tolerances, region.base, u, line);
+  if (std::abs(end - region.base) < 0.25) {
+    integrate<8>(f, tolerances, region.base, end, line);
   } else {
-    integrate<16>(f, tolerances, region.base, u, line);
+    integrate<16>(f, tolerances, region.base, end, line);
   }
   for (std::size_t k = 0; k < quantities; ++k) {
-    sum[k] += rate * double(line.value[k]);
-    sums_.error[k] += std::abs(weight * rate) * line.error[k];
+    sum[k] += across * double(line.value[k]);
+    sums_.error[k] += std::abs(weight * across) * line.error[k];
   }
 }
 
@@ -560,8 +630,8 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
       for (const Trace& trace : traces) {
         const auto i = std::size_t(trace.contact);
         const Contact& c = m.at.contact[i];
-        add_line(regions_[std::size_t(trace.region)], c.u, c.v, trace.direction * m.dp[i].y, weight,
-                 sample);
+        add_line(regions_[std::size_t(trace.region)], parameters(c), trace.direction * m.dp[i],
+                 weight, sample);
       }
     };
     integrate<6>(f, tolerances, 0, 1, sums_);
@@ -585,11 +655,12 @@ bool Summation::bounds_normals(const Region& region, const TrimStretch& stretch)
 void Summation::add_border(const Region& region, const TrimStretch& stretch) {
   const bool of_v = along_v(stretch.side);
   const bool edge = bounds_normals(region, stretch);
-  if (!of_v && !edge) return;
+  const bool of_line = of_v == (region.inner == 0);
+  if (!of_line && !edge) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
   const auto f = [&](double t, double weight, Sample& sample) {
     const dvec2 p = on_side(stretch.side, t);
-    if (of_v) add_line(region, p.x, p.y, 1, weight, sample);
+    if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample);
     if (!edge) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);

@@ -110,6 +110,11 @@ void visit_evenly(const std::vector<double>& lengths, double space, Visit visit)
 constexpr double sagitta_share = 0.6;
 constexpr double gap_share = 0.8;
 
+/// The same for what a rim's sagitta means for the distance that is certified: next to a sharp
+/// rim, between normals n and m, up to sagitta * (n x m) is gap, which counts by the depth
+/// |n + m| / 2 of their cone (certificate.h). So the sagitta counts |n - m| times.
+constexpr double rim_share = 0.9;
+
 /// Nearer to others than this share of its distance from its curve, a point beside the curve is
 /// not wanted: it might hide a chord (design: mesh).
 constexpr double clear_share = 0.6;
@@ -131,6 +136,7 @@ class BoundarySampler {
         system_(geometry),
         query_(query),
         sagitta_(sagitta_share * spacing.gap * frame_.scale),
+        rim_(rim_share * spacing.gap * frame_.scale),
         side_(std::sqrt(6 * gap_share * spacing.gap * frame_.scale)),
         width_(spacing.width) {}
 
@@ -147,6 +153,7 @@ class BoundarySampler {
   void add_border(const PatchRegion& region, const TrimStretch& stretch);
   std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch) const;
   Ruling border_place(const PatchRegion& region, Side side, double t) const;
+  double border_sagitta(const std::vector<Ruling>& places, const HullCurve& curve) const;
   void add_rows(int arc, int piece);
   void add_border_row(const PatchRegion& region, const TrimStretch& stretch);
   void add_beside(const ContactJet& jet, const dvec3& n, const dvec3& across, const Contact& hint);
@@ -159,6 +166,7 @@ class BoundarySampler {
   ContactSystem system_;
   SupportQuery& query_;
   double sagitta_;  // in the scene's frame
+  double rim_;      // of rims: the sagitta times the difference of normals
   double side_;     // of triangles inside patches: the root of its second fundamental form
   double width_;
   BoundarySamples all_;
@@ -286,13 +294,26 @@ std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
   return places;
 }
 
+/// What it may be where the patch meets facets: without this the rim's chords would be halved.
+double BoundarySampler::border_sagitta(const std::vector<Ruling>& places,
+                                       const HullCurve& curve) const {
+  double turn = 0;
+  for (const int f : curve.faces) {
+    if (f < 0 || boundary_.faces[std::size_t(f)].kind != FaceKind::facet) continue;
+    for (const Ruling& place : places) {
+      turn = std::max(turn, glm::distance(place.n, boundary_.faces[std::size_t(f)].n));
+    }
+  }
+  return turn * sagitta_ > rim_ ? rim_ / turn : sagitta_;
+}
+
 void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& stretch) {
   const std::vector<Ruling> places = border_places(region, stretch);
   EvenDivision division;
   add_intervals(
       places, [&] { return places[0]; }, division);
   const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
-  for (const Place& place : division.places(sagitta_, 1)) {
+  for (const Place& place : division.places(border_sagitta(places, curve), 1)) {
     const double s = (double(place.interval) + place.s) / border_intervals;
     const double at = Interval{stretch.from, stretch.to}.at(s);
     const Ruling r = border_place(region, stretch.side, at);

@@ -481,7 +481,7 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
     low.*t = 0;
     high.*t = 1;
     const double rise = glm::dot(geometry.point(high) - geometry.point(low), n);
-    const bool level = std::abs(rise) <= support_tie;
+    const bool level = std::abs(rise) <= geometry.tie();
     own = geometry.canonical((level ? own.*t >= 0.5 : rise > 0) ? high : low);
   };
   const auto inside = [](double t) { return t > 0 && t < 1; };

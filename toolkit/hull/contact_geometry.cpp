@@ -46,6 +46,11 @@ std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const d
 }
 
 ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
+  const Box box = scene.model().control_box();
+  const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  tie_ =
+      std::max(support_tie,
+               tie_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z));
   const Scene::Content& content = scene.content();
   const std::vector<Part>& parts = scene.model().parts();
   parts_.resize(parts.size());
@@ -120,7 +125,7 @@ void ContactGeometry::find_coincidences() {
     add(SourceKind::edge, part.pieces().size());
     add(SourceKind::vertex, part.vertices().size());
   }
-  coincidences_ = Coincidences(all, support_tie);
+  coincidences_ = Coincidences(all, tie_);
   for (const Contact& c : coincidences_.all()) share(c);
 }
 

@@ -34,6 +34,9 @@ class ContactGeometry {
   explicit ContactGeometry(const Scene& scene);
 
   const Scene& scene() const { return scene_; }
+  /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
+  /// where the model is so far from the origin that its coordinates are rounded to more.
+  double tie() const { return tie_; }
   const Part& part(const Contact& c) const;
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little
@@ -50,7 +53,7 @@ class ContactGeometry {
   Contact canonical(const Contact& c) const;
 
   /// The same point on the first of the elements that coincide with the contact's, within
-  /// support_tie.
+  /// tie().
   Contact first(const Contact& c) const { return coincidences_.first(c); }
   /// The contact's element coincides with an earlier one. Contacts are told as ones of the first.
   bool is_repeated(const Contact& c) const { return coincidences_.repeats(c); }
@@ -106,6 +109,7 @@ class ContactGeometry {
   void share(const Contact& repeated);
 
   const Scene& scene_;
+  double tie_ = 0;
   std::vector<PartElements> parts_;
   Coincidences coincidences_;
   /// Of elements that others repeat: by instance and element.

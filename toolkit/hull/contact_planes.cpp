@@ -23,7 +23,7 @@ std::vector<dvec3> control_points(const BezierCurve& curve) {
 
 /// The normal of the points' plane, by the largest triangle with the longest chord from the first;
 /// zero where they do not lie in one, or lie on a line.
-dvec3 plane_normal(const std::vector<dvec3>& points) {
+dvec3 plane_normal(const std::vector<dvec3>& points, double tie) {
   const dvec3& a = points.front();
   dvec3 chord(0.0);
   for (const dvec3& p : points) {
@@ -37,7 +37,7 @@ dvec3 plane_normal(const std::vector<dvec3>& points) {
   if (glm::length(normal) < least_sine * glm::dot(chord, chord)) return dvec3(0.0);
   normal = glm::normalize(normal);
   const bool plane = std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
-    return std::abs(glm::dot(p - a, normal)) <= support_tie;
+    return std::abs(glm::dot(p - a, normal)) <= tie;
   });
   return plane ? normal : dvec3(0.0);
 }
@@ -53,16 +53,17 @@ std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, Suppor
       const Contact piece{i, SourceKind::edge, k, 0, 0};
       if (geometry.is_repeated(piece)) continue;
       const std::vector<dvec3> points = control_points(geometry.curve(piece));
-      const dvec3 normal = plane_normal(points);
+      const dvec3 normal = plane_normal(points, geometry.tie());
       if (normal == dvec3(0.0)) continue;
       for (const dvec3& n : {normal, -normal}) {
         const double offset = glm::dot(points.front(), n);
         const auto known = std::find_if(planes.begin(), planes.end(), [&](const ContactPlane& p) {
-          return glm::distance(p.n, n) < same_normal && std::abs(p.offset - offset) <= support_tie;
+          return glm::distance(p.n, n) < std::max(same_normal, geometry.tie()) &&
+                 std::abs(p.offset - offset) <= geometry.tie();
         });
         if (known != planes.end()) {
           known->pieces.push_back(piece);
-        } else if (query(n, piece).h <= offset + support_tie) {
+        } else if (query(n, piece).h <= offset + geometry.tie()) {
           planes.push_back({n, offset, {piece}});
         }
       }

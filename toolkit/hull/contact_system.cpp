@@ -7,7 +7,7 @@ namespace taut {
 namespace {
 
 /// Tangents shorter than this, in the scene's frame, are near a pole.
-constexpr double small_tangent = 0.01;
+constexpr double small_tangent = 0.05;
 
 constexpr int max_unknowns = 2 + 2 * CommonSupport::capacity;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_unknowns,

@@ -180,7 +180,7 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
 std::optional<Contact> ContactSet::found(const dvec3& towards) {
   const Support s = query_(glm::normalize(n_ + side_turn * towards), contacts_[0]);
   const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
-  if (!c || glm::dot(geometry_.point(*c), n_) < glm::dot(points_[0], n_) - support_tie) {
+  if (!c || glm::dot(geometry_.point(*c), n_) < glm::dot(points_[0], n_) - geometry_.tie()) {
     return std::nullopt;
   }
   return c;
@@ -232,7 +232,7 @@ std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQu
       continue;
     }
     const Support top = query(plane.n, plane.contact[2]);
-    if (top.h <= glm::dot(plane.jet[0].x, plane.n) + support_tie) return plane;
+    if (top.h <= glm::dot(plane.jet[0].x, plane.n) + geometry.tie()) return plane;
     winner = geometry.canonical(top.contact);
     near = plane.n;
   }

@@ -474,7 +474,7 @@ void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
     return glm::distance(geometry_.point(other.contact), x) <= same_contact &&
            glm::distance(other.n, end->n) <= same_contact;
   });
-  if (known || query_(end->n, end->contact).h > glm::dot(x, end->n) + support_tie) return;
+  if (known || query_(end->n, end->contact).h > glm::dot(x, end->n) + geometry_.tie()) return;
   ends_.push_back(*end);
 }
 

@@ -24,7 +24,8 @@ bool is_in_plane(const ContactGeometry& geometry, Contact c, const HullFace& fac
     for (const double v : {0.0, 0.5, 1.0}) {
       c.u = u;
       c.v = v;
-      if (std::abs(glm::dot(geometry.point(c), facet.n) - facet.offset) > support_tie) return false;
+      if (std::abs(glm::dot(geometry.point(c), facet.n) - facet.offset) > geometry.tie())
+        return false;
     }
   }
   return true;

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numbers>
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/free_ends.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/surface_seeds.h"
 
@@ -27,6 +30,10 @@ constexpr double nearly_opposite = -0.9;
 constexpr double least_part = 0.05;
 /// Weight by which a direction between two keeps clear of a plane's between them.
 constexpr double beside_plane = 1.25;
+/// Turn, in radians, from a free end to where its curve's contacts have parted.
+constexpr double end_step = 1e-3;
+/// Free ends that are nearer are one.
+constexpr double same_end = 1e-4;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too: hundreds of times what generic models
@@ -45,6 +52,10 @@ constexpr double overlap = 0.2;
 constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
+/// The circle about a pole's normal on which curves are sought.
+constexpr double circle_radius = 1e-3;
+constexpr int circle_samples = 64;
+constexpr int circle_halvings = 10;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
 
@@ -88,8 +99,18 @@ class GraphTracer {
   static bool meets_corner(const FacetNode& node, const Ruling& r);
   static int add_corner(FacetNode& node, const Ruling& r, int end);
   void connect_crossing(int arc, int end, int node);
+  struct PieceContact {
+    int arc, piece, contact;
+  };
+  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells) const;
+  bool crosses(const PieceContact& trace, const PatchCell& cell) const;
+  bool is_reached(const FreeEnd& end) const;
+  void part_beside(const FreeEnd& end);
   void find_planes();
   void find_poles();
+  void add_pole(const dvec3& n, const Contact& c);
+  void part_about(const dvec3& n, const Contact& pole);
+  void part_closely(const Sighting& a, const Sighting& b, int depth);
   bool is_in_plane(const dvec3& n) const;
   void fail(const dvec3& n, const char* reason);
 
@@ -101,13 +122,11 @@ class GraphTracer {
   long first_cells_ = 0;
   long cell_limit_ = 0;
   bool stopped_ = false;
-  struct PieceContact {
-    int arc, piece, contact;
-  };
   std::map<std::pair<int, int>, std::vector<PieceContact>> traces_;  // by instance and patch
   std::vector<Box> boxes_;                                           // of the arcs' directions
   std::vector<Landmark> landmarks_;
-  std::vector<int> waiting_;  // nodes whose slots may be open
+  std::vector<std::pair<dvec3, Contact>> poles_;  // that support, with their normals
+  std::vector<int> waiting_;                      // nodes whose slots may be open
 };
 
 /// One spot is told once.
@@ -174,7 +193,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
     const double next = t - value / slope;
     t = next > lower && next < upper ? next : 0.5 * (lower + upper);
     if (upper - lower < parting_tie) {
-      if (std::abs(value) < support_tie) return s;
+      if (std::abs(value) < geometry_.tie()) return s;
       return std::nullopt;
     }
   }
@@ -190,7 +209,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     tie.n = a.n;
     tie.add(geometry_, a.contact);
     tie.add(geometry_, b.contact);
-    if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < support_tie) {
+    if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < geometry_.tie()) {
       if (!is_traced(tie)) trace(tie);
     } else if (!lies_in_facet(tie)) {
       fail(a.n, "two contacts that are not joined are not parted either");
@@ -211,7 +230,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
       seed && glm::distance(seed->n, a.n) > least && glm::distance(seed->n, b.n) > least;
   if (seed && !divides) {
     const Sighting there = seen(seed->n, seed->contact[0]);
-    if (glm::dot(there.x, seed->n) <= glm::dot(seed->jet[0].x, seed->n) + support_tie) {
+    if (glm::dot(there.x, seed->n) <= glm::dot(seed->jet[0].x, seed->n) + geometry_.tie()) {
       trace(*seed);
       return;
     }
@@ -219,7 +238,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   dvec3 n = divides ? seed->n : glm::normalize(a.n + b.n);
   if (is_in_plane(n)) n = glm::normalize(a.n + beside_plane * b.n);
   const Sighting middle = seen(n, a.contact);
-  if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + support_tie) {
+  if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + geometry_.tie()) {
     trace(*seed);
     return;
   }
@@ -316,7 +335,7 @@ bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
 bool GraphTracer::has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const {
   const double offset = glm::dot(node.points.front(), node.n);
   return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
-    return glm::dot(geometry_.point(c), node.n) >= offset - support_tie;
+    return glm::dot(geometry_.point(c), node.n) >= offset - geometry_.tie();
   });
 }
 
@@ -401,7 +420,8 @@ void GraphTracer::find_poles() {
         const dvec3 x = geometry_.point(c);
         if (normal == dvec3(0.0)) continue;
         for (const dvec3& n : {normal, -normal}) {
-          if (query_(n, c).h > glm::dot(x, n) + support_tie) continue;
+          if (query_(n, c).h > glm::dot(x, n) + geometry_.tie()) continue;
+          add_pole(n, c);
           const bool known =
               std::any_of(landmarks_.begin(), landmarks_.end(),
                           [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
@@ -414,6 +434,43 @@ void GraphTracer::find_poles() {
       }
     }
   }
+}
+
+/// Once for all patches that meet in it.
+void GraphTracer::add_pole(const dvec3& n, const Contact& c) {
+  const dvec3 x = geometry_.point(c);
+  const bool known = std::any_of(poles_.begin(), poles_.end(), [&](const auto& pole) {
+    return glm::distance(pole.first, n) < same_plane &&
+           glm::distance(geometry_.point(pole.second), x) < same_branch;
+  });
+  if (!known) poles_.emplace_back(n, c);
+}
+
+/// Finds and traces the curves that begin in a pole: they cross a small circle about its normal.
+void GraphTracer::part_about(const dvec3& n, const Contact& pole) {
+  const std::array<dvec3, 2> frame = tangent_frame(n);
+  std::vector<Sighting> circle;
+  circle.reserve(circle_samples);
+  for (int k = 0; k < circle_samples; ++k) {
+    const double angle = 2 * std::numbers::pi * k / circle_samples;
+    const dvec3 aside = std::cos(angle) * frame[0] + std::sin(angle) * frame[1];
+    circle.push_back(seen(glm::normalize(n + circle_radius * aside), pole));
+  }
+  for (std::size_t k = 0; k < circle.size(); ++k) {
+    part_closely(circle[k], circle[(k + 1) % circle.size()], circle_halvings);
+  }
+}
+
+/// Halfway between two whose contacts are farther apart than to first order, the two branches may
+/// be there only near the curve: a climb from farther off would lead from the one to the other.
+void GraphTracer::part_closely(const Sighting& a, const Sighting& b, int depth) {
+  if (depth == 0 || (is_near(a, b) && is_near(b, a))) {
+    part(a, b, 0);
+    return;
+  }
+  const Sighting middle = seen(glm::normalize(a.n + b.n), a.contact);
+  part_closely(a, middle, depth - 1);
+  part_closely(middle, b, depth - 1);
 }
 
 /// The side of a facet from its contact at the one point to that at the other; -1 if there is none.
@@ -662,6 +719,69 @@ void GraphTracer::trace_waiting() {
   }
 }
 
+/// The mixed cells through which no contact of a curve that was traced runs.
+std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& cells) const {
+  std::vector<CulledCell> result;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(result), [&](const CulledCell& cell) {
+    if (cell.state != CellState::mixed ||
+        geometry_.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0})) {
+      return false;
+    }
+    const auto found = traces_.find({cell.instance, cell.patch});
+    return found == traces_.end() ||
+           std::none_of(found->second.begin(), found->second.end(),
+                        [&](const PieceContact& trace) { return crosses(trace, cell.cell); });
+  });
+  return result;
+}
+
+/// Whether the box of two successive rulings' contacts meets the cell.
+bool GraphTracer::crosses(const PieceContact& trace, const PatchCell& cell) const {
+  const std::vector<Ruling>& rulings =
+      graph_.arcs[std::size_t(trace.arc)].pieces[std::size_t(trace.piece)].rulings;
+  const Interval u = cell.u();
+  const Interval v = cell.v();
+  for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+    const Contact& a = rulings[k].contact[std::size_t(trace.contact)];
+    const Contact& b = rulings[k + 1].contact[std::size_t(trace.contact)];
+    if (std::min(a.u, b.u) <= u.upper && std::max(a.u, b.u) >= u.lower &&
+        std::min(a.v, b.v) <= v.upper && std::max(a.v, b.v) >= v.lower) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether a curve that was traced ends in the free end.
+bool GraphTracer::is_reached(const FreeEnd& end) const {
+  const dvec3 x = geometry_.point(end.contact);
+  for (const SeparatingArc& arc : graph_.arcs) {
+    for (const std::size_t e : {0U, 1U}) {
+      if (arc.closed || arc.facet[e] >= 0) continue;
+      const Ruling& last =
+          e == 0 ? arc.pieces.front().rulings.front() : arc.pieces.back().rulings.back();
+      if (glm::distance(last.n, end.n) < same_end && glm::distance(last.point[0], x) < same_end) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Seeks the curve that ends in the free end between directions to both sides of it, where the
+/// contacts have parted.
+void GraphTracer::part_beside(const FreeEnd& end) {
+  const dvec3 ahead = glm::cross(end.n, end.along);
+  for (const double sense : {1.0, -1.0}) {
+    const auto beside = [&](double side) {
+      return seen(
+          glm::normalize(end.n + sense * end_step * ahead + side * end_step * end_step * end.along),
+          end.contact);
+    };
+    part(beside(1), beside(-1), 0);
+  }
+}
+
 SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
   first_cells_ = query_.cells();
@@ -686,6 +806,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
     const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
     if (seed && !is_traced(*seed)) trace(*seed);
   }
+  for (const auto& [n, pole] : poles_) part_about(n, pole);
   PointHull hull(box);
   hull.add(points);
   for (const PointHull::Facet& f : hull.facets()) {
@@ -696,6 +817,9 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
       const int b = f.vertex[(k + 1) % 3];
       if (a < b) part(sightings[std::size_t(a)], sightings[std::size_t(b)], 0);
     }
+  }
+  for (const FreeEnd& end : free_ends(geometry_, query_, uncrossed(cells))) {
+    if (!given_up() && !is_reached(end)) part_beside(end);
   }
   graph_.newton_iterations = system_.iterations();
   return std::move(graph_);

@@ -27,7 +27,7 @@ Sighting looked(const ContactGeometry& geometry, SupportQuery& query, const Cont
   const dvec3 n = double(sign) * unit_normal(geometry, c);
   if (n == dvec3(0.0)) return {};
   const Support top = query(n, c);
-  if (top.h <= glm::dot(geometry.point(c), n) + support_tie) return {true, n, c};
+  if (top.h <= glm::dot(geometry.point(c), n) + geometry.tie()) return {true, n, c};
   return {false, n, geometry.canonical(top.contact)};
 }
 
@@ -123,7 +123,7 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
     }
     if (seed.contact[0].*free < low || seed.contact[0].*free > high || !in_range(seed.contact[1]) ||
         glm::length(seed.d()) < merge_distance ||
-        query(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + support_tie) {
+        query(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + geometry.tie()) {
       continue;
     }
     return seed;

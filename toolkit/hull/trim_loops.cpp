@@ -383,7 +383,7 @@ void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
     if (geometry_.is_ruled(c) || geometry_.is_repeated(c)) continue;
     const ContactJet j = geometry_.jet(c);
     const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-    if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + support_tie) continue;
+    if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + geometry_.tie()) continue;
     const double uv = glm::dot(j.dxy, n);
     const double det = glm::dot(j.dxx, n) * glm::dot(j.dyy, n) - uv * uv;
     const double size = glm::length(j.dx[0]) * glm::length(j.dx[1]);
