@@ -484,8 +484,13 @@ TEST_F(Cli, VerifyReadsExactHulls) {
   hull["faces"][0]["offset"] = double(hull["faces"][0]["offset"]) + 1e-9;
   plant("off.hull.json", hull.dump());
   EXPECT_EQ(run("verify off.hull.json " + points).exit_code, 1) << "an exact hull is exact";
-  EXPECT_EQ(run("verify h.hull.json " + plant("q.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 2\n")).exit_code,
-            1);
+  const std::string others = plant("q.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 2\n");
+  EXPECT_EQ(run("verify h.hull.json " + others).exit_code, 1);
+  const std::string others_kinds = plant("flat.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Result unlike = run("verify h.hull.json " + others_kinds);
+  EXPECT_EQ(unlike.exit_code, 1);
+  EXPECT_NE(unlike.out.find("width of the model          ?\n"), std::string::npos) << unlike.out;
+  EXPECT_EQ(Json::parse(run("verify h.hull.json --json " + others_kinds).out)["covered"], Json());
   expect_failure("verify " + plant("bad.hull.json", "{}") + " " + points, 3, "bad.hull.json: ");
 }
 

@@ -38,6 +38,11 @@ TEST(VerifySoundHulls, TwoSpheres) { expect_sound_anywhere(two_spheres(1, 0.5, 3
 TEST(VerifySoundHulls, Oloid) { expect_sound_anywhere(oloid(), "oloid"); }
 TEST(VerifySoundHulls, DentedEllipsoid) { expect_sound_anywhere(dented_ellipsoid(), "dented"); }
 TEST(VerifySoundHulls, Teapot) { expect_sound(teapot(), "teapot"); }
+TEST(VerifySoundHulls, SolidCylinder) { expect_sound_anywhere(solid_cylinder(1, 2), "cylinder"); }
+TEST(VerifySoundHulls, Torus) { expect_sound_anywhere(torus(2, 0.5), "torus"); }
+TEST(VerifySoundHulls, Cap) { expect_sound_anywhere(spherical_cap(0.6), "cap"); }
+TEST(VerifySoundHulls, Paraboloid) { expect_sound_anywhere(paraboloid(), "paraboloid"); }
+TEST(VerifySoundHulls, FilletedBox) { expect_sound(filleted_box(1, 2, 3, 0.2), "filleted box"); }
 /// Edges that end where only the face on one side does.
 TEST(VerifySoundHulls, SpheresWithAnOloid) {
   const Shape turned = mapped(oloid(), skew_rotation());

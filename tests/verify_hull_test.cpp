@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "boundaries.h"
 #include "sound_hull.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/io/closest_on_surface.h"
 #include "truths.h"
 
 namespace taut {
@@ -152,6 +155,26 @@ std::string test_name(const testing::TestParamInfo<Truth>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hulls, VerifyTruths, testing::ValuesIn(truths()), test_name);
+
+/// A quarter of a cylinder of radius 1 and height 2.
+TEST(VerifyHull, DistancesFromSurfaces) {
+  const auto jet = [](const dvec2& t) {
+    const double angle = std::numbers::pi / 2 * t.x;
+    const dvec3 x(std::cos(angle), std::sin(angle), 2 * t.y);
+    const dvec3 along = std::numbers::pi / 2 * dvec3(-x.y, x.x, 0);
+    return SourceJet{2, x, {along, dvec3(0, 0, 2)}};
+  };
+  for (const double angle : {0.0, 0.3, 1.2}) {
+    const dvec3 on(std::cos(angle), std::sin(angle), 1.37);
+    EXPECT_LE(distance_to_surface(on, jet), 4e-16);
+    for (const double off : {-1e-3, 1e-9, 0.1}) {
+      const dvec3 p((1 + off) * on.x, (1 + off) * on.y, on.z);
+      EXPECT_NEAR(distance_to_surface(p, jet), std::abs(off), 1e-15) << angle;
+    }
+  }
+  EXPECT_NEAR(distance_to_surface({1, 0, 5}, jet), 3, 1e-15) << "beyond its border";
+  EXPECT_NEAR(distance_to_surface({1, -2, 2}, jet), 2, 1e-15);
+}
 
 TEST(VerifyHull, OfAnotherModelFails) {
   const KnownBoundary known = two_spheres_boundary();

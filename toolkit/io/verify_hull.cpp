@@ -159,7 +159,8 @@ HullVerification HullVerifier::run() {
   const bool same = check_sources(hull_, scene_, faults_, result_.off_model);
   if (finite) check_geometry();
   options_.progress.update("verify", 0.1);
-  if (finite && same) {
+  result_.comparable = finite && same;
+  if (result_.comparable) {
     check_faces();
   } else {
     std::vector<Claim> claims;
@@ -426,8 +427,9 @@ bool HullVerification::has_width(double relative) const {
 }
 
 bool HullVerification::is_hull(double relative) const {
-  return complete && closed && topological_sphere() && uncovered == 0 && faults.empty() &&
-         closes_up(relative) && has_width(relative) && worst_length() <= relative + rounding;
+  return comparable && complete && closed && topological_sphere() && uncovered == 0 &&
+         faults.empty() && closes_up(relative) && has_width(relative) &&
+         worst_length() <= relative + rounding;
 }
 
 HullVerification verify(const HullDocument& hull, const Scene& scene,

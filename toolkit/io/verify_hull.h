@@ -50,6 +50,9 @@ struct HullVerification {
   double interpolation = 0;
   /// How well that many queries tell it.
   double mean_width_accuracy = 0;
+  /// The document's numbers are finite and its sources are the model's, else nothing was looked at
+  /// that needs it: off_outline, patch_outside, uncovered, vector_area and mean_width_error.
+  bool comparable = false;
   /// All else that is wrong, each with its place.
   std::vector<HullFault> faults;
 

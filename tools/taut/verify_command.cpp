@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct Check {
   const char* measure_key = nullptr;
   double measure = 0;
   bool counted = false;  ///< the measure is a number of things
+  bool made = true;      ///< else the check could not be made
+  double accuracy = 0;   ///< how well the measure is known, where that is worse than the tolerance
 };
 
 std::vector<Check> checks(const Verification& found, double relative, double diagonal) {
@@ -101,6 +104,12 @@ std::vector<Check> checks(const HullVerification& found, double relative) {
       {"width", "width of the model", "the width is not the model's", found.has_width(relative),
        "mean_width_error", found.mean_width_error},
       {"sound", "nothing else is wrong", "", found.faults.empty()}};
+  const std::set<std::string> of_model = {"covered", "on_outlines", "patches_support",
+                                          "no_vector_area", "width"};
+  for (Check& check : all) {
+    check.made = found.comparable || !of_model.contains(check.key);
+    if (std::string(check.key) == "width") check.accuracy = found.mean_width_accuracy;
+  }
   return all;
 }
 
@@ -127,18 +136,27 @@ std::string measure_name(const Check& check) {
 std::string text_of(const Verdict& verdict) {
   std::string text;
   for (const Check& check : verdict.checks) {
-    text += padded(check.name, 28) + padded(check.passed ? "yes" : "no", 5);
-    if (check.measure_key != nullptr) {
+    text += padded(check.name, 28) + (check.made ? padded(check.passed ? "yes" : "no", 5) : "?");
+    if (check.made && check.measure_key != nullptr) {
       text += measure_name(check) + number(check.measure, 3);
+      if (check.accuracy > 0) text += ", known to " + number(check.accuracy, 3);
     }
     text.erase(text.find_last_not_of(' ') + 1);
     text += "\n";
   }
   for (const std::string& fault : verdict.faults) text += "  " + fault + "\n";
+  const bool all_made = std::all_of(verdict.checks.begin(), verdict.checks.end(),
+                                    [](const Check& check) { return check.made; });
+  if (!all_made) text += "(?: cannot be told without finite numbers and the model's own sources)\n";
   text += "(lengths are fractions of the diagonal, measured in " +
           counted(verdict.directions, "direction", "directions") + ")\n";
   text += padded("hull within " + number(verdict.relative, 3), 28);
   return text + (verdict.is_hull ? "yes" : "no") + "\n";
+}
+
+Json measure_of(const Check& check) {
+  if (!check.made) return {};
+  return check.counted ? Json(long(check.measure)) : Json(check.measure);
 }
 
 Json json_of(const Verdict& verdict, const std::string& hull) {
@@ -148,9 +166,10 @@ Json json_of(const Verdict& verdict, const std::string& hull) {
   json["is_hull"] = verdict.is_hull;
   json["relative"] = verdict.relative;
   for (const Check& check : verdict.checks) {
-    json[check.key] = check.passed;
+    json[check.key] = check.made ? Json(check.passed) : Json();
     if (check.measure_key == nullptr) continue;
-    json[check.measure_key] = check.counted ? Json(long(check.measure)) : Json(check.measure);
+    if (check.accuracy > 0) json["mean_width_accuracy"] = check.accuracy;
+    json[check.measure_key] = measure_of(check);
   }
   json["faults"] = verdict.faults;
   json["directions"] = verdict.directions;
@@ -160,7 +179,7 @@ Json json_of(const Verdict& verdict, const std::string& hull) {
 std::string faults_of(const Verdict& verdict) {
   std::vector<std::string> faults;
   for (const Check& check : verdict.checks) {
-    if (!check.passed && *check.fault != 0) faults.emplace_back(check.fault);
+    if (check.made && !check.passed && *check.fault != 0) faults.emplace_back(check.fault);
   }
   // One line is no place for all of them.
   if (!verdict.faults.empty()) faults.push_back(verdict.faults.front());
