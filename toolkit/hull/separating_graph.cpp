@@ -49,7 +49,7 @@ constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
 /// The circle about a pole's normal on which curves are sought.
-constexpr double circle_radius = 1e-3;
+constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
 constexpr int circle_halvings = 10;
 /// Directions of consecutive rulings are no farther apart.

@@ -47,10 +47,11 @@ struct SeparatingGraph {
 /// to its ends, and so are all that leave its facets. Every ruling is checked against the support
 /// function, to within support_tie.
 ///
-/// The same where a side of a mixed cell leads from a point that supports to one that does not.
+/// The same where a side of a mixed cell leads from a point that supports to one that does not, and
+/// on small circles about the normals of poles that support.
 ///
 /// Complete as far as samples and cells show: a curve that crosses no side of a cell and no two
-/// samples are parted by, and that no facet is connected with, is not found.
+/// samples are parted by, that begins in no pole and that no facet is connected with, is not found.
 /// @throws Cancelled
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
