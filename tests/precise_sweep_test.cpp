@@ -78,6 +78,13 @@ TEST_P(Blobs, AreExact) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
 
+/// One or two curves end in a pole, about which their contacts are near to each other all along.
+INSTANTIATE_TEST_SUITE_P(EndsInPoles, Blobs, testing::Values(27U, 47U, 115U, 355U, 653U));
+
+/// Contacts approach each other slowly across a join, as two ends on it are near to each other; or
+/// pass by a pole.
+INSTANTIATE_TEST_SUITE_P(SlowEnds, Blobs, testing::Values(394U, 614U));
+
 /// Of so many scenes at least 99% are exact. Those that are not say so: of all of them the
 /// certificate is true.
 class ManyScenes {

@@ -117,6 +117,7 @@ class Trace {
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
   std::optional<FreeEnd> exact_end(const Ruling& near);
+  bool is_ahead(const FreeEnd& end, double length) const;
   bool merge();
   bool merge_at_pole();
   bool runs_into(const dvec3& pole);
@@ -640,6 +641,12 @@ bool Trace::runs_into(const dvec3& x) {
   return true;
 }
 
+/// Whether the contacts run into the free end, within this length.
+bool Trace::is_ahead(const FreeEnd& end, double length) const {
+  const dvec3 x = geometry_.point(end.contact);
+  return length_along(end.n, x, x) > 0 && glm::distance(x, at_.jet[0].x) < length;
+}
+
 /// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
 /// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
 /// are in one element, the parameters' mean are smooth functions of its square.
@@ -678,8 +685,7 @@ bool Trace::merge() {
     straight.n = last.n - linear * tangent_.n;
     exact = exact_end(straight);
   }
-  if (exact &&
-      glm::distance(geometry_.point(exact->contact), last.point[0]) < 2 * std::abs(linear)) {
+  if (exact && is_ahead(*exact, 2 * std::abs(linear))) {
     if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
       arc_.pieces.back().rulings.push_back(*ruling);
       return true;

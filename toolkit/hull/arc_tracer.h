@@ -27,7 +27,8 @@ struct Landmark {
 struct TracedArc {
   enum class End {
     plane,    ///< other contacts support too: see `n` and `contacts`
-    merged,   ///< the two contacts merge in a free end
+    merged,   ///< the two contacts merge in a free end, or in a pole about which the curvatures
+              ///< along the ways out of it are such that planes touch twice
     crossed,  ///< they meet, being of two surfaces or curves that touch: see `n` and `contacts`
     closed,   ///< the curve closes; the pieces are one way round
     lost,     ///< see `reason`

@@ -6,7 +6,8 @@
 namespace taut {
 namespace {
 
-/// Tangents shorter than this, in the scene's frame, are near a pole.
+/// Tangents shorter than this, in the scene's frame, are near a pole or of a thin patch; their
+/// rounding is that of longer ones.
 constexpr double small_tangent = 0.05;
 
 constexpr int max_unknowns = 2 + 2 * CommonSupport::capacity;

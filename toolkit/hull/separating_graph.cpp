@@ -46,6 +46,8 @@ constexpr double parting_tie = 1e-15;
 constexpr int depth_limit = 40;
 /// A seed lies on a curve that was traced if the curve passes it within this distance.
 constexpr double same_curve = 1e-6;
+/// Cosine of the angle at which two curves that run into one free end are one.
+constexpr double same_approach = 0.999;
 /// Chords count as this much longer at both ends, as a share, because the curve turns between them.
 constexpr double overlap = 0.2;
 /// Normals of facets are the same below this difference.
@@ -53,7 +55,7 @@ constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
 /// The circle about a pole's normal on which curves are sought.
-constexpr double circle_radius = 1e-3;
+constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
 constexpr int circle_halvings = 10;
 /// Directions of consecutive rulings are no farther apart.
@@ -88,6 +90,7 @@ class GraphTracer {
   int store(SeparatingArc arc);
   int side_of(int node, const dvec3& first, const dvec3& second) const;
   bool is_taken(int node, const std::vector<ArcPiece>& pieces) const;
+  bool is_end_known(const std::vector<ArcPiece>& pieces) const;
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const;
@@ -485,9 +488,33 @@ int GraphTracer::side_of(int node, const dvec3& first, const dvec3& second) cons
   return -1;
 }
 
+/// Whether an arc is there already that runs into the same free end, from the same side. In a pole
+/// several may end.
+bool GraphTracer::is_end_known(const std::vector<ArcPiece>& pieces) const {
+  const auto approach = [](const Ruling& end, const Ruling& before) {
+    return unit(end.n - before.n);
+  };
+  const std::vector<Ruling>& own = pieces.back().rulings;
+  const Ruling& end = own.back();
+  const dvec3 along = approach(end, own[own.size() - 2]);
+  const auto same = [&](const Ruling& other, const Ruling& before) {
+    return other.point[0] == other.point[1] && glm::distance(other.n, end.n) < same_branch &&
+           glm::distance(other.point[0], end.point[0]) < same_branch &&
+           glm::dot(approach(other, before), along) > same_approach;
+  };
+  return std::any_of(graph_.arcs.begin(), graph_.arcs.end(), [&](const SeparatingArc& arc) {
+    if (arc.closed) return false;
+    const std::vector<Ruling>& first = arc.pieces.front().rulings;
+    const std::vector<Ruling>& last = arc.pieces.back().rulings;
+    return (arc.facet[0] < 0 && same(first.front(), first[1])) ||
+           (arc.facet[1] < 0 && same(last.back(), last[last.size() - 2]));
+  });
+}
+
 /// Whether an arc is there already across the side of the node at which these pieces arrive.
 bool GraphTracer::is_taken(int node, const std::vector<ArcPiece>& pieces) const {
-  if (node == free_end || graph_.nodes[std::size_t(node)].is_crossing()) return false;
+  if (node == free_end) return is_end_known(pieces);
+  if (graph_.nodes[std::size_t(node)].is_crossing()) return false;
   const Ruling& last = pieces.back().rulings.back();
   const int side = side_of(node, last.point[1], last.point[0]);
   return side >= 0 && graph_.nodes[std::size_t(node)].slots[std::size_t(side)].arc >= 0;

@@ -48,11 +48,12 @@ struct SeparatingGraph {
 /// function, to within support_tie.
 ///
 /// The same where a side of a mixed cell leads from a point that supports to one that does not, and
-/// at the free ends of the hull in mixed cells through which no curve runs by then.
+/// on small circles about the normals of poles that support, and at the free ends of the hull in
+/// mixed cells through which no curve runs by then.
 ///
-/// Complete as far as samples, cells and free ends show: a curve that crosses no side of a cell and
-/// no two samples are parted by, that no facet is connected with, and that closes or is too small a
-/// tree within a cell that another curve crosses, is not found.
+/// Complete as far as samples, cells and ends show: a curve that crosses no side of a cell and no
+/// two samples are parted by, that no facet or pole is connected with, and that closes or lies
+/// within cells that other curves cross, is not found.
 /// @throws Cancelled
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
