@@ -171,6 +171,7 @@ class Connector {
   std::vector<SideCurve> sides_;
   std::vector<Join> joins_;
   std::vector<bool> smooth_;  // per join
+  std::vector<dvec3> corner_points_;
   DisjointSets points_;
   std::vector<int> vertex_of_;  // by point set
   int seam_vertex_count_ = 0;
@@ -178,6 +179,7 @@ class Connector {
 };
 
 void Connector::classify_joins() {
+  corner_points_ = corner_points(patches_);
   smooth_.reserve(joins_.size());
   for (const Join& join : joins_) {
     smooth_.push_back(join.size() == 2 && is_smooth(join[0], join[1]));
@@ -193,8 +195,11 @@ bool Connector::is_seam(const Join& join) const {
   if (ruled[0] || ruled[1]) return !straight || ruled[0] != ruled[1];
   return !straight && std::all_of(join.begin(), join.end(), [&](const Use& use) {
     const Side side = all_sides[to_size(use.side % 4)];
-    return is_crest(patch_of(use.side).bezier, along_v(side) ? Direction::u : Direction::v,
-                    at_upper_end(side) ? 1 : 0);
+    const BezierPatch& patch = patch_of(use.side).bezier;
+    const Direction direction = along_v(side) ? Direction::u : Direction::v;
+    const double s = at_upper_end(side) ? 1 : 0;
+    return is_crest(patch, direction, s) &&
+           may_support(patch, direction, s, corner_points_, tolerance_);
   });
 }
 

@@ -119,6 +119,22 @@ bool is_crest(const BezierPatch& patch, Direction direction, double s) {
   return !is_straight(parameter_curve(patch, direction, s));
 }
 
+bool may_support(const BezierPatch& patch, Direction direction, double s,
+                 std::span<const dvec3> points, double tolerance) {
+  const dvec2 middle = Across{patch, direction}.uv(s, 0.5);
+  const dvec3 n = unit_normal(patch, middle.x, middle.y);
+  const dvec3 x = point(patch, middle.x, middle.y);
+  bool above = false;
+  bool below = false;
+  for (const dvec3& p : points) {
+    const double height = glm::dot(n, p - x);
+    above = above || height > tolerance;
+    below = below || height < -tolerance;
+    if (above && below) return false;
+  }
+  return true;
+}
+
 std::vector<double> inner_crests(const BezierPatch& patch, Direction direction) {
   const Across across{patch, direction};
   const int count = 4 * across.degree_across() + 8;

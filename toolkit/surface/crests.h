@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "taut/surface/bezier.h"
@@ -15,6 +16,11 @@ namespace taut {
 /// Whether the curve u = s (direction u) or v = s is one: normals agree within crest_angle, heights
 /// over their plane within crest_height of the patch's size, rounding apart.
 bool is_crest(const BezierPatch& patch, Direction direction, double s);
+
+/// Whether the crest's plane may support a surface with these points: none lies above it, or none
+/// below, up to the tolerance.
+bool may_support(const BezierPatch& patch, Direction direction, double s,
+                 std::span<const dvec3> points, double tolerance);
 
 /// Parameters inside of ]0, 1[, ascending, of the crests across which the slope over their plane
 /// changes its sign; others (the flat circle of z = r^3) carry no support points of a ridge.

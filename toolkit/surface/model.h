@@ -126,7 +126,7 @@ class Part {
   ///
   /// Before that, faces are split into more patches, exactly, along crests inside of patches:
   /// curves u = const or v = const, not straight, on which the surface has one tangent plane (as on
-  /// top of a torus).
+  /// top of a torus), with no surface on one of its sides.
   ///
   /// Two sides meet if their curves agree, parameter by parameter in either direction, within
   /// join_distance of the part's diagonal; the join of exactly two is smooth if the one surface
@@ -142,10 +142,10 @@ class Part {
   ///
   /// Seams are the smooth joins that get pieces too, for supporting planes can leave a surface
   /// there though it has no edge: those of a ruled patch with one that is not, those of ruled
-  /// patches that are not straight, and crests. Their ends are as those of edges, except that edges
-  /// do not see them: an edge goes on where a seam ends beside it, though its pieces end in a
-  /// vertex there. Seams are no edges; vertices that stand at their ends alone, and their pieces,
-  /// come last.
+  /// patches that are not straight, and crests as above. Their ends are as those of edges, except
+  /// that edges do not see them: an edge goes on where a seam ends beside it, though its pieces end
+  /// in a vertex there. Seams are no edges; vertices that stand at their ends alone, and their
+  /// pieces, come last.
   /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]
   void connect(double smooth_angle);
   bool connected() const { return connected_; }

@@ -117,11 +117,13 @@ void CrestSplitter::find_grids() {
 
 std::vector<Cut> CrestSplitter::find_crests() const {
   std::vector<Cut> result;
+  const std::vector<dvec3> points = corner_points(patches_);
   for (int p = 0; p < to_int(patches_.size()); ++p) {
     const Patch& patch = patches_[to_size(p)];
     if (patch.ruled()) continue;
     for (const Direction direction : {Direction::u, Direction::v}) {
       for (const double s : inner_crests(patch.bezier, direction)) {
+        if (!may_support(patch.bezier, direction, s, points, tolerance_)) continue;
         result.push_back({grid_of(p).row_of(p, direction), s});
       }
     }
@@ -240,6 +242,18 @@ void CrestSplitter::split() {
 }
 
 }  // namespace
+
+std::vector<dvec3> corner_points(const std::vector<Patch>& patches) {
+  std::vector<dvec3> points;
+  points.reserve(4 * patches.size());
+  for (const Patch& patch : patches) {
+    const BezierPatch& b = patch.bezier;
+    for (const int i : {0, b.degree_u}) {
+      for (const int j : {0, b.degree_v}) points.push_back(euclidean(b.at(i, j)));
+    }
+  }
+  return points;
+}
 
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
   CrestSplitter(faces, patches, box).run();

@@ -6,7 +6,11 @@
 
 namespace taut {
 
-/// Splits patches along the crests inside of them, exactly, so that crests lie on borders alone.
+/// The patches' corners: points of their surfaces.
+std::vector<dvec3> corner_points(const std::vector<Patch>& patches);
+
+/// Splits patches along the crests inside of them whose planes may support the patches' surfaces,
+/// exactly, so that these crests lie on borders alone.
 ///
 /// A face is split along a whole row of its grid of patches, and so are those of other faces
 /// that a row ends at, as far as the row goes on: every side still meets whole ones. A crest from
