@@ -129,6 +129,7 @@ class Trace {
   bool settle();
   void begin_piece();
   void move_to(Ruling& ruling, const Ruling& place) const;
+  bool is_sound() const;
   void drop_empty_pieces();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
 
@@ -264,8 +265,8 @@ Contact at_pole(Contact c, Side side) {
   return c;
 }
 
-/// Goes to a pole, where the patch's parameters fail, if the curve does so to within geometry_.tie(),
-/// and on beyond it.
+/// Goes to a pole, where the patch's parameters fail, if the curve does so to within
+/// geometry_.tie(), and on beyond it.
 bool Trace::pass_pole(int contact, Side side, double length) {
   const auto i = std::size_t(contact);
   const std::size_t other = 1 - i;
@@ -767,6 +768,15 @@ void Trace::begin_piece() {
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
 }
 
+/// All numbers are finite: Newton's method may end in anything on surfaces without tangent planes.
+bool Trace::is_sound() const {
+  return std::all_of(arc_.pieces.begin(), arc_.pieces.end(), [](const ArcPiece& piece) {
+    return std::all_of(piece.rulings.begin(), piece.rulings.end(), [](const Ruling& r) {
+      return is_finite(r.n) && is_finite(r.point[0]) && is_finite(r.point[1]);
+    });
+  });
+}
+
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
 /// they reach there.
 void Trace::move_to(Ruling& ruling, const Ruling& place) const {
@@ -910,6 +920,7 @@ TracedArc Trace::run(const Progress& progress, bool aside) {
     if (k % 64 == 0) progress.check();
     pace = k < step_limit ? advance() : lost("a separating curve has no end");
   }
+  if (!is_sound()) lost("a separating curve is not finite");
   drop_empty_pieces();
   return std::move(arc_);
 }

@@ -175,6 +175,7 @@ class BoundarySampler {
 
 void BoundarySampler::add(const dvec3& n, const Contact& contact, TouchedFaces touched) {
   const Contact c = geometry_.canonical(contact);
+  if (!is_finite(n) || !is_finite(geometry_.point(c))) return;
   if (c.kind != SourceKind::face) {
     for (const TouchedFace& f : faces_.touched(c)) touch(touched, f);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -18,6 +19,11 @@ struct ContactJet {
   std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
   dvec3 dxx = dvec3(0.0), dxy = dvec3(0.0), dyy = dvec3(0.0);
 };
+
+/// None of the numbers is infinite or no number.
+inline bool is_finite(const dvec3& x) {
+  return glm::length(x) < std::numeric_limits<double>::infinity();
+}
 
 /// Rates of the contact's parameters where the direction n in which it supports turns by dn. None
 /// where x . n has no strict maximum there.

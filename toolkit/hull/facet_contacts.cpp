@@ -188,6 +188,9 @@ std::optional<Contact> ContactSet::found(const dvec3& towards) {
 
 std::optional<FacetContacts> ContactSet::complete() {
   if (contacts_.empty()) add(at_rest(geometry_, query_(n_).contact, n_));
+  const bool finite =
+      std::all_of(points_.begin(), points_.end(), [](const dvec3& x) { return is_finite(x); });
+  if (!finite || !is_finite(n_)) return std::nullopt;
   while (points_.size() <= facet_corner_limit) {
     const std::optional<FacetContacts> f = outline();
     if (!f) return std::nullopt;
