@@ -15,6 +15,9 @@ namespace {
 constexpr double first_step = 0.02;
 constexpr double longest_step = 0.12;
 constexpr double shortest_step = 1e-11;
+/// Steps longer than this are halved where a border is crossed in a place that is not found; what a
+/// shorter one crosses is rounding.
+constexpr double border_step = 1e-7;
 /// A step is halved where the tangent turns by more than the one cosine tells, and the next one
 /// grows where it turns by less than the other.
 constexpr double turn_limit = 0.97;
@@ -163,6 +166,7 @@ class Trace {
   std::array<std::vector<ContactExit>, 2> exits_;
   double step_ = first_step;
   int idle_ = 0;
+  bool lenient_ = false;  ///< borders that this piece crosses in places not found are rounding
   TracedArc arc_;
 };
 
@@ -764,6 +768,7 @@ bool Trace::settle() {
 void Trace::begin_piece() {
   if (!arc_.pieces.empty() && arc_.pieces.back().rulings.size() < 2) arc_.pieces.pop_back();
   arc_.pieces.emplace_back();
+  lenient_ = false;
   push(at_);
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
 }
@@ -881,7 +886,12 @@ Trace::Pace Trace::advance() {
   }
   bool known = true;
   const std::optional<Event> event = first_event(*next, step_, known);
-  if (!known) return shorter("a separating curve cannot be followed over a border");
+  if (!known && !lenient_) {
+    if (step_ > border_step) {
+      return shorter("a separating curve cannot be followed over a border");
+    }
+    lenient_ = true;
+  }
   if (event) next = event->support;
   if (is_closing(*next, step_)) {
     close();

@@ -410,9 +410,11 @@ std::optional<FreeEnd> corner_end(const ContactGeometry& geometry, const Contact
   std::array<CurveBend, 2> bend;
   std::array<dvec3, 2> away;
   for (std::size_t i = 0; i < 2; ++i) {
-    c[i] = {vertex.instance, SourceKind::edge, ends[i].piece, double(ends[i].end), 0};
+    const int instance = ends[i].instance < 0 ? vertex.instance : ends[i].instance;
+    c[i] = {instance, SourceKind::edge, ends[i].piece, double(ends[i].end), 0};
+    const bool seam = geometry.part(c[i]).pieces()[std::size_t(ends[i].piece)].edge < 0;
     const std::optional<CurveBend> b = curve_bend(geometry, c[i]);
-    if (!b || geometry.is_straight(c[i])) return std::nullopt;
+    if (seam || !b || geometry.is_straight(c[i])) return std::nullopt;
     bend[i] = *b;
     away[i] = ends[i].end == 0 ? b->along : -b->along;
   }
@@ -526,7 +528,9 @@ void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
   for (const auto& [instance, patch] : patches) {
     const Contact c{instance, SourceKind::face, patch, 0, 0};
     for (const Side side : all_sides) {
-      if (border_at(geometry_, c, side).kind == BorderKind::collapsed) continue;
+      const Border& border = border_at(geometry_, c, side);
+      const bool seam = border.kind == BorderKind::smooth && border.piece >= 0;
+      if (border.kind == BorderKind::collapsed || seam) continue;
       const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
       const auto det = [&](double t) { return determinant_on(geometry_, c, side, t); };
       if (vanishes(curvature)) continue;
@@ -612,13 +616,16 @@ class Polish {
     for (const Contact& c : contacts_around()) {
       for (const ContactGeometry::PieceSide& side : geometry_.sides(c)) {
         const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
-        on_border({c.instance, SourceKind::face, side.patch, uv.x, uv.y}, side.side);
+        on_border({side.instance < 0 ? c.instance : side.instance, SourceKind::face, side.patch,
+                   uv.x, uv.y},
+                  side.side);
       }
     }
   }
   void end() {
     for (const ContactGeometry::PieceEnd& own : geometry_.ends(near_.contact)) {
-      const Contact c{near_.contact.instance, SourceKind::edge, own.piece, 0, 0};
+      const Contact c{own.instance < 0 ? near_.contact.instance : own.instance, SourceKind::edge,
+                      own.piece, 0, 0};
       for (const double sign : {1.0, -1.0}) keep(piece_end(geometry_, c, own.end, sign));
     }
   }

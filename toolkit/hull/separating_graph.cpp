@@ -93,7 +93,8 @@ class GraphTracer {
   bool is_end_known(const std::vector<ArcPiece>& pieces) const;
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
-  bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const;
+  bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,
+                    double slack = 0) const;
   bool lies_in_facet(const CommonSupport& s) const;
   bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
@@ -334,11 +335,12 @@ bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
          has_contacts(node, contacts);
 }
 
-/// All of the contacts are in the facet's plane.
-bool GraphTracer::has_contacts(const FacetNode& node, const std::vector<Contact>& contacts) const {
+/// All of the contacts are in the facet's plane, or below it by less than `slack`.
+bool GraphTracer::has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,
+                               double slack) const {
   const double offset = glm::dot(node.points.front(), node.n);
   return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
-    return glm::dot(geometry_.point(c), node.n) >= offset - geometry_.tie();
+    return glm::dot(geometry_.point(c), node.n) >= offset - geometry_.tie() - slack;
   });
 }
 
@@ -627,7 +629,8 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
   for (const FacetNode& node : graph_.nodes) {
     if (node.is_crossing()) continue;
     if (lies_in(node, seed.n, contacts)) return true;
-    if (glm::distance(node.n, seed.n) < same_plane && has_contacts(node, contacts)) return true;
+    const double off = glm::distance(node.n, seed.n);
+    if (off < same_plane && has_contacts(node, contacts, off)) return true;
   }
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, seed.n, contacts);
   if (!f || !f->is_facet()) return false;
