@@ -106,7 +106,8 @@ class GraphTracer {
   struct PieceContact {
     int arc, piece, contact;
   };
-  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells) const;
+  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells);
+  bool is_far_inside(const CulledCell& cell);
   bool crosses(const PieceContact& trace, const PatchCell& cell) const;
   bool is_reached(const FreeEnd& end) const;
   void part_beside(const FreeEnd& end);
@@ -131,6 +132,7 @@ class GraphTracer {
   std::vector<Landmark> landmarks_;
   std::vector<std::pair<dvec3, Contact>> poles_;  // that support, with their normals
   std::vector<int> waiting_;                      // nodes whose slots may be open
+  std::map<int, const char*> not_left_;  // nodes with sides across which no curve was found
 };
 
 /// One spot is told once.
@@ -733,9 +735,10 @@ void GraphTracer::trace_waiting() {
         traced = trace_arc(system_, query_, start, landmarks_, progress_, true);
       }
       if (traced.end == TracedArc::End::lost || traced.end == TracedArc::End::closed) {
-        fail(start.n, traced.end == TracedArc::End::lost
-                          ? traced.reason
-                          : "a separating curve returns into its facet");
+        // It may yet arrive from its other end.
+        not_left_[node] = traced.end == TracedArc::End::lost
+                              ? traced.reason
+                              : "a separating curve returns into its facet";
         continue;
       }
       const int end = node_at(traced);
@@ -749,8 +752,9 @@ void GraphTracer::trace_waiting() {
   }
 }
 
-/// The mixed cells through which no contact of a curve that was traced runs.
-std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& cells) const {
+/// The mixed cells through which no contact of a curve that was traced runs, but those that are
+/// well inside of the hull.
+std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& cells) {
   std::vector<CulledCell> result;
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(result), [&](const CulledCell& cell) {
     if (cell.state != CellState::mixed ||
@@ -758,11 +762,40 @@ std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& ce
       return false;
     }
     const auto found = traces_.find({cell.instance, cell.patch});
-    return found == traces_.end() ||
-           std::none_of(found->second.begin(), found->second.end(),
-                        [&](const PieceContact& trace) { return crosses(trace, cell.cell); });
+    const bool crossed =
+        found != traces_.end() &&
+        std::any_of(found->second.begin(), found->second.end(),
+                    [&](const PieceContact& trace) { return crosses(trace, cell.cell); });
+    return !crossed && !is_far_inside(cell);
   });
   return result;
+}
+
+/// Whether the cell's middle is so far below what supports in its normal that no point of the cell
+/// supports: how far below changes by no more than the turn of the normal times the distance.
+bool GraphTracer::is_far_inside(const CulledCell& cell) {
+  const Interval u = cell.cell.u();
+  const Interval v = cell.cell.v();
+  const auto at = [&](double s, double t) {
+    return Contact{cell.instance, SourceKind::face, cell.patch, u.at(s), v.at(t)};
+  };
+  const Contact middle = at(0.5, 0.5);
+  const dvec3 normal = unit_normal(geometry_, middle);
+  const dvec3 x = geometry_.point(middle);
+  double turn = 0;
+  double radius = 0;
+  for (const double s : {0.0, 1.0}) {
+    for (const double t : {0.0, 1.0}) {
+      turn = std::max(turn, glm::distance(unit_normal(geometry_, at(s, t)), normal));
+      radius = std::max(radius, glm::distance(geometry_.point(at(s, t)), x));
+    }
+  }
+  const auto is_below = [&](const dvec3& n) {
+    const Support top = query_(n, middle);
+    return top.h - glm::dot(x, n) > 2 * turn * (glm::distance(top.point, x) + radius);
+  };
+  return normal != dvec3(0.0) && (!cell.signs.plus || is_below(normal)) &&
+         (!cell.signs.minus || is_below(-normal));
 }
 
 /// Whether the box of two successive rulings' contacts meets the cell.
@@ -850,6 +883,12 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   }
   for (const FreeEnd& end : free_ends(geometry_, query_, uncrossed(cells))) {
     if (!given_up() && !is_reached(end)) part_beside(end);
+  }
+  for (const auto& [node, reason] : not_left_) {
+    const FacetNode& own = graph_.nodes[std::size_t(node)];
+    for (std::size_t k = 0; k < own.slots.size(); ++k) {
+      if (own.slots[k].arc < 0 && !own.is_curved(k)) fail(own.n, reason);
+    }
   }
   graph_.newton_iterations = system_.iterations();
   return std::move(graph_);
