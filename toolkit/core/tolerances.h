@@ -33,8 +33,9 @@ inline constexpr double rotation_tolerance = 1e-9;
 /// the last bits.
 inline constexpr double support_slack = 1024 * rounding_unit;
 
-/// Values of two contacts that differ by no more than this fraction of the scene's size are one: ten
-/// times what a support query may miss. Elements whose control points differ by no more coincide.
+/// Values of two contacts that differ by no more than this fraction of the scene's size are one:
+/// ten times what a support query may miss. Elements whose control points differ by no more
+/// coincide.
 inline constexpr double support_tie = 1e-12;
 
 /// The same of a model far from the origin, as a fraction of the sum of the largest coordinates'
@@ -50,8 +51,9 @@ inline constexpr double tie_rounding = 2 * rounding_unit;
 /// corners and the point above it, is 12 rounding units.
 inline constexpr double coordinate_rounding = 16 * rounding_unit;
 
-/// What rounding may leave of second differences that vanish, and of distances from a line or plane,
-/// as a fraction of the largest coordinate (2^-47): a second difference takes four coordinates.
+/// What rounding may leave of second differences that vanish, and of distances from a line or
+/// plane, as a fraction of the largest coordinate (2^-47): a second difference takes four
+/// coordinates.
 inline constexpr double ruled_rounding = 4 * coordinate_rounding;
 
 /// Largest angle between normals along a crest, and largest difference of heights over its tangent
