@@ -192,7 +192,7 @@ std::optional<FacetContacts> ContactSet::complete() {
       std::all_of(points_.begin(), points_.end(), [](const dvec3& x) { return is_finite(x); });
   if (!finite || !is_finite(n_)) return std::nullopt;
   while (points_.size() <= facet_corner_limit) {
-    const std::optional<FacetContacts> f = outline();
+    std::optional<FacetContacts> f = outline();
     if (!f) return std::nullopt;
     bool grown = false;
     for (const Probe& probe : probes(*f)) {
