@@ -202,7 +202,7 @@ void find_seams(const Part& part, ScenePart& result) {
   visit_curved_first(part, [&](int index, const Patch& patch) {
     for (int corner = 0; corner < 4; ++corner) {
       stand_for(patch.corner_vertex[std::size_t(corner)],
-                {-1, SourceKind::face, index, double(corner / 2), double(corner % 2)});
+                {-1, SourceKind::face, index, corner < 2 ? 0.0 : 1.0, double(corner % 2)});
     }
     for (const Side side : all_sides) {
       const Border& border = patch.borders[std::size_t(side)];
