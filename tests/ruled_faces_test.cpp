@@ -154,7 +154,7 @@ TEST(RuledFaces, OfShapesInAnyPlace) {
 }
 
 /// Rounded, rows of surfaces that touch the same plane no longer do so exactly.
-TEST(RuledFaces, DISABLED_OfAFilletedBoxElsewhere) {
+TEST(RuledFaces, OfAFilletedBoxElsewhere) {
   for (const LabelCase& each : label_cases()) {
     if (each.name != std::string("filleted box")) continue;
     const Shape shape = mapped(each.shape, skew_rotation(), {1, 2, 3});
