@@ -387,5 +387,19 @@ TEST(PreciseHull, DegenerateInputIsNeverClaimedWrongly) {
   expect_no_false_claim(blob(1) + blob(1), -1, "identical blobs");
 }
 
+/// A pose in which refinement met vertices once more, but for the rounding of the rotation.
+TEST(PreciseHull, OfATurnedConeHasAFineMesh) {
+  Model model = make_model(solid_cone(1, 2));
+  model.clear_instances();
+  const dmat3 rows(0.4574805953920079, 0.5243635715458594, 0.7181603927225757,  //
+                   0.7092906121736027, -0.702277437210167, 0.06093626726273654, 0.5363005988456191,
+                   0.48150726476470745, -0.6932044587685802);
+  model.add_instance(0, {glm::transpose(rows), {0.1, -0.2, 0.3}});
+  const Scene scene(std::move(model));
+  const Hull hull = precise_hull(scene, {.threads = 1, .progress = {}});
+  EXPECT_TRUE(hull.boundary->unresolved.empty());
+  EXPECT_LE(hull.distance_bound, 1e-4 * scene.diagonal());
+}
+
 }  // namespace
 }  // namespace taut

@@ -48,6 +48,7 @@ class Sampler {
   void find_planes();
   void bound_vertices();
   bool refine();
+  bool repeats_vertex(const dvec3& point, int facet);
   bool insert(const Sample& sample, const dvec3& point, int facet);
   bool bisect_hidden(const dvec3& point, int facet);
   double gap(const Plane& plane, int vertex) const {
@@ -154,7 +155,22 @@ void Sampler::bound_vertices() {
   bound_ = std::min(bound_, scene_.frame().scale * scene_.diagonal());
 }
 
+/// Whether the point is a vertex once more, but for rounding: it would make slivers, whose normals
+/// mean nothing.
+bool Sampler::repeats_vertex(const dvec3& point, int facet) {
+  const double rounding = scene_.frame().length_to_frame(8 * vertex_rounding(scene_));
+  const dvec3 x = scaled(point);
+  const std::vector<int>& visible = hull_.visible(x, facet);
+  return std::any_of(visible.begin(), visible.end(), [&](int f) {
+    const std::array<int, 3>& own = hull_.facet(f).vertex;
+    return std::any_of(own.begin(), own.end(), [&](int v) {
+      return glm::distance(hull_.points()[std::size_t(v)], x) <= rounding;
+    });
+  });
+}
+
 bool Sampler::insert(const Sample& sample, const dvec3& point, int facet) {
+  if (repeats_vertex(point, facet)) return false;
   if (!hull_.insert(scaled(point), facet)) return false;
   samples_.push_back(sample);
   frame_points_.push_back(scene_.frame().to_frame(point));
