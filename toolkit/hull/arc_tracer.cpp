@@ -296,18 +296,25 @@ bool Trace::pass_pole(int contact, Side side, double length) {
   return leave();
 }
 
+/// The contact at the pole that its patch has at x, at the same parameter along the side; none if
+/// it has none there.
+std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact& c,
+                                  const dvec3& x) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const Contact there = at_pole(c, side);
+    if (is_pole(geometry, c, side) && glm::distance(geometry.point(there), x) < join_distance) {
+      return there;
+    }
+  }
+  return std::nullopt;
+}
+
 /// The point of a contact as one of the element of `other`; a pole's at the parameter of `other`
 /// along its side.
 std::optional<Contact> Trace::in_element(const Contact& c, const Contact& other) const {
   if (!pole_side(geometry_, c)) return expressed_in(geometry_, c, other);
-  if (other.kind != SourceKind::face) return std::nullopt;
-  const dvec3 x = geometry_.point(c);
-  for (const Side side : all_sides) {
-    const Contact there = at_pole(other, side);
-    if (is_pole(geometry_, other, side) && glm::distance(geometry_.point(there), x) < same_contact)
-      return there;
-  }
-  return std::nullopt;
+  return at_pole_of(geometry_, other, geometry_.point(c));
 }
 
 /// Whether a contact may move without the direction, or its parameters fail: at a pole, and where
@@ -582,20 +589,6 @@ std::optional<FreeEnd> Trace::exact_end(const Ruling& near) {
   if (!end) return std::nullopt;
   const double height = glm::dot(geometry_.point(end->contact), end->n);
   return query_(end->n, near.contact[0]).h <= height + geometry_.tie() ? end : std::nullopt;
-}
-
-/// The contact at the pole that its patch has at x, at the same parameter along the side; none if
-/// it has none there.
-std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact& c,
-                                  const dvec3& x) {
-  if (c.kind != SourceKind::face) return std::nullopt;
-  for (const Side side : all_sides) {
-    const Contact there = at_pole(c, side);
-    if (is_pole(geometry, c, side) && glm::distance(geometry.point(there), x) < join_distance) {
-      return there;
-    }
-  }
-  return std::nullopt;
 }
 
 /// Ends the arc where both contacts run straight into one pole. Curvatures differ along the ways

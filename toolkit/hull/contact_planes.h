@@ -16,7 +16,7 @@ struct ContactPlane {
 };
 
 /// All planes that support the scene and contain plane pieces of edges that are not straight, to
-/// within support_tie. The directions of such a plane have contact along the whole curve.
+/// within ContactGeometry::tie(): in their directions the whole curve supports.
 std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query);
 
 }  // namespace taut

@@ -12,7 +12,7 @@ namespace taut {
 /// so near are about to merge in a free end; they differ in height by the fourth power of it.
 inline constexpr double same_contact = 1e-7;
 
-/// Three contacts that support at a common direction, to within support_tie: that of `s` where two
+/// Three contacts that support at a common direction, to within tie(): that of `s` where two
 /// are given, and the one by which `winner` surpasses them nearby. None if Newton's method leads
 /// nowhere. `s` is a start near the solution.
 std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQuery& query,

@@ -32,7 +32,7 @@ struct FreeEnd {
 };
 
 /// All free ends of the scene's hull: those in the mixed cells, on the borders of their patches, on
-/// all edges' pieces and at their ends. Each supports the model to within support_tie, by a support
+/// all edges' pieces and at their ends. Each supports the model to within tie(), by a support
 /// query, and is a simple root: where a whole curve of contacts shares one direction (the circle on
 /// which a torus lies) there is none, nor where an edge is straight. Collapsed sides are left out,
 /// and edges that are planar.

@@ -45,7 +45,7 @@ struct SeparatingGraph {
 /// Finds and traces the separating curves that part the samples from each other: between every two
 /// neighbours on the samples' polytope whose contacts no climb joins there is a curve; it is traced
 /// to its ends, and so are all that leave its facets. Every ruling is checked against the support
-/// function, to within support_tie.
+/// function, to within ContactGeometry::tie().
 ///
 /// The same where a side of a mixed cell leads from a point that supports to one that does not, and
 /// on small circles about the normals of poles that support, and at the free ends of the hull in
