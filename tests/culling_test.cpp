@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "freeform.h"
 #include "models.h"
 #include "support_checks.h"
 #include "surface_checks.h"
@@ -351,6 +352,77 @@ TEST(Cull, RefusesLevelsAndStops) {
   EXPECT_THROW(
       cull(scene, map, {.levels = 1, .threads = 1, .progress = {{}, {}, stop.get_token()}}),
       Cancelled);
+}
+
+/// In patches.
+double area(const std::vector<CulledCell>& cells) {
+  double sum = 0;
+  for (const CulledCell& c : cells) sum += std::exp2(-2.0 * c.cell.level);
+  return sum;
+}
+
+TEST(CellRefinement, ProvesMoreAndNothingWrong) {
+  struct Case {
+    std::string name;
+    Shape shape;
+    double most;  // share of the mixed area that may stay so after two levels
+  };
+  const std::vector<Case> cases = {
+      {"sphere", sphere(), 0},
+      {"ellipsoid", mapped(ellipsoid(3, 2, 1), skew_rotation()), 0.1},
+      {"two spheres", two_spheres(1, 0.5, 3), 0.2},
+      {"torus", torus(2, 0.5), 0.3},
+      {"teapot", teapot(), 0.3},
+      {"dented ellipsoid", dented_ellipsoid(), 0.6},
+      {"blob", blob(2), 0.6},
+      {"filleted box", filleted_box(3, 2, 1, 0.25), 0.4},
+      {"sphere and a point", sphere() + Shape{{}, {}, {{0, 0, 5}}}, 0.2}};
+  for (const Case& c : cases) {
+    const Scene scene = make_scene(c.shape);
+    const Culling culling = culled(scene, 3);
+    Culling decided;
+    std::vector<CulledCell> left;
+    const auto sort = [&](const std::vector<CulledCell>& cells) {
+      left.clear();
+      for (const CulledCell& cell : cells) {
+        (cell.state == CellState::mixed ? left : decided.cells).push_back(cell);
+      }
+    };
+    CellRefinement refinement(scene);
+    sort(culling.cells);
+    const double before = area(left);
+    sort(refinement.refined(left));
+    sort(refinement.refined(left));
+    EXPECT_NEAR(area(left) + area(decided.cells), scene.model().patch_count(), 1e-12) << c.name;
+    EXPECT_LE(area(left), c.most * before) << c.name;
+    expect_true(check(scene, decided, 5000), c.name);
+  }
+}
+
+TEST(CellRefinement, OfRandomPatches) {
+  Random random(9);
+  for (int k = 0; k < 30; ++k) {
+    Shape shape;
+    for (int i = 0; i < 2; ++i) {
+      const double weights = pick(random, 0, 1) == 0 ? 1 : log_uniform(random, 1.01, 10);
+      shape =
+          shape +
+          shifted(of_patch(random_patch(random, pick(random, 2, 4), pick(random, 2, 4), weights)),
+                  random_point(random));
+    }
+    const Scene scene = make_scene(split(shape, 0.4, 0.7));
+    Culling decided;
+    CellRefinement refinement(scene);
+    std::vector<CulledCell> cells = culled(scene, 2).cells;
+    for (int level = 0; level < 3; ++level) {
+      std::vector<CulledCell> left;
+      for (const CulledCell& cell : cells) {
+        (cell.state == CellState::mixed ? left : decided.cells).push_back(cell);
+      }
+      cells = refinement.refined(left);
+    }
+    expect_true(check(scene, decided, 500), std::to_string(k));
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/bounds/scaled_net.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
@@ -11,65 +12,6 @@ namespace {
 /// Of a control point that was turned, moved or multiplied by its weight, as a share of its size:
 /// three products and sums.
 constexpr double stored_rounding = 4 * rounding_unit;
-
-std::vector<double> binomials(int n) {
-  std::vector<double> result = {1};
-  for (int k = 1; k <= n; ++k) result.push_back(std::round(result.back() * (n - k + 1) / k));
-  return result;
-}
-
-/// A net whose entries carry their binomial coefficients: products are those of polynomials.
-template <class Entry>
-struct ScaledNet {
-  NetShape shape;
-  std::vector<Entry> entries;
-
-  explicit ScaledNet(NetShape s) : shape(s), entries(std::size_t(s.size())) {}
-  Entry& at(int i, int j) { return entries[std::size_t(i * (shape.q + 1) + j)]; }
-  const Entry& at(int i, int j) const { return entries[std::size_t(i * (shape.q + 1) + j)]; }
-};
-
-template <class Entry, class Value>
-ScaledNet<Entry> scaled(NetShape shape, Value value) {
-  const std::vector<double> along_u = binomials(shape.p);
-  const std::vector<double> along_v = binomials(shape.q);
-  ScaledNet<Entry> net(shape);
-  for (int i = 0; i <= shape.p; ++i) {
-    for (int j = 0; j <= shape.q; ++j) {
-      net.at(i, j) = along_u[std::size_t(i)] * along_v[std::size_t(j)] * value(i, j);
-    }
-  }
-  return net;
-}
-
-/// Adds the product, times u or 1 - u (du: 1 or 0) and v or 1 - v likewise where the sum is one
-/// degree higher.
-template <class A, class B, class C, class Product>
-void add_product(const ScaledNet<A>& a, const ScaledNet<B>& b, int du, int dv, ScaledNet<C>& sum,
-                 Product product) {
-  for (int i = 0; i <= a.shape.p; ++i) {
-    for (int j = 0; j <= a.shape.q; ++j) {
-      const A& left = a.at(i, j);
-      for (int k = 0; k <= b.shape.p; ++k) {
-        for (int l = 0; l <= b.shape.q; ++l) {
-          sum.at(i + k + du, j + l + dv) += product(left, b.at(k, l));
-        }
-      }
-    }
-  }
-}
-
-NormalNet unscaled(const ScaledNet<dvec3>& net) {
-  const std::vector<double> along_u = binomials(net.shape.p);
-  const std::vector<double> along_v = binomials(net.shape.q);
-  NormalNet result{net.shape, {}, 0};
-  for (int i = 0; i <= net.shape.p; ++i) {
-    for (int j = 0; j <= net.shape.q; ++j) {
-      result.vectors.push_back(net.at(i, j) / (along_u[std::size_t(i)] * along_v[std::size_t(j)]));
-    }
-  }
-  return result;
-}
 
 /// Su x Sv / (p q) from differences of the control points.
 NormalNet polynomial_net(const BezierPatch& patch, const std::vector<dvec3>& x) {
@@ -90,7 +32,7 @@ NormalNet polynomial_net(const BezierPatch& patch, const std::vector<dvec3>& x) 
   });
   ScaledNet<dvec3> sum({2 * p - 1, 2 * q - 1});
   add_product(u, v, 0, 0, sum, [](const dvec3& a, const dvec3& b) { return glm::cross(a, b); });
-  NormalNet net = unscaled(sum);
+  NormalNet net{sum.shape, unscaled(sum), 0};
   // Each is a mean of products, of at most p (q + 1) terms: as many roundings of the sum, one of
   // each difference, two of each binomial factor and three of the cross product's components, by
   // a factor of sqrt(3) for their length; twice that for good measure.
@@ -147,7 +89,7 @@ NormalNet rational_net(const BezierPatch& patch, const std::vector<dvec4>& x) {
   add_product(ab, d, 1, 0, sum, plane_normal);
   add_product(dc, a, 0, 1, sum, plane_normal);
   add_product(dc, b, 1, 1, sum, plane_normal);
-  NormalNet net = unscaled(sum);
+  NormalNet net{sum.shape, unscaled(sum), 0};
   double reach = 0;
   double weight = 0;
   for (const dvec4& point : x) {

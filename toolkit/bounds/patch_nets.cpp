@@ -63,9 +63,9 @@ PatchNets::PatchNets(const SceneElement& element) : element_(&element) {
   point_rounding_ = 40 * (element.shape.p + element.shape.q) * rounding_unit * size;
 }
 
-std::vector<dvec3> PatchNets::normals(const PatchCell& cell) const {
+std::vector<dvec3> PatchNets::normals(const Interval& u, const Interval& v) const {
   std::vector<dvec3> result = root_.normals;
-  restrict_net(normal_shape_, result.data(), cell.u(), cell.v());
+  restrict_net(normal_shape_, result.data(), u, v);
   return result;
 }
 

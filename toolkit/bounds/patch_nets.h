@@ -31,8 +31,8 @@ class PatchNets {
 
   /// The patch's control points over a rectangle of its unit square.
   std::vector<dvec4> points(const Interval& u, const Interval& v) const;
-  /// The cell's normal vectors, by subdivision of the patch's.
-  std::vector<dvec3> normals(const PatchCell& cell) const;
+  /// Its normal vectors there, by subdivision of the patch's.
+  std::vector<dvec3> normals(const Interval& u, const Interval& v) const;
   void quarter_points(const std::vector<dvec4>& points, std::array<CellNets, 4>& quarters) const;
   void quarter_normals(const std::vector<dvec3>& normals, std::array<CellNets, 4>& quarters) const;
 

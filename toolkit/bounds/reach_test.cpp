@@ -21,11 +21,11 @@ class ReachTest::Search {
   explicit Search(const Scene::Content& scene) : scene_(scene) {}
 
   bool run(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
-           const PatchRectangle& except, int finest) {
-    except_ = except;
-    except_element_ = except.instance < 0
-                          ? -1
-                          : scene_.element({except.instance, SourceKind::face, except.patch, 0, 0});
+           std::span<const PatchRectangle> except, int finest) {
+    except_.clear();
+    for (const PatchRectangle& r : except) {
+      except_.push_back({r, scene_.element({r.instance, SourceKind::face, r.patch, 0, 0})});
+    }
     finest_ = finest;
     splits_ = 0;
     frame_.set(corners);
@@ -140,8 +140,11 @@ class ReachTest::Search {
     for (std::size_t k = 0; k < net.x.size(); ++k) {
       heights_[k] = local_.heights({net.x[k], net.y[k], net.z[k]}) + net.w[k] * offset_;
     }
-    const bool own = instance_ == except_.instance && cell.element == except_element_;
+    const bool own = std::any_of(except_.begin(), except_.end(), [&](const Exception& e) {
+      return e.region.instance == instance_ && e.element == cell.element;
+    });
     const double* w = element.rational ? net.w.data() : nullptr;
+    element_ = cell.element;
     return net_below(element.shape, own, heights_.data(), w, cell.coons.level, cell.coons.u(),
                      cell.coons.v(), 0);
   }
@@ -149,15 +152,12 @@ class ReachTest::Search {
   /// `g` holds the heights of the cell's control points, times the weights `w` where rational.
   bool net_below(NetShape shape, bool own, const dvec4* g, const double* w, int level,
                  const Interval& u, const Interval& v, std::size_t depth) {
-    if (own && u.lower >= except_.u.lower && u.upper <= except_.u.upper &&
-        v.lower >= except_.v.lower && v.upper <= except_.v.upper) {
-      return true;
-    }
+    if (own && is_excepted(u, v)) return true;
     const auto size = std::size_t(shape.size());
     dvec4 highest(-std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < size; ++k) highest = glm::max(highest, w ? g[k] / w[k] : g[k]);
     if (below(highest)) return true;
-    if (level >= finest_ || ++splits_ > split_limit) return false;
+    if (level >= finest_ || ++splits_ > split_limit * (1 + finest_ / 4)) return false;
     if (quarters_.size() <= depth) quarters_.resize(depth + 1);
     std::array<dvec4*, 4> heights;
     std::array<double*, 4> weights = {};
@@ -185,6 +185,20 @@ class ReachTest::Search {
     return true;
   }
 
+  struct Exception {
+    PatchRectangle region;
+    int element;
+  };
+
+  /// The rectangle of the element that is looked at lies in one of the regions.
+  bool is_excepted(const Interval& u, const Interval& v) const {
+    return std::any_of(except_.begin(), except_.end(), [&](const Exception& e) {
+      const PatchRectangle& r = e.region;
+      return r.instance == instance_ && e.element == element_ && u.lower >= r.u.lower &&
+             u.upper <= r.u.upper && v.lower >= r.v.lower && v.upper <= r.v.upper;
+    });
+  }
+
   struct Quarter {
     std::vector<dvec4> heights;
     std::vector<double> weights;
@@ -196,8 +210,8 @@ class ReachTest::Search {
   std::vector<dvec4> limits_;  // of x . n by each of the points
   const ScenePart* part_ = nullptr;
   int instance_ = -1;
-  PatchRectangle except_;
-  int except_element_ = -1;
+  int element_ = -1;
+  std::vector<Exception> except_;
   int finest_ = 0;
   int splits_ = 0;
   std::vector<dvec4> heights_;
@@ -208,7 +222,7 @@ ReachTest::ReachTest(const Scene& scene) : search_(std::make_unique<Search>(scen
 ReachTest::~ReachTest() = default;
 
 bool ReachTest::surely_below(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
-                             const PatchRectangle& except, int finest) {
+                             std::span<const PatchRectangle> except, int finest) {
   return search_->run(points, corners, except, finest);
 }
 

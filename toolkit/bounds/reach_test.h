@@ -25,14 +25,14 @@ class ReachTest {
   explicit ReachTest(const Scene& scene);
   ~ReachTest();
 
-  /// True is certain: for every point x of the scene, those of the region apart, one of the points
-  /// p has (x - p) . n < 0 for all n of the pyramid. Points and directions in the scene's frame,
-  /// each p within the rounding of a Support's point.
+  /// True is certain: for every point x of the scene, those of the rectangles apart, one of the
+  /// points p has (x - p) . n < 0 for all n of the pyramid. Points and directions in the scene's
+  /// frame, each p within the rounding of a Support's point.
   ///
   /// Cells that would have to be smaller than 2^-finest of their patch are not tried: then the
   /// answer is false. @pre points are not empty
   bool surely_below(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
-                    const PatchRectangle& except, int finest);
+                    std::span<const PatchRectangle> except, int finest);
 
  private:
   class Search;

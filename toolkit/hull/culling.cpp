@@ -11,6 +11,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
+#include "taut/hull/concave_surroundings.h"
 
 namespace taut {
 namespace {
@@ -110,7 +111,8 @@ struct Tools {
   explicit Tools(const Scene& scene) : query(scene), reach(scene) {}
   SupportQuery query;
   ReachTest reach;
-  std::vector<std::array<CellNets, 4>> quarters;  // per level
+  std::unique_ptr<ConcaveSurroundings> surroundings;  // where cells are refined
+  std::vector<std::array<CellNets, 4>> quarters;      // per level
 };
 
 /// Culls the cells of one patch of one instance, depth first.
@@ -137,6 +139,34 @@ class PatchCulling {
       return;
     }
     visit({}, root, nodes_[std::size_t(root)].bounds, nets_.root(), {true, true}, {});
+  }
+
+  /// For cells of a patch that are to be decided further.
+  PatchCulling(const Scene& scene, const SpreadSamples& spread, int instance, int patch,
+               Tools& tools)
+      : content_(scene.content()),
+        spread_(spread),
+        instance_(instance),
+        placed_(content_.instances[std::size_t(instance)]),
+        back_(glm::inverse(placed_.rotation)),
+        element_(content_.parts[std::size_t(placed_.part)].elements[std::size_t(
+            content_.element({instance, SourceKind::face, patch, 0, 0}))]),
+        finest_(0),
+        nets_(element_),
+        tools_(tools) {}
+
+  /// The cell, if it can be decided with what surrounds it, or else its quarters.
+  void refine(const CulledCell& cell) {
+    const PatchCell& place = cell.cell;
+    const CellNets nets{nets_.points(place.u(), place.v()), nets_.normals(place.u(), place.v())};
+    const NormalBounds bounds = nets_.bounds(nets, place.level);
+    finest_ = place.level + 1;
+    result_.levels.resize(std::size_t(finest_) + 1);
+    if (bounds.pyramid && surely_on_with_others(*bounds.pyramid, place, cell.signs)) {
+      finish(place, CellState::on, cell.signs);
+    } else {
+      refine(place, -1, nets, cell.signs, {});
+    }
   }
 
   PatchResult&& result() { return std::move(result_); }
@@ -198,7 +228,8 @@ class PatchCulling {
     }
     ++count.kept;
     if (cell.level == finest_) {
-      finish(cell, CellState::mixed, left);
+      const bool on = bounds.pyramid && surely_on_with_others(*bounds.pyramid, cell, left);
+      finish(cell, on ? CellState::on : CellState::mixed, left);
       return;
     }
     refine(cell, node, nets, left, beacons);
@@ -213,7 +244,7 @@ class PatchCulling {
     const std::int32_t first = node < 0 ? -1 : nodes_[std::size_t(node)].first_child;
     if (first < 0) {
       // The first level below the map begins with the patch's normals.
-      nets_.quarter_normals(node < 0 ? nets.normals : nets_.normals(cell), quarters);
+      nets_.quarter_normals(node < 0 ? nets.normals : nets_.normals(cell.u(), cell.v()), quarters);
     }
     for (std::uint32_t k = 0; k < 4; ++k) {
       const PatchCell child = cell.child(k);
@@ -342,7 +373,15 @@ class PatchCulling {
     }
     if (!concave) return false;
     for (dvec3& n : corners) n = to_frame(n);
-    return tools_.reach.surely_below(points_around(cell, region), corners, region, cell.level + 1);
+    return tools_.reach.surely_below(points_around(cell, region), corners, {&region, 1},
+                                     cell.level + 1);
+  }
+
+  bool surely_on_with_others(const NormalPyramid& pyramid, const PatchCell& cell,
+                             const ContactSigns& signs) {
+    return tools_.surroundings && signs.plus != signs.minus &&
+           tools_.surroundings->surely_on(instance_, element_.index, cell, pyramid,
+                                          signs.plus ? 1 : -1);
   }
 
   /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
@@ -374,7 +413,7 @@ class PatchCulling {
   int instance_;
   const SceneInstance& placed_;
   dmat3 back_;
-  std::span<const GaussNode> nodes_;
+  std::span<const GaussNode> nodes_ = {};
   const SceneElement& element_;
   int finest_;
   PatchNets nets_;
@@ -419,6 +458,34 @@ void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
 }
 
 }  // namespace
+
+struct CellRefinement::Content {
+  explicit Content(const Scene& of)
+      : scene(of), spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}), tools(of) {
+    tools.surroundings = std::make_unique<ConcaveSurroundings>(of);
+  }
+  const Scene& scene;
+  SpreadSamples spread;
+  Tools tools;
+};
+
+CellRefinement::CellRefinement(const Scene& scene) : content_(std::make_unique<Content>(scene)) {}
+CellRefinement::~CellRefinement() = default;
+
+std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& cells) {
+  std::vector<CulledCell> result;
+  for (std::size_t k = 0; k < cells.size();) {
+    const int instance = cells[k].instance;
+    const int patch = cells[k].patch;
+    PatchCulling culling(content_->scene, content_->spread, instance, patch, content_->tools);
+    for (; k < cells.size() && cells[k].instance == instance && cells[k].patch == patch; ++k) {
+      culling.refine(cells[k]);
+    }
+    const PatchResult found = culling.result();
+    result.insert(result.end(), found.cells.begin(), found.cells.end());
+  }
+  return result;
+}
 
 long Culling::visited() const {
   long sum = 0;

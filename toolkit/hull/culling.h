@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "taut/bounds/gauss_map.h"
@@ -85,5 +86,21 @@ struct Culling {
 /// Same result for any number of threads.
 /// @pre the map is the scene's @throws InvalidInput for levels out of range, Cancelled
 Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& options = {});
+
+/// Decides cells that were left mixed further, also by what surrounds them on other patches
+/// (ConcaveSurroundings). The scene must outlive it.
+class CellRefinement {
+ public:
+  explicit CellRefinement(const Scene& scene);
+  ~CellRefinement();
+
+  /// Each of the cells as one that is on, or its quarters. Not in parallel.
+  /// @pre they are mixed, those of a patch follow each other
+  std::vector<CulledCell> refined(const std::vector<CulledCell>& cells);
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
 
 }  // namespace taut

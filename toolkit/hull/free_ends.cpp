@@ -515,7 +515,8 @@ void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
       element = &part.elements[std::size_t(index)];
       nets.emplace(*element);
     }
-    const CellNets own{nets->points(cell.cell.u(), cell.cell.v()), nets->normals(cell.cell)};
+    const CellNets own{nets->points(cell.cell.u(), cell.cell.v()),
+                       nets->normals(cell.cell.u(), cell.cell.v())};
     search_cell(*nets, own, c, cell.cell);
   }
 }

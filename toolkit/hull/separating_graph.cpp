@@ -8,6 +8,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/arc_tracer.h"
+#include "taut/hull/cell_crossings.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
 #include "taut/hull/facet_contacts.h"
@@ -58,13 +59,23 @@ constexpr double nearly_same_plane = 1e-5;
 constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
 constexpr int circle_halvings = 10;
+/// Levels by which mixed cells are refined that no curve crosses, at least, and at most while that
+/// leaves fewer of them.
+constexpr int least_refinements = 3;
+constexpr int most_refinements = 8;
+/// Part of its size within which a curve beside a refined cell accounts for it.
+constexpr double refined_margin = 1;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
 
 class GraphTracer {
  public:
   GraphTracer(const ContactGeometry& geometry, SupportQuery& query, const Progress& progress)
-      : geometry_(geometry), system_(geometry), query_(query), progress_(progress) {}
+      : geometry_(geometry),
+        system_(geometry),
+        query_(query),
+        progress_(progress),
+        crossings_(geometry) {}
 
   SeparatingGraph run(const std::vector<Sample>& samples, const std::vector<CulledCell>& cells);
 
@@ -106,9 +117,9 @@ class GraphTracer {
   struct PieceContact {
     int arc, piece, contact;
   };
-  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells);
-  bool is_far_inside(const CulledCell& cell);
-  bool crosses(const PieceContact& trace, const PatchCell& cell) const;
+  void part_cells(const std::vector<CulledCell>& cells);
+  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells, double margin) const;
+  void search_cells(const std::vector<CulledCell>& cells);
   bool is_reached(const FreeEnd& end) const;
   void part_beside(const FreeEnd& end);
   void find_planes();
@@ -127,6 +138,7 @@ class GraphTracer {
   long first_cells_ = 0;
   long cell_limit_ = 0;
   bool stopped_ = false;
+  CellCrossings crossings_;                                          // of all arcs and nodes
   std::map<std::pair<int, int>, std::vector<PieceContact>> traces_;  // by instance and patch
   std::vector<Box> boxes_;                                           // of the arcs' directions
   std::vector<Landmark> landmarks_;
@@ -386,6 +398,10 @@ int GraphTracer::node_at(const TracedArc& traced) {
 
 int GraphTracer::add_node(const dvec3& n, FacetContacts facet) {
   const std::size_t count = facet.contacts.size();
+  for (const Contact& c : facet.contacts) crossings_.add(c);
+  for (const EdgeStretch& side : facet.sides) {
+    if (side.piece >= 0) crossings_.add(side);
+  }
   graph_.nodes.push_back({n, std::move(facet.contacts), std::move(facet.points),
                           std::move(facet.sides), std::vector<FacetNode::Slot>(count)});
   waiting_.push_back(int(graph_.nodes.size()) - 1);
@@ -399,6 +415,10 @@ void GraphTracer::find_planes() {
     if (!f || !f->is_facet()) {
       fail(plane.n, "the outline of a facet with curved sides is not found");
       continue;
+    }
+    // All of the curves touches the plane, its outline or not.
+    for (const Contact& c : plane.pieces) {
+      crossings_.add(EdgeStretch{c.instance, c.element, 0, 1});
     }
     landmarks_.push_back({plane.n, *f});
     add_node(plane.n, std::move(*f));
@@ -712,6 +732,7 @@ int GraphTracer::store(SeparatingArc arc) {
       if (c.kind == SourceKind::face) traces_[{c.instance, c.element}].push_back({index, k, i});
     }
   }
+  crossings_.add(arc);
   graph_.arcs.push_back(std::move(arc));
   return index;
 }
@@ -752,67 +773,47 @@ void GraphTracer::trace_waiting() {
   }
 }
 
-/// The mixed cells through which no contact of a curve that was traced runs, but those that are
-/// well inside of the hull.
-std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& cells) {
+/// Finds and traces the curves that cross the sides of mixed cells.
+void GraphTracer::part_cells(const std::vector<CulledCell>& cells) {
+  for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
+    if (given_up()) break;
+    if (is_crossed(change)) continue;
+    const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
+    if (seed && !is_traced(*seed)) trace(*seed);
+  }
+}
+
+/// The mixed cells for which no known contact accounts.
+std::vector<CulledCell> GraphTracer::uncrossed(const std::vector<CulledCell>& cells,
+                                               double margin) const {
   std::vector<CulledCell> result;
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(result), [&](const CulledCell& cell) {
-    if (cell.state != CellState::mixed ||
-        geometry_.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0})) {
-      return false;
-    }
-    const auto found = traces_.find({cell.instance, cell.patch});
-    const bool crossed =
-        found != traces_.end() &&
-        std::any_of(found->second.begin(), found->second.end(),
-                    [&](const PieceContact& trace) { return crosses(trace, cell.cell); });
-    return !crossed && !is_far_inside(cell);
+    return cell.state == CellState::mixed &&
+           !geometry_.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0}) &&
+           !crossings_.crosses(cell, margin);
   });
   return result;
 }
 
-/// Whether the cell's middle is so far below what supports in its normal that no point of the cell
-/// supports: how far below changes by no more than the turn of the normal times the distance.
-bool GraphTracer::is_far_inside(const CulledCell& cell) {
-  const Interval u = cell.cell.u();
-  const Interval v = cell.cell.v();
-  const auto at = [&](double s, double t) {
-    return Contact{cell.instance, SourceKind::face, cell.patch, u.at(s), v.at(t)};
-  };
-  const Contact middle = at(0.5, 0.5);
-  const dvec3 normal = unit_normal(geometry_, middle);
-  const dvec3 x = geometry_.point(middle);
-  double turn = 0;
-  double radius = 0;
-  for (const double s : {0.0, 1.0}) {
-    for (const double t : {0.0, 1.0}) {
-      turn = std::max(turn, glm::distance(unit_normal(geometry_, at(s, t)), normal));
-      radius = std::max(radius, glm::distance(geometry_.point(at(s, t)), x));
-    }
+/// Seeks what the mixed cells hide through which no curve runs: decides them further, and where
+/// that fails looks for curves across their sides, and in the end for free ends in them.
+void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
+  std::vector<CulledCell> left = uncrossed(cells, 0);
+  CellRefinement refinement(geometry_.scene());
+  bool fewer = true;
+  for (int level = 1; !left.empty() && !given_up(); ++level) {
+    if (level > least_refinements && (!fewer || level > most_refinements)) break;
+    progress_.check();
+    const std::size_t count = left.size();
+    left = uncrossed(refinement.refined(left), refined_margin);
+    part_cells(left);
+    left = uncrossed(left, refined_margin);
+    fewer = left.size() < count;
   }
-  const auto is_below = [&](const dvec3& n) {
-    const Support top = query_(n, middle);
-    return top.h - glm::dot(x, n) > 2 * turn * (glm::distance(top.point, x) + radius);
-  };
-  return normal != dvec3(0.0) && (!cell.signs.plus || is_below(normal)) &&
-         (!cell.signs.minus || is_below(-normal));
-}
-
-/// Whether the box of two successive rulings' contacts meets the cell.
-bool GraphTracer::crosses(const PieceContact& trace, const PatchCell& cell) const {
-  const std::vector<Ruling>& rulings =
-      graph_.arcs[std::size_t(trace.arc)].pieces[std::size_t(trace.piece)].rulings;
-  const Interval u = cell.u();
-  const Interval v = cell.v();
-  for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
-    const Contact& a = rulings[k].contact[std::size_t(trace.contact)];
-    const Contact& b = rulings[k + 1].contact[std::size_t(trace.contact)];
-    if (std::min(a.u, b.u) <= u.upper && std::max(a.u, b.u) >= u.lower &&
-        std::min(a.v, b.v) <= v.upper && std::max(a.v, b.v) >= v.lower) {
-      return true;
-    }
+  for (const FreeEnd& end : free_ends(geometry_, query_, left)) {
+    if (!given_up() && !is_reached(end)) part_beside(end);
   }
-  return false;
+  graph_.cells_searched = long(uncrossed(left, refined_margin).size());
 }
 
 /// Whether a curve that was traced ends in the free end.
@@ -863,12 +864,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
     sightings.push_back({s.n, c, x});
   }
   trace_waiting();
-  for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
-    if (given_up()) break;
-    if (is_crossed(change)) continue;
-    const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
-    if (seed && !is_traced(*seed)) trace(*seed);
-  }
+  part_cells(cells);
   for (const auto& [n, pole] : poles_) part_about(n, pole);
   PointHull hull(box);
   hull.add(points);
@@ -881,9 +877,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
       if (a < b) part(sightings[std::size_t(a)], sightings[std::size_t(b)], 0);
     }
   }
-  for (const FreeEnd& end : free_ends(geometry_, query_, uncrossed(cells))) {
-    if (!given_up() && !is_reached(end)) part_beside(end);
-  }
+  search_cells(cells);
   for (const auto& [node, reason] : not_left_) {
     const FacetNode& own = graph_.nodes[std::size_t(node)];
     for (std::size_t k = 0; k < own.slots.size(); ++k) {

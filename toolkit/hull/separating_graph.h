@@ -40,6 +40,9 @@ struct SeparatingGraph {
   std::vector<FacetNode> nodes;
   std::vector<Unresolved> unresolved;
   long newton_iterations = 0;
+  /// Cells, of the finest that were looked at, which are neither proven on nor off and which no
+  /// known contact accounts for; in them curves were sought in vain.
+  long cells_searched = 0;
 };
 
 /// Finds and traces the separating curves that part the samples from each other: between every two
@@ -48,12 +51,12 @@ struct SeparatingGraph {
 /// function, to within ContactGeometry::tie().
 ///
 /// The same where a side of a mixed cell leads from a point that supports to one that does not, and
-/// on small circles about the normals of poles that support, and at the free ends of the hull in
-/// mixed cells through which no curve runs by then.
+/// on small circles about the normals of poles that support.
 ///
-/// Complete as far as samples, cells and ends show: a curve that crosses no side of a cell and no
-/// two samples are parted by, that no facet or pole is connected with, and that closes or lies
-/// within cells that other curves cross, is not found.
+/// Mixed cells through which no curve runs by then are refined: their quarters are proven on or
+/// off, or a curve is found across their sides, and so on for those that are left as long as they
+/// become fewer; in the last of them free ends of the hull are sought. A curve can be missed only
+/// there, and in cells that other curves cross.
 /// @throws Cancelled
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,

@@ -1,0 +1,120 @@
+#include "taut/bounds/curvature_nets.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "models.h"
+#include "surface_checks.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models and reference answers
+
+constexpr std::array<bool, 4> no_poles = {};
+
+Interval random_interval(Random& random) {
+  const double a = uniform(random, 0, 1);
+  const double b = uniform(random, 0, 1);
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Second derivatives along a unit normal.
+struct Form {
+  real uu, uv, vv;
+  real determinant() const { return uu * vv - uv * uv; }
+};
+
+Form form_at(const BezierPatch& patch, real u, real v) {
+  const ReferenceJet j = reference_jet(patch, u, v);
+  const rvec3 n = j.normal();
+  return {glm::dot(j.Suu, n), glm::dot(j.Suv, n), glm::dot(j.Svv, n)};
+}
+
+/// What is said of a rectangle holds in points of it; how often something was.
+int check(const BezierPatch& patch, const std::array<bool, 4>& poles, const std::string& name,
+          Random& random, int rectangles) {
+  const CurvatureNets nets(patch, poles);
+  int told = 0;
+  for (int k = 0; k < rectangles; ++k) {
+    const Interval u = random_interval(random);
+    const Interval v = random_interval(random);
+    const SecondForm form = nets.over(u, v);
+    const std::optional<NormalPyramid> pyramid = nets.normals(u, v);
+    const bool negative = form.surely_negative();
+    const bool positive = form.surely_positive();
+    told += negative || positive || form.surely_saddle();
+    for (int i = 0; i < 20; ++i) {
+      const double s = u.at(uniform(random, 0, 1));
+      const double t = v.at(uniform(random, 0, 1));
+      const Form there = form_at(patch, s, t);
+      if (negative || positive) {
+        EXPECT_GT(there.determinant(), 0) << name;
+        EXPECT_EQ(there.uu < 0, negative) << name;
+      }
+      if (form.surely_saddle()) {
+        EXPECT_LT(there.determinant(), 0) << name;
+      }
+      if (pyramid) {
+        EXPECT_TRUE(pyramid->may_contain(dvec3(reference_jet(patch, s, t).normal()))) << name;
+      }
+    }
+  }
+  return told;
+}
+
+TEST(CurvatureNets, HoldForRandomPatches) {
+  Random random(5);
+  int told = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double weights = k % 2 == 0 ? 1 : log_uniform(random, 1.01, 10);
+    const BezierPatch patch = random_patch(random, pick(random, 1, 5), pick(random, 1, 5), weights);
+    told += check(patch, no_poles, std::to_string(k), random, 20);
+  }
+  EXPECT_GE(told, 100);
+}
+
+/// A quadric is curved one way everywhere, and the nets tell so at once, up to the poles.
+TEST(CurvatureNets, ProveWholeQuadrics) {
+  Random random(6);
+  for (const Shape& shape : {sphere(), ellipsoid(3, 2, 1), mapped(sphere(), skew_rotation()),
+                             shifted(ellipsoid(1, 2, 5), {20, 30, -10})}) {
+    const Model model = make_model(shape);
+    for (const Patch& patch : model.parts()[0].patches()) {
+      std::array<bool, 4> poles{};
+      for (const Side side : all_sides) {
+        poles[std::size_t(side)] = patch.borders[std::size_t(side)].kind == BorderKind::collapsed;
+      }
+      const CurvatureNets nets(patch.bezier, poles);
+      const SecondForm form = nets.over({0, 1}, {0, 1});
+      EXPECT_TRUE(form.surely_negative() || form.surely_positive());
+      EXPECT_TRUE(nets.normals({0, 1}, {0, 1}).has_value());
+      EXPECT_EQ(check(patch.bezier, poles, "quadric", random, 20), 20);
+    }
+  }
+}
+
+/// A pole that is none: the tip of a cone has no normal, and nothing is told of it.
+TEST(CurvatureNets, TellNothingOfTips) {
+  BezierPatch tip{2, 2, {}};
+  for (const double u : {-1.0, 0.0, 1.0}) {
+    for (const double v : {0.0, 1.0, 2.0}) {
+      tip.points.push_back(homogeneous({u * v, (1 - u * u) * v, v + 0.1 * v * v}));
+    }
+  }
+  const CurvatureNets nets(tip, {false, false, true, false});
+  const SecondForm form = nets.over({0, 1}, {0, 1});
+  EXPECT_FALSE(form.surely_negative() || form.surely_positive() || form.surely_saddle());
+}
+
+TEST(CurvatureNets, TellNothingOfFlatPatches) {
+  Random random(7);
+  const BezierPatch plane = make_model(disc(1, 0)).parts()[0].patches()[0].bezier;
+  const CurvatureNets nets(plane, no_poles);
+  const SecondForm form = nets.over({0, 1}, {0, 1});
+  EXPECT_FALSE(form.surely_negative() || form.surely_positive() || form.surely_saddle());
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,147 @@
+#include "taut/bounds/curvature_nets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "taut/bounds/normal_net.h"
+#include "taut/bounds/scaled_net.h"
+#include "taut/bounds/vector_net.h"
+
+namespace taut {
+namespace {
+
+/// What a net that is zero at a pole, but for rounding and for how well the planes there agree, may
+/// be there as a share of what its factors' sizes allow.
+constexpr double pole_rounding = 1e-9;
+
+double size_of(double x) { return std::abs(x); }
+double size_of(const dvec3& x) { return glm::length(x); }
+
+template <class Entry>
+double largest(const std::vector<Entry>& entries) {
+  double result = 0;
+  for (const Entry& e : entries) result = std::max(result, size_of(e));
+  return result;
+}
+
+/// Divides by the distance from the side, to a power. False if the net does not vanish there, to
+/// within `zero`.
+template <class Entry>
+bool divide(ScaledNet<Entry>& net, Side side, int power, double zero) {
+  for (; power > 0; --power) {
+    const bool of_u = along_v(side);
+    const NetShape less{net.shape.p - (of_u ? 1 : 0), net.shape.q - (of_u ? 0 : 1)};
+    if (less.p < 0 || less.q < 0) return false;
+    ScaledNet<Entry> quotient(less);
+    const int di = of_u && !at_upper_end(side) ? 1 : 0;
+    const int dj = !of_u && !at_upper_end(side) ? 1 : 0;
+    for (int i = 0; i <= less.p; ++i) {
+      for (int j = 0; j <= less.q; ++j) quotient.at(i, j) = net.at(i + di, j + dj);
+    }
+    const int last = of_u ? net.shape.q : net.shape.p;
+    const int end = at_upper_end(side) ? (of_u ? net.shape.p : net.shape.q) : 0;
+    const std::vector<double> factors = binomials(last);
+    for (int k = 0; k <= last; ++k) {
+      const Entry& entry = of_u ? net.at(end, k) : net.at(k, end);
+      if (size_of(entry) > zero * factors[std::size_t(k)]) return false;
+    }
+    net = std::move(quotient);
+  }
+  return true;
+}
+
+/// w Xab - wab X of a homogeneous patch, with derivatives `du` times along u and `dv` along v.
+ScaledNet<dvec3> second_derivative(const BezierPatch& patch, const std::vector<dvec4>& x, int du,
+                                   int dv) {
+  const int p = patch.degree_u;
+  const int q = patch.degree_v;
+  const NetShape shape{p - du, q - dv};
+  ScaledNet<dvec3> result({2 * p - du, 2 * q - dv});
+  if (shape.p < 0 || shape.q < 0) return ScaledNet<dvec3>({0, 0});
+  const double factor = (du == 2   ? p * (p - 1)
+                         : du == 1 ? p
+                                   : 1) *
+                        double(dv == 2   ? q * (q - 1)
+                               : dv == 1 ? q
+                                         : 1);
+  const auto at = [&](int i, int j) { return x[patch.index(i, j)]; };
+  const auto difference = [&](int i, int j) {
+    if (du == 2) return at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j);
+    if (dv == 2) return at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2);
+    return at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j);
+  };
+  const auto points = scaled<dvec4>({p, q}, at);
+  const auto derivative =
+      scaled<dvec4>(shape, [&](int i, int j) { return factor * difference(i, j); });
+  add_product(points, derivative, 0, 0, result,
+              [](const dvec4& a, const dvec4& b) { return a.w * dvec3(b) - b.w * dvec3(a); });
+  return result;
+}
+
+}  // namespace
+
+CurvatureNets::CurvatureNets(const BezierPatch& patch, const std::array<bool, 4>& poles) {
+  Box box;
+  for (const dvec4& p : patch.points) box.include(euclidean(p));
+  std::vector<dvec4> x = patch.points;
+  for (dvec4& p : x) p -= dvec4(p.w * box.center(), 0.0);
+  const NormalNet net = normal_net(patch);
+  const auto normals = scaled<dvec3>(
+      net.shape, [&](int i, int j) { return net.vectors[std::size_t(i * (net.shape.q + 1) + j)]; });
+  const double normal_size = largest(net.vectors);
+  bool sound = true;
+  const auto divided = [&](auto scaled_net, std::array<int, 2> powers, double size) {
+    for (const Side side : all_sides) {
+      if (!poles[std::size_t(side)]) continue;
+      // By the number of derivatives along the pole.
+      const int power = powers[along_v(side) ? 1 : 0];
+      sound = divide(scaled_net, side, power, pole_rounding * size) && sound;
+    }
+    return scaled_net;
+  };
+  const auto form = [&](int du, int dv) {
+    const ScaledNet<dvec3> second = second_derivative(patch, x, du, dv);
+    ScaledNet<double> product({normals.shape.p + second.shape.p, normals.shape.q + second.shape.q});
+    add_product(normals, second, 0, 0, product,
+                [](const dvec3& a, const dvec3& b) { return glm::dot(a, b); });
+    const double second_size = largest(unscaled(second));
+    // N shrinks once towards a pole, derivatives along it once each, and twice along it once more.
+    const ScaledNet<double> quotient =
+        divided(product, {1 + du, 1 + dv}, normal_size * second_size);
+    // Sums of products of entries, each of a sum of a few. A division by the distance from a side
+    // makes the entry next to it as many times larger as the degree.
+    const double roundings = 8.0 * (product.shape.p + product.shape.q + 8);
+    const double growth = std::pow(product.shape.p + 1.0, product.shape.p - quotient.shape.p) *
+                          std::pow(product.shape.q + 1.0, product.shape.q - quotient.shape.q);
+    return Net<double>{
+        quotient.shape, unscaled(quotient),
+        (net.rounding_bound + roundings * rounding_unit * normal_size) * second_size * growth};
+  };
+  uu_ = form(2, 0);
+  uv_ = form(1, 1);
+  vv_ = form(0, 2);
+  const ScaledNet<dvec3> quotient = divided(normals, {1, 1}, normal_size);
+  normals_ = {quotient.shape, unscaled(quotient),
+              net.rounding_bound * (net.shape.p + 1.0) * (net.shape.q + 1.0)};
+  if (!sound) uu_.error = std::numeric_limits<double>::infinity();
+}
+
+Interval CurvatureNets::range(const Net<double>& net, const Interval& u, const Interval& v) {
+  std::vector<double> entries = net.entries;
+  restrict_net(net.shape, entries.data(), u, v);
+  const auto [least, most] = std::minmax_element(entries.begin(), entries.end());
+  return {*least - net.error, *most + net.error};
+}
+
+SecondForm CurvatureNets::over(const Interval& u, const Interval& v) const {
+  return {range(uu_, u, v), range(uv_, u, v), range(vv_, u, v)};
+}
+
+std::optional<NormalPyramid> CurvatureNets::normals(const Interval& u, const Interval& v) const {
+  std::vector<dvec3> vectors = normals_.entries;
+  restrict_net(normals_.shape, vectors.data(), u, v);
+  return normal_pyramid(vectors, normals_.error);
+}
+
+}  // namespace taut

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "taut/bounds/normal_pyramid.h"
+#include "taut/bounds/second_form.h"
+#include "taut/surface/bezier.h"
+
+namespace taut {
+
+/// The second fundamental form of a patch as Bernstein nets: N . Suu, N . Suv and N . Svv, all
+/// times one positive function, N a positive multiple of Su x Sv. Degrees are high, but affine maps
+/// of the patch leave the nets as they are, up to a factor, and no bound of the normals loosens
+/// what they tell.
+///
+/// At a pole, a side that is one point with one tangent plane, the form and N vanish. There, too,
+/// they tell: what vanishes as powers of the distance from it is divided by them.
+class CurvatureNets {
+ public:
+  /// `poles`: the sides (indexed by Side) that are poles. @pre degrees are at least 1, weights
+  /// positive
+  CurvatureNets(const BezierPatch& patch, const std::array<bool, 4>& poles);
+
+  /// Bounds over a rectangle, in parameters stretched by distances from the poles: definite where
+  /// the form is.
+  SecondForm over(const Interval& u, const Interval& v) const;
+  /// Contains the normals there.
+  std::optional<NormalPyramid> normals(const Interval& u, const Interval& v) const;
+
+ private:
+  template <class Entry>
+  struct Net {
+    NetShape shape;
+    std::vector<Entry> entries;
+    double error = 0;  ///< of an entry
+  };
+  static Interval range(const Net<double>& net, const Interval& u, const Interval& v);
+
+  Net<dvec3> normals_;
+  Net<double> uu_, uv_, vv_;
+};
+
+}  // namespace taut
