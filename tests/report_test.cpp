@@ -38,7 +38,7 @@ taut::Report sample() {
   report.mesh.tolerance = 5e-324;
   report.mesh.distance_bound = 1.7976931348623157e308;
   report.mesh.files = {{"a.ply", 0}, {"b.stl", 0.1}};
-  report.culling = {1000, 10};
+  report.culling = {1000, 10, 2};
   report.queries = {7, 8};
   report.seconds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 45.5};
   report.peak_bytes = 1L << 40;
@@ -66,7 +66,7 @@ TEST(Report, KeysOfTheContractInOrder) {
   EXPECT_EQ(keys(json["mesh"]), (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance",
                                       "distance_bound", "files"}));
   for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
-  EXPECT_EQ(keys(json["culling"]), (Keys{"leaves", "kept"}));
+  EXPECT_EQ(keys(json["culling"]), (Keys{"leaves", "kept", "searched"}));
   EXPECT_EQ(keys(json["queries"]), (Keys{"support", "newton_iterations"}));
   EXPECT_EQ(keys(json["seconds"]), (Keys{"read", "build", "sample", "cull", "trace", "stitch",
                                          "mesh", "measure", "write", "total"}));
@@ -109,7 +109,7 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["mesh"]["files"][0]["rounding"].get<double>(), 0);
   EXPECT_EQ(json["mesh"]["files"][1]["file"], "b.stl");
   EXPECT_EQ(json["mesh"]["files"][1]["rounding"].get<double>(), 0.1);
-  EXPECT_EQ(json["culling"], Json({{"leaves", 1000}, {"kept", 10}}));
+  EXPECT_EQ(json["culling"], Json({{"leaves", 1000}, {"kept", 10}, {"searched", 2}}));
   EXPECT_EQ(json["queries"], Json({{"support", 7}, {"newton_iterations", 8}}));
   EXPECT_EQ(json["seconds"]["read"], 1.0);
   EXPECT_EQ(json["seconds"]["build"], 2.0);

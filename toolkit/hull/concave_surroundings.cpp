@@ -14,7 +14,7 @@ namespace {
 
 /// Cells on either side of the cell that need not stay below it; half as many more are to be
 /// concave.
-constexpr std::array<int, 3> widths = {4, 2, 1};
+constexpr std::array<int, 2> widths = {3, 1};
 /// Rectangles after which the surroundings are given up: nine are a cell's at a corner of four.
 constexpr std::size_t rectangle_limit = 16;
 /// Distance that is kept clear of the outline, in the cell's sizes, far more than rounding.

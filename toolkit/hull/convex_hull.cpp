@@ -28,6 +28,7 @@ HullStatistics& HullStatistics::operator+=(const HullStatistics& other) {
   newton_iterations += other.newton_iterations;
   cells = std::max(cells, other.cells);
   cells_kept = std::max(cells_kept, other.cells_kept);
+  cells_searched = std::max(cells_searched, other.cells_searched);
   seconds_gauss_map += other.seconds_gauss_map;
   seconds_sample += other.seconds_sample;
   seconds_cull += other.seconds_cull;

@@ -33,6 +33,8 @@ struct HullStatistics {
   /// Cells of the CBVHs at the finest level of culling, and those that were kept.
   long cells = 0;
   long cells_kept = 0;
+  /// Finer cells for which neither a proof nor a known contact accounts (SeparatingGraph).
+  long cells_searched = 0;
   double seconds_gauss_map = 0;
   double seconds_sample = 0;
   double seconds_cull = 0;

@@ -47,6 +47,7 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
   SeparatingGraph graph =
       trace_separating_curves(geometry, query, culling.samples, culling.cells, options.progress);
   statistics.newton_iterations += graph.newton_iterations;
+  statistics.cells_searched = graph.cells_searched;
   statistics.seconds_trace += lap.seconds();
 
   options.progress.update("stitch", 0);
@@ -89,6 +90,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
       return hull;
     } catch (const HullNotConverged& failure) {
       Hull best = *failure.best;
+      best.boundary = std::move(boundary);
       best.statistics += statistics;
       throw HullNotConverged(failure.what(), std::move(best));
     }

@@ -75,7 +75,9 @@ std::string to_json(const Report& report) {
                {"method", report.method},      {"dimension", report.dimension},
                {"hull", to_json(report.hull)}, {"mesh", to_json(report.mesh)}};
   if (report.culling) {
-    json["culling"] = {{"leaves", report.culling->leaves}, {"kept", report.culling->kept}};
+    json["culling"] = {{"leaves", report.culling->leaves},
+                       {"kept", report.culling->kept},
+                       {"searched", report.culling->searched}};
   }
   json["queries"] = to_json(report.queries);
   json["seconds"] = to_json(report.seconds);

@@ -46,10 +46,11 @@ struct Report {
     };
     std::vector<File> files;
   } mesh;
-  /// Leaves of the hierarchies at the finest level, and how many of them could not be culled; none
+  /// Leaves of the hierarchies at the finest level, and how many of them could not be culled;
+  /// cells, of finer ones, that in the end neither a proof nor a known contact accounts for. None
   /// where the method does not cull.
   struct Culling {
-    long leaves = 0, kept = 0;
+    long leaves = 0, kept = 0, searched = 0;
   };
   std::optional<Culling> culling;
   struct Queries {

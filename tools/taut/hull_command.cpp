@@ -214,7 +214,9 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   report.mesh.tolerance = tolerance;
   report.mesh.distance_bound = hull.distance_bound;
   const HullStatistics& statistics = hull.statistics;
-  if (statistics.cells > 0) report.culling = {statistics.cells, statistics.cells_kept};
+  if (statistics.cells > 0) {
+    report.culling = {statistics.cells, statistics.cells_kept, statistics.cells_searched};
+  }
   report.queries = {statistics.support_queries, statistics.newton_iterations};
   report.seconds.read = input.seconds_read();
   report.seconds.build = input.seconds_build() + statistics.seconds_gauss_map;
@@ -322,8 +324,9 @@ void write_outputs(const HullArguments& arguments, Input& input, const Hull& hul
     if (!is_document(format_of(file, arguments)) || hull.boundary || input.model().polyhedral()) {
       continue;
     }
-    throw IoError(file + ": the exact hull of this model, which is flat, is not known; " +
-                  ".ply holds its mesh");
+    throw IoError(file + ": the exact hull of this model, which is " +
+                  (hull.kind == HullKind::solid ? "solid" : "flat") +
+                  ", is not known; .ply holds its mesh");
   }
   for (const std::string& file : arguments.outputs) {
     console.progress().check();
