@@ -140,6 +140,7 @@ class SupportQuery::Search {
   void take_point(int instance, int vertex, double h);
   void open_cell(int instance, int index);
   void open_coons(const Entry& entry);
+  static bool is_inside(double lower, double size) { return lower > 0 && lower + size < 1; }
   void push_coons(int instance, const CoonsEntry& entry, const SceneElement& e);
   void push_net(const NetCell& cell, const SceneElement& e);
   NetCell net_cell(int instance, int element, const CoonsCell& place, const SceneNet& net,
@@ -306,7 +307,9 @@ SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int e
 }
 
 /// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
+/// Inside of a developable patch nothing is higher than the highest point of its border.
 void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
+  if (e.developable && is_inside(cell.u, cell.size_u) && is_inside(cell.v, cell.size_v)) return;
   const int size = e.shape.size();
   const double* b = nets_.data() + cell.slot;
   double highest = -infinity;

@@ -6,6 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
@@ -473,24 +474,40 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
   }
 }
 
+std::vector<std::array<Contact, 2>> rulings(const ContactGeometry& geometry, const Contact& c) {
+  const Patch& patch = geometry.patch(c);
+  const auto at = [&](double u, double v) { return Contact{c.instance, c.kind, c.element, u, v}; };
+  std::vector<std::array<Contact, 2>> result;
+  if (patch.ruled_v) result.push_back({at(c.u, 0), at(c.u, 1)});
+  if (patch.ruled_u) result.push_back({at(0, c.v), at(1, c.v)});
+  if (!patch.ruled_obliquely) return result;
+  if (const auto ends = ruling_ends(patch.bezier, {c.u, c.v})) {
+    result.push_back({at((*ends)[0].x, (*ends)[0].y), at((*ends)[1].x, (*ends)[1].y)});
+  }
+  return result;
+}
+
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
   Contact own = geometry.canonical(c);
-  const auto move_to_end = [&](double Contact::*t) {
-    Contact low = own;
-    Contact high = own;
-    low.*t = 0;
-    high.*t = 1;
-    const double rise = glm::dot(geometry.point(high) - geometry.point(low), n);
+  const auto move_to_end = [&](const Contact& low, const Contact& high) {
+    const dvec3 x = geometry.point(own);
+    const dvec3 to_low = geometry.point(low) - x;
+    const dvec3 to_high = geometry.point(high) - x;
+    const double rise = glm::dot(to_high - to_low, n);
     const bool level = std::abs(rise) <= geometry.tie();
-    own = geometry.canonical((level ? own.*t >= 0.5 : rise > 0) ? high : low);
+    const bool nearer_to_high = glm::length(to_high) <= glm::length(to_low);
+    own = geometry.canonical((level ? nearer_to_high : rise > 0) ? high : low);
   };
-  const auto inside = [](double t) { return t > 0 && t < 1; };
-  for (const auto t : {&Contact::v, &Contact::u}) {
-    if (own.kind != SourceKind::face) break;
-    const Patch& patch = geometry.patch(own);
-    if ((t == &Contact::v ? patch.ruled_v : patch.ruled_u) && inside(own.*t)) move_to_end(t);
+  const auto is_end = [&](const Contact& end) { return end.u == own.u && end.v == own.v; };
+  for (std::size_t k = 0; own.kind == SourceKind::face; ++k) {
+    const std::vector<std::array<Contact, 2>> all = rulings(geometry, own);
+    if (k >= all.size()) break;
+    if (!is_end(all[k][0]) && !is_end(all[k][1])) move_to_end(all[k][0], all[k][1]);
   }
-  if (own.kind == SourceKind::edge && geometry.is_straight(own)) move_to_end(&Contact::u);
+  if (own.kind == SourceKind::edge && geometry.is_straight(own)) {
+    move_to_end({own.instance, own.kind, own.element, 0, 0},
+                {own.instance, own.kind, own.element, 1, 0});
+  }
   return own;
 }
 

@@ -503,6 +503,7 @@ void find_rulings(std::vector<Patch>& patches) {
     const bool plane = is_plane(patch.bezier);
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
+    patch.ruled_obliquely = !patch.ruled() && is_developable(patch.bezier);
   }
 }
 

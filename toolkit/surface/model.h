@@ -48,7 +48,10 @@ struct Patch {
   /// parameters.
   bool ruled_u = false;
   bool ruled_v = false;
-  bool ruled() const { return ruled_u || ruled_v; }
+  /// Neither, but developable: the straight segments run across the parameter lines, or along them
+  /// at a speed of their own.
+  bool ruled_obliquely = false;
+  bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
   /// The first patch of the part with the same control points, which lies before this one, or -1.
   /// A patch that repeats one takes no part in joins; its borders and corners are those of the
   /// other.

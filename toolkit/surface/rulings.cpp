@@ -1,0 +1,134 @@
+#include "taut/surface/rulings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// Curvatures below this, as a share of the second derivatives, have no direction to tell.
+constexpr double flat_share = 1e-9;
+/// How far from a flat point its ruling is taken from those on both sides.
+constexpr double aside = 1e-3;
+/// Largest step along a ruling, in parameters.
+constexpr double stride = 0.1;
+constexpr int step_limit = 200;
+constexpr int newton_steps = 4;
+/// Steps that lead away from a border at a smaller share of their length run along it.
+constexpr double along_border = 1e-9;
+
+/// The direction in which the second fundamental form vanishes. None where all of it does.
+std::optional<dvec3> null_direction(const BezierPatch& patch, const dvec2& uv) {
+  const PatchJet2 j = jet2(patch, uv.x, uv.y);
+  const dvec3 n = unit(glm::cross(j.Su, j.Sv));
+  // By tangents of length one, so that parameters' speeds do not matter.
+  const double a = glm::length(j.Su);
+  const double b = glm::length(j.Sv);
+  if (n == dvec3(0.0)) return std::nullopt;
+  const double L = glm::dot(j.Suu, n) / (a * a);
+  const double M = glm::dot(j.Suv, n) / (a * b);
+  const double N = glm::dot(j.Svv, n) / (b * b);
+  const double size =
+      glm::length(j.Suu) / (a * a) + glm::length(j.Suv) / (a * b) + glm::length(j.Svv) / (b * b);
+  if (std::max(std::abs(L), std::abs(N)) <= flat_share * size) return std::nullopt;
+  const dvec3 u = j.Su / a;
+  const dvec3 v = j.Sv / b;
+  return unit(std::abs(L) >= std::abs(N) ? L * v - M * u : N * u - M * v);
+}
+
+/// The direction of the ruling through the point.
+std::optional<dvec3> ruling_direction(const BezierPatch& patch, const dvec2& uv) {
+  if (const auto e = null_direction(patch, uv)) return e;
+  for (const dvec2& off : {dvec2(aside, 0), dvec2(0, aside)}) {
+    const auto a = null_direction(patch, uv - off);
+    const auto b = null_direction(patch, uv + off);
+    if (a && b) return unit(*a + (glm::dot(*a, *b) < 0 ? -*b : *b));
+  }
+  return std::nullopt;
+}
+
+/// Follows the line through a point of the patch, in its tangent plane there, which is that of all
+/// of the ruling.
+class RulingTrace {
+ public:
+  RulingTrace(const BezierPatch& patch, const dvec2& uv, const dvec3& direction)
+      : patch_(patch), uv_(uv), along_(direction) {
+    const PatchJet1 j = jet1(patch, uv.x, uv.y);
+    x_ = j.S;
+    across_ = unit(glm::cross(glm::cross(j.Su, j.Sv), direction));
+  }
+
+  dvec2 end(double sense) const {
+    dvec2 at = uv_;
+    for (int k = 0; k < step_limit; ++k) {
+      const std::optional<dvec2> step = step_along(at, sense);
+      if (!step || !advance(at, *step)) break;
+    }
+    return at;
+  }
+
+ private:
+  /// Of the length of a stride. None where the parametrisation fails.
+  std::optional<dvec2> step_along(const dvec2& at, double sense) const {
+    const PatchJet1 j = jet1(patch_, at.x, at.y);
+    const double ua = glm::dot(j.Su, along_);
+    const double va = glm::dot(j.Sv, along_);
+    const double ub = glm::dot(j.Su, across_);
+    const double vb = glm::dot(j.Sv, across_);
+    const double determinant = ua * vb - va * ub;
+    const dvec2 rate = dvec2(vb, -ub) * std::copysign(sense, sense * determinant);
+    const double length = std::max(std::abs(rate.x), std::abs(rate.y));
+    if (determinant == 0 || length == 0) return std::nullopt;
+    return rate * (stride / length);
+  }
+
+  /// False if the border is reached.
+  bool advance(dvec2& at, dvec2 step) const {
+    double share = 1;
+    int border = -1;
+    for (int a = 0; a < 2; ++a) {
+      const double room = step[a] < 0 ? at[a] : 1 - at[a];
+      if (room <= 0 && std::abs(step[a]) <= along_border * stride) step[a] = 0;
+      if (std::abs(step[a]) * share <= room) continue;
+      share = room / std::abs(step[a]);
+      border = a;
+    }
+    const double bound = border >= 0 && step[border] > 0 ? 1 : 0;
+    at = glm::clamp(at + share * step, dvec2(0.0), dvec2(1.0));
+    if (border >= 0) at[border] = bound;
+    for (int k = 0; k < newton_steps; ++k) correct(at, border);
+    return border < 0;
+  }
+
+  /// Moves the point onto the line; on a border along it.
+  void correct(dvec2& at, int border) const {
+    const PatchJet1 j = jet1(patch_, at.x, at.y);
+    dvec2 slope(glm::dot(j.Su, across_), glm::dot(j.Sv, across_));
+    if (border >= 0) {
+      const dvec3& along = border == 0 ? j.Sv : j.Su;
+      slope[border] = 0;
+      if (glm::length(slope) <= along_border * glm::length(along)) return;
+    }
+    const double square = glm::dot(slope, slope);
+    if (square == 0) return;
+    at = glm::clamp(at - slope * (glm::dot(j.S - x_, across_) / square), dvec2(0.0), dvec2(1.0));
+  }
+
+  const BezierPatch& patch_;
+  const dvec2 uv_;
+  dvec3 x_;
+  dvec3 along_, across_;
+};
+
+}  // namespace
+
+std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const dvec2& uv) {
+  const std::optional<dvec3> direction = ruling_direction(patch, uv);
+  if (!direction) return std::nullopt;
+  const RulingTrace trace(patch, uv, *direction);
+  return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
+}
+
+}  // namespace taut
