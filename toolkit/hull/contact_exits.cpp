@@ -6,7 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
-#include "taut/surface/rulings.h"
+#include "taut/hull/ruling_paths.h"
 
 namespace taut {
 namespace {
@@ -474,19 +474,6 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
   }
 }
 
-std::vector<std::array<Contact, 2>> rulings(const ContactGeometry& geometry, const Contact& c) {
-  const Patch& patch = geometry.patch(c);
-  const auto at = [&](double u, double v) { return Contact{c.instance, c.kind, c.element, u, v}; };
-  std::vector<std::array<Contact, 2>> result;
-  if (patch.ruled_v) result.push_back({at(c.u, 0), at(c.u, 1)});
-  if (patch.ruled_u) result.push_back({at(0, c.v), at(1, c.v)});
-  if (!patch.ruled_obliquely) return result;
-  if (const auto ends = ruling_ends(patch.bezier, {c.u, c.v})) {
-    result.push_back({at((*ends)[0].x, (*ends)[0].y), at((*ends)[1].x, (*ends)[1].y)});
-  }
-  return result;
-}
-
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
   Contact own = geometry.canonical(c);
   const auto move_to_end = [&](const Contact& low, const Contact& high) {
@@ -498,15 +485,19 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
     const bool nearer_to_high = glm::length(to_high) <= glm::length(to_low);
     own = geometry.canonical((level ? nearer_to_high : rise > 0) ? high : low);
   };
-  const auto is_end = [&](const Contact& end) { return end.u == own.u && end.v == own.v; };
+  const auto last = [&](const dvec3& along) {
+    const std::vector<Contact> path = ruling_path(geometry, own, along);
+    return path.empty() ? own : path.back();
+  };
   for (std::size_t k = 0; own.kind == SourceKind::face; ++k) {
     const std::vector<std::array<Contact, 2>> all = rulings(geometry, own);
     if (k >= all.size()) break;
-    if (!is_end(all[k][0]) && !is_end(all[k][1])) move_to_end(all[k][0], all[k][1]);
+    const dvec3 along = unit(geometry.point(all[k][1]) - geometry.point(all[k][0]));
+    move_to_end(last(-along), last(along));
   }
   if (own.kind == SourceKind::edge && geometry.is_straight(own)) {
-    move_to_end({own.instance, own.kind, own.element, 0, 0},
-                {own.instance, own.kind, own.element, 1, 0});
+    const auto end = [&](double t) { return Contact{own.instance, own.kind, own.element, t, 0}; };
+    move_to_end(end(0), end(1));
   }
   return own;
 }

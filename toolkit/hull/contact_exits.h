@@ -56,10 +56,6 @@ bool continues(const ContactGeometry& geometry, const Contact& a, const Contact&
 /// vertex between them; as they are where there is none.
 void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 
-/// The ends of the straight segments of a ruled patch that run through the contact, on the patch's
-/// borders: one, or of a patch that is ruled in both parameters two. @pre kind face
-std::vector<std::array<Contact, 2>> rulings(const ContactGeometry& geometry, const Contact& c);
-
 /// The contact in its canonical form where it supports in the direction n; inside of a straight
 /// edge or of a ruled patch, which support only together with the ends of the segments in them, the
 /// higher of these ends.

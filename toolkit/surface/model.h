@@ -145,10 +145,10 @@ class Part {
   ///
   /// Seams are the smooth joins that get pieces too, for supporting planes can leave a surface
   /// there though it has no edge: those of a ruled patch with one that is not, those of ruled
-  /// patches that are not straight, and crests as above. Their ends are as those of edges, except
-  /// that edges do not see them: an edge goes on where a seam ends beside it, though its pieces end
-  /// in a vertex there. Seams are no edges; vertices that stand at their ends alone, and their
-  /// pieces, come last.
+  /// patches that are not straight, unless the straight segments of the one go on in the other, and
+  /// crests as above. Their ends are as those of edges, except that edges do not see them: an edge
+  /// goes on where a seam ends beside it, though its pieces end in a vertex there. Seams are no
+  /// edges; vertices that stand at their ends alone, and their pieces, come last.
   /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]
   void connect(double smooth_angle);
   bool connected() const { return connected_; }

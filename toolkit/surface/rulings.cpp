@@ -38,8 +38,8 @@ std::optional<dvec3> null_direction(const BezierPatch& patch, const dvec2& uv) {
   return unit(std::abs(L) >= std::abs(N) ? L * v - M * u : N * u - M * v);
 }
 
-/// The direction of the ruling through the point.
-std::optional<dvec3> ruling_direction(const BezierPatch& patch, const dvec2& uv) {
+/// The direction of the ruling through the point, by the second fundamental form.
+std::optional<dvec3> traced_direction(const BezierPatch& patch, const dvec2& uv) {
   if (const auto e = null_direction(patch, uv)) return e;
   for (const dvec2& off : {dvec2(aside, 0), dvec2(0, aside)}) {
     const auto a = null_direction(patch, uv - off);
@@ -125,10 +125,20 @@ class RulingTrace {
 }  // namespace
 
 std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const dvec2& uv) {
-  const std::optional<dvec3> direction = ruling_direction(patch, uv);
+  const std::optional<dvec3> direction = traced_direction(patch, uv);
   if (!direction) return std::nullopt;
   const RulingTrace trace(patch, uv, *direction);
   return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
+}
+
+std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv) {
+  if (patch.ruled_obliquely) return traced_direction(patch.bezier, uv);
+  if (patch.ruled_u == patch.ruled_v) return std::nullopt;
+  const auto at = [&](double t) {
+    return patch.ruled_u ? point(patch.bezier, t, uv.y) : point(patch.bezier, uv.x, t);
+  };
+  const dvec3 e = unit(at(1) - at(0));
+  return e == dvec3(0.0) ? std::nullopt : std::optional(e);
 }
 
 }  // namespace taut
