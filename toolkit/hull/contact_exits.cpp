@@ -6,7 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
-#include "taut/hull/ruling_paths.h"
+#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
@@ -485,14 +485,18 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
     const bool nearer_to_high = glm::length(to_high) <= glm::length(to_low);
     own = geometry.canonical((level ? nearer_to_high : rise > 0) ? high : low);
   };
-  const auto last = [&](const dvec3& along) {
-    const std::vector<Contact> path = ruling_path(geometry, own, along);
-    return path.empty() ? own : path.back();
-  };
+  const Part& part = geometry.part(own);
   for (std::size_t k = 0; own.kind == SourceKind::face; ++k) {
-    const std::vector<std::array<Contact, 2>> all = rulings(geometry, own);
+    const PatchPoint at{own.element, {own.u, own.v}};
+    const std::vector<std::array<dvec2, 2>> all = rulings(geometry.patch(own), at.uv);
     if (k >= all.size()) break;
-    const dvec3 along = unit(geometry.point(all[k][1]) - geometry.point(all[k][0]));
+    const dvec3 along =
+        unit(point(part, {at.patch, all[k][1]}) - point(part, {at.patch, all[k][0]}));
+    const auto last = [&](const dvec3& direction) {
+      const std::vector<PatchPoint> path = ruling_path(part, at, direction);
+      const PatchPoint end = path.empty() ? at : path.back();
+      return Contact{own.instance, own.kind, end.patch, end.uv.x, end.uv.y};
+    };
     move_to_end(last(-along), last(along));
   }
   if (own.kind == SourceKind::edge && geometry.is_straight(own)) {

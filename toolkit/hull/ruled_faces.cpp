@@ -7,7 +7,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
-#include "taut/hull/ruling_paths.h"
+#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
@@ -56,13 +56,19 @@ int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling
                  std::size_t end) {
   const dvec3 normal = unit_normal(geometry, c);
   if (glm::length(glm::cross(normal, r.n)) > same_ruling) return -1;
-  const dvec3 along = unit(r.point[1 - end] - r.point[end]);
-  const std::vector<Contact> path = ruling_path(geometry, c, along);
+  const dvec3 along = geometry.to_local(c.instance, unit(r.point[1 - end] - r.point[end]));
+  const std::vector<PatchPoint> path =
+      ruling_path(geometry.part(c), {c.element, {c.u, c.v}}, along);
   if (path.empty()) return -1;
-  if (glm::distance(geometry.point(path.back()), r.point[1 - end]) > same_ruling) return -1;
-  const int source = source_of(geometry, path.front());
-  const bool one = std::all_of(path.begin(), path.end(),
-                               [&](const Contact& p) { return source_of(geometry, p) == source; });
+  const auto contact = [&](const PatchPoint& p) {
+    return Contact{c.instance, c.kind, p.patch, p.uv.x, p.uv.y};
+  };
+  const dvec3 reached = geometry.point(contact(path.back()));
+  if (glm::distance(reached, r.point[1 - end]) > same_ruling) return -1;
+  const int source = source_of(geometry, c);
+  const bool one = std::all_of(path.begin(), path.end(), [&](const PatchPoint& p) {
+    return source_of(geometry, contact(p)) == source;
+  });
   return one ? source : -1;
 }
 

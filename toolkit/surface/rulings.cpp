@@ -16,6 +16,14 @@ constexpr double aside = 1e-3;
 constexpr double stride = 0.1;
 constexpr int step_limit = 200;
 constexpr int newton_steps = 4;
+/// Sine of the angle between segments of one line.
+constexpr double same_line = 1e-6;
+/// Those shorter than this share of the part have no direction.
+constexpr double shortest = 1e-10;
+/// Parameters so near to a side's are at it.
+constexpr double at_side = 1e-9;
+/// Patches that a line passes at most.
+constexpr std::size_t path_limit = 1000;
 /// Steps that lead away from a border at a smaller share of their length run along it.
 constexpr double along_border = 1e-9;
 
@@ -122,6 +130,42 @@ class RulingTrace {
   dvec3 along_, across_;
 };
 
+/// The end of a segment through the point in the direction.
+std::optional<PatchPoint> end_along(const Part& part, const PatchPoint& at, const dvec3& along) {
+  const double least = shortest * diagonal(part.control_box());
+  const dvec3 x = point(part, at);
+  for (const std::array<dvec2, 2>& ends : rulings(part.patches()[std::size_t(at.patch)], at.uv)) {
+    for (const dvec2& uv : ends) {
+      const PatchPoint end{at.patch, uv};
+      const dvec3 way = point(part, end) - x;
+      if (glm::length(way) > least && glm::distance(unit(way), along) < same_line) return end;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The point in all the ruled patches about it that smooth joins lead to, beginning with its own.
+std::vector<PatchPoint> about(const Part& part, const PatchPoint& at) {
+  std::vector<PatchPoint> all = {at};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const dvec2 uv = all[k].uv;
+    const Patch& patch = part.patches()[std::size_t(all[k].patch)];
+    for (const Side side : all_sides) {
+      const Border& border = patch.borders[std::size_t(side)];
+      if (border.kind != BorderKind::smooth || border.piece >= 0) continue;
+      if (std::abs((along_v(side) ? uv.x : uv.y) - (at_upper_end(side) ? 1 : 0)) > at_side)
+        continue;
+      const double t = std::clamp(along_v(side) ? uv.y : uv.x, 0.0, 1.0);
+      const PatchPoint over{border.neighbor,
+                            on_side(border.neighbor_side, border.reversed ? 1 - t : t)};
+      const bool known = std::any_of(all.begin(), all.end(),
+                                     [&](const PatchPoint& p) { return p.patch == over.patch; });
+      if (!known && part.patches()[std::size_t(over.patch)].ruled()) all.push_back(over);
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const dvec2& uv) {
@@ -131,14 +175,42 @@ std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const 
   return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
 }
 
+std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv) {
+  std::vector<std::array<dvec2, 2>> result;
+  if (patch.ruled_v) result.push_back({dvec2(uv.x, 0), dvec2(uv.x, 1)});
+  if (patch.ruled_u) result.push_back({dvec2(0, uv.y), dvec2(1, uv.y)});
+  if (!patch.ruled_obliquely) return result;
+  if (const auto ends = ruling_ends(patch.bezier, uv)) result.push_back(*ends);
+  return result;
+}
+
 std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv) {
   if (patch.ruled_obliquely) return traced_direction(patch.bezier, uv);
-  if (patch.ruled_u == patch.ruled_v) return std::nullopt;
-  const auto at = [&](double t) {
-    return patch.ruled_u ? point(patch.bezier, t, uv.y) : point(patch.bezier, uv.x, t);
-  };
-  const dvec3 e = unit(at(1) - at(0));
+  const std::vector<std::array<dvec2, 2>> all = rulings(patch, uv);
+  if (all.size() != 1) return std::nullopt;
+  const auto at = [&](const dvec2& end) { return point(patch.bezier, end.x, end.y); };
+  const dvec3 e = unit(at(all[0][1]) - at(all[0][0]));
   return e == dvec3(0.0) ? std::nullopt : std::optional(e);
+}
+
+dvec3 point(const Part& part, const PatchPoint& at) {
+  return point(part.patches()[std::size_t(at.patch)].bezier, at.uv.x, at.uv.y);
+}
+
+std::vector<PatchPoint> ruling_path(const Part& part, const PatchPoint& from, const dvec3& along) {
+  std::vector<PatchPoint> path;
+  PatchPoint at = from;
+  while (path.size() < path_limit) {
+    std::optional<PatchPoint> next;
+    for (const PatchPoint& p : about(part, at)) {
+      next = end_along(part, p, along);
+      if (next) break;
+    }
+    if (!next) break;
+    path.push_back(*next);
+    at = *next;
+  }
+  return path;
 }
 
 }  // namespace taut
