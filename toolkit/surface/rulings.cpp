@@ -15,7 +15,12 @@ constexpr double aside = 1e-3;
 /// Largest step along a ruling, in parameters.
 constexpr double stride = 0.1;
 constexpr int step_limit = 200;
-constexpr int newton_steps = 4;
+constexpr int newton_limit = 8;
+constexpr int halving_limit = 20;
+/// What points may be off a line, as a share of the control points' extent, and how far from where
+/// they were predicted they may be, as a share of the step.
+constexpr double missed_line = 1e-12;
+constexpr double least_share = 0.1;
 /// Sine of the angle between segments of one line.
 constexpr double same_line = 1e-6;
 /// Those shorter than this share of the part have no direction.
@@ -65,19 +70,36 @@ class RulingTrace {
       : patch_(patch), uv_(uv), along_(direction) {
     const PatchJet1 j = jet1(patch, uv.x, uv.y);
     x_ = j.S;
+    Box box;
+    for (const dvec4& p : patch.points) box.include(euclidean(p));
+    size_ = diagonal(box);
     across_ = unit(glm::cross(glm::cross(j.Su, j.Sv), direction));
   }
 
   dvec2 end(double sense) const {
     dvec2 at = uv_;
     for (int k = 0; k < step_limit; ++k) {
-      const std::optional<dvec2> step = step_along(at, sense);
-      if (!step || !advance(at, *step)) break;
+      std::optional<dvec2> step = step_along(at, sense);
+      if (!step) break;
+      std::optional<Arrival> next = arrival(at, *step, sense);
+      // Where the parametrisation is uneven, as at corners, long steps lead astray.
+      for (int halvings = 0; !next && halvings < halving_limit; ++halvings) {
+        *step *= 0.5;
+        next = arrival(at, *step, sense);
+      }
+      if (!next) break;
+      at = next->uv;
+      if (next->border >= 0) break;
     }
     return at;
   }
 
  private:
+  struct Arrival {
+    dvec2 uv;
+    int border;  ///< the parameter that is at its end; -1: the point is inside
+  };
+
   /// Of the length of a stride. None where the parametrisation fails.
   std::optional<dvec2> step_along(const dvec2& at, double sense) const {
     const PatchJet1 j = jet1(patch_, at.x, at.y);
@@ -92,8 +114,8 @@ class RulingTrace {
     return rate * (stride / length);
   }
 
-  /// False if the border is reached.
-  bool advance(dvec2& at, dvec2 step) const {
+  /// Where the step leads, on the line and no farther than the border. None if it misses the line.
+  std::optional<Arrival> arrival(const dvec2& at, dvec2 step, double sense) const {
     double share = 1;
     int border = -1;
     for (int a = 0; a < 2; ++a) {
@@ -103,14 +125,23 @@ class RulingTrace {
       share = room / std::abs(step[a]);
       border = a;
     }
-    const double bound = border >= 0 && step[border] > 0 ? 1 : 0;
-    at = glm::clamp(at + share * step, dvec2(0.0), dvec2(1.0));
-    if (border >= 0) at[border] = bound;
-    for (int k = 0; k < newton_steps; ++k) correct(at, border);
-    return border < 0;
+    dvec2 uv = glm::clamp(at + share * step, dvec2(0.0), dvec2(1.0));
+    if (border >= 0) uv[border] = step[border] > 0 ? 1 : 0;
+    const dvec2 predicted = uv;
+    for (int k = 0; k < newton_limit; ++k) {
+      const dvec2 before = uv;
+      correct(uv, border);
+      if (uv == before) break;
+    }
+    const dvec3 x = point(patch_, uv.x, uv.y);
+    const double moved = sense * glm::dot(x - point(patch_, at.x, at.y), along_);
+    const bool on_line = std::abs(glm::dot(x - x_, across_)) <= missed_line * size_;
+    const bool near = glm::distance(uv, predicted) <= stride * std::max(share, least_share);
+    if (!on_line || !near || moved < -missed_line * size_) return std::nullopt;
+    return Arrival{uv, border};
   }
 
-  /// Moves the point onto the line; on a border along it.
+  /// Moves the point towards the line; on a border along it.
   void correct(dvec2& at, int border) const {
     const PatchJet1 j = jet1(patch_, at.x, at.y);
     dvec2 slope(glm::dot(j.Su, across_), glm::dot(j.Sv, across_));
@@ -126,6 +157,7 @@ class RulingTrace {
 
   const BezierPatch& patch_;
   const dvec2 uv_;
+  double size_ = 0;
   dvec3 x_;
   dvec3 along_, across_;
 };
