@@ -78,6 +78,20 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
+/// The end of the straight segment on which a piece lies, beyond the piece's end.
+Contact end_of_segment(const ContactGeometry& geometry, const Contact& c, int end) {
+  Contact at = c;
+  at.u = end;
+  for (std::size_t k = 0; k < geometry.part(c).pieces().size(); ++k) {
+    const std::optional<Contact> next = beyond_end(geometry, at, int(at.u));
+    if (!next) break;
+    at = *next;
+    if (at.kind == SourceKind::vertex) break;
+    at.u = 1 - at.u;
+  }
+  return geometry.canonical(at);
+}
+
 /// The contact moved to the side or end at which the exit lies.
 Contact at_exit(Contact c, const ContactExit& exit) {
   if (exit.kind == ContactExit::Kind::side) {
@@ -297,8 +311,8 @@ class Climb {
       return Progress::moved;
     }
     if (geometry_.is_straight(c_)) {  // level: its ends are as high
-      c_.u = c_.u < 0.5 ? 0 : 1;
-      return leave({ContactExit::Kind::end, int(c_.u)});
+      c_ = end_of_segment(geometry_, c_, c_.u < 0.5 ? 0 : 1);
+      return Progress::moved;
     }
     if (std::abs(slope) > flat * size && second >= 0) return Progress::lost;
     const auto& sides = geometry_.sides(c_);
@@ -500,8 +514,7 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
     move_to_end(last(-along), last(along));
   }
   if (own.kind == SourceKind::edge && geometry.is_straight(own)) {
-    const auto end = [&](double t) { return Contact{own.instance, own.kind, own.element, t, 0}; };
-    move_to_end(end(0), end(1));
+    move_to_end(end_of_segment(geometry, own, 0), end_of_segment(geometry, own, 1));
   }
   return own;
 }

@@ -96,7 +96,6 @@ bool normal_is_inward_cross_along(Side side) { return side == Side::u0 || side =
 struct Arc {
   int join = -1;  ///< -1: a piece of a free curve
   bool seam = false;
-  bool straight = false;
   std::array<int, 2> point = {-1, -1};     ///< set of points at its ends
   std::array<dvec3, 2> direction = {};     ///< from its ends into the arc, unit
   std::array<int, 2> neighbor = {-1, -1};  ///< the arc's end that goes straight on from its ends
@@ -149,7 +148,6 @@ class Connector {
   std::vector<std::pair<int, int>> sorted_ends() const;
   void add_vertices(const std::vector<bool>& has_vertex);
   bool goes_straight_on(int end_a, int end_b) const;
-  bool both_straight(int end_a, int end_b) const;
   std::vector<int> face_sides(const Arc& arc) const;
   std::vector<int> successors() const;
   void make_edges();
@@ -310,7 +308,6 @@ void Connector::identify_points() {
 void Connector::add_arc(int join, const BezierCurve& curve, std::array<int, 2> points) {
   Arc arc;
   arc.join = join;
-  arc.straight = is_straight(curve);
   arc.point = {points_.find(points[0]), points_.find(points[1])};
   arc.direction = {start_direction(curve, tolerance_),
                    start_direction(reversed(curve), tolerance_)};
@@ -346,8 +343,7 @@ std::vector<std::pair<int, int>> Connector::sorted_ends() const {
 
 /// An end that meets exactly one other straight on goes on there; all others end in a vertex. First
 /// without seams, for these leave edges and their vertices what they are; then with them: a seam
-/// that ends beside an edge that goes on makes a vertex inside of that edge. So do the ends of
-/// straight pieces in one line, for the ends of each are its contacts.
+/// that ends beside an edge that goes on makes a vertex inside of that edge.
 void Connector::place_vertices() {
   std::vector<bool> has_vertex(4 * patches_.size() + 2 * to_size(free_piece_count_));
   for (int side = 0; side < to_int(sides_.size()); ++side) {
@@ -364,14 +360,12 @@ void Connector::place_vertices() {
       bool concerned = !seams;
       here.clear();
       for (; i < ends.size() && ends[i].first == point; ++i) {
-        const Arc& arc = arcs_[to_size(ends[i].second / 2)];
-        const bool seam = arc.seam;
-        concerned = concerned || seam || arc.straight;
+        const bool seam = arcs_[to_size(ends[i].second / 2)].seam;
+        concerned = concerned || seam;
         if (seams || !seam) here.push_back(ends[i].second);
       }
       if (here.empty() || !concerned || has_vertex[to_size(point)]) continue;
-      if (here.size() == 2 && goes_straight_on(here[0], here[1]) &&
-          !(seams && both_straight(here[0], here[1]))) {
+      if (here.size() == 2 && goes_straight_on(here[0], here[1])) {
         neighbor(here[0]) = here[1];
         neighbor(here[1]) = here[0];
       } else {
@@ -391,10 +385,6 @@ void Connector::add_vertices(const std::vector<bool>& has_vertex) {
     vertex_of_[point] = to_int(vertices_.size());
     vertices_.push_back(point_at(to_int(point)));
   }
-}
-
-bool Connector::both_straight(int end_a, int end_b) const {
-  return arcs_[to_size(end_a / 2)].straight && arcs_[to_size(end_b / 2)].straight;
 }
 
 bool Connector::goes_straight_on(int end_a, int end_b) const {
