@@ -24,9 +24,9 @@ class PatchNets {
   NetShape shape() const { return element_->shape; }
   bool rational() const { return element_->rational; }
   const CellNets& root() const { return root_; }
-  /// The patch is a piece of a developable surface ruled along u or v (a plane, a cylinder, a cone)
-  /// within rounding, or a curve or a point. No point inside is extreme: it touches a supporting
-  /// plane only together with the ends of a ruling.
+  /// The patch is a piece of a developable surface (a plane, a cylinder, a cone) within rounding,
+  /// or a curve or a point. No point inside is extreme: it touches a supporting plane only together
+  /// with the ends of a ruling.
   bool developable() const { return developable_; }
 
   /// The patch's control points over a rectangle of its unit square.

@@ -221,7 +221,10 @@ ScenePart make_part(const Part& part, double scale, int threads) {
   parallel_for(built.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       for (dvec4& p : found.patches[k].points) p = moved(p, result.center, scale);
-      built[k] = make_element(found.elements[k].first, found.elements[k].second, found.patches[k]);
+      const auto [kind, index] = found.elements[k];
+      built[k] = make_element(kind, index, found.patches[k]);
+      built[k]->developable =
+          kind == SourceKind::face && part.patches()[std::size_t(index)].ruled_obliquely;
     }
   });
   result.element_of_patch.assign(part.patches().size(), -1);

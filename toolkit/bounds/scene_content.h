@@ -63,6 +63,7 @@ struct SceneElement {
   double reach;  ///< largest |x| + |y| + |z| of the control points
   SceneNet net;
   CoonsBvh bvh;
+  bool developable = false;  ///< Patch::ruled_obliquely
 };
 
 /// A cell of an element's CBVH at which searches start: flat enough that its net bounds it well.

@@ -4,10 +4,13 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/second_order.h"
 #include "taut/core/error.h"
+#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
@@ -140,6 +143,7 @@ class SupportQuery::Search {
   void take_point(int instance, int vertex, double h);
   void open_cell(int instance, int index);
   void open_coons(const Entry& entry);
+  static bool is_inside(double lower, double size) { return lower > 0 && lower + size < 1; }
   void push_coons(int instance, const CoonsEntry& entry, const SceneElement& e);
   void push_net(const NetCell& cell, const SceneElement& e);
   NetCell net_cell(int instance, int element, const CoonsCell& place, const SceneNet& net,
@@ -167,6 +171,7 @@ class SupportQuery::Search {
   void polish(const Net& net, const SceneElement& e, const NetCell& cell);
   template <class Net>
   void seek_extreme_point(const Net& net, const SceneElement& e, const NetCell& cell);
+  void seek_end_of_ruling();
   void open_net(const Entry& entry);
   void polish_from(const Contact& contact);
   void finish();
@@ -306,7 +311,9 @@ SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int e
 }
 
 /// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
+/// Inside of a developable patch nothing is higher than the highest point of its border.
 void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
+  if (e.developable && is_inside(cell.u, cell.size_u) && is_inside(cell.v, cell.size_v)) return;
   const int size = e.shape.size();
   const double* b = nets_.data() + cell.slot;
   double highest = -infinity;
@@ -527,7 +534,8 @@ void SupportQuery::Search::polish_from(const Contact& contact) {
 }
 
 /// Where the value does not change along a parameter line (the ruling of a cylinder, a plane that
-/// faces the direction), goes to the line's end: points between are not extreme, and tell nothing.
+/// faces the direction) or any other ruling, goes to the line's end: points between are not
+/// extreme, and tell nothing.
 template <class Net>
 void SupportQuery::Search::seek_extreme_point(const Net& net, const SceneElement& e,
                                               const NetCell& cell) {
@@ -542,6 +550,25 @@ void SupportQuery::Search::seek_extreme_point(const Net& net, const SceneElement
   for (const double end : {0.0, 1.0}) {
     if (net.p() > 0 && is_far(best_.u) && is_flat(end, best_.v)) best_.u = end;
     if (net.q() > 0 && is_far(best_.v) && is_flat(best_.u, end)) best_.v = end;
+  }
+  if (best_.kind == SourceKind::face) seek_end_of_ruling();
+}
+
+/// As far as patches go on smoothly.
+void SupportQuery::Search::seek_end_of_ruling() {
+  const int index = scene_.instances[std::size_t(best_.instance)].part;
+  const Part& part = scene_.model.parts()[std::size_t(index)];
+  const PatchPoint at{best_.element, {best_.u, best_.v}};
+  const std::optional<dvec3> along = ruling_direction(part.patches()[std::size_t(at.patch)], at.uv);
+  if (!along) return;
+  for (const dvec3& direction : {*along, -*along}) {
+    const std::vector<PatchPoint> path = ruling_path(part, at, direction);
+    if (path.empty()) continue;
+    const PatchPoint& end = path.back();
+    const Contact there{best_.instance, best_.kind, end.patch, end.uv.x, end.uv.y};
+    if (glm::dot(scene_.frame_point(there), n_) < best_h_ - support_slack) continue;
+    best_ = there;
+    return;
   }
 }
 

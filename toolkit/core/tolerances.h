@@ -63,6 +63,10 @@ inline constexpr double ruled_rounding = 4 * coordinate_rounding;
 inline constexpr double crest_angle = 1e-11;
 inline constexpr double crest_height = 1e-12;
 
+/// Largest angle between straight segments of two patches of which the one goes straight on in the
+/// other: how far the join is off the whole segment cannot be told by any support value.
+inline constexpr double same_ruling_angle = crest_angle;
+
 /// Crests nearer to a patch's border, or to each other, than this share of the patch are the same:
 /// normals turn between them by no more than crest_angle on any but degenerate patches.
 inline constexpr double least_crest_share = 1e-9;

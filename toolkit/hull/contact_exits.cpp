@@ -6,6 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
@@ -75,6 +76,20 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   double t = distance(0) <= distance(1) ? 0 : 1;
   if (next == c.element) t = 1 - end;
   return Contact{c.instance, SourceKind::edge, next, t, 0};
+}
+
+/// The end of the straight segment on which a piece lies, beyond the piece's end.
+Contact end_of_segment(const ContactGeometry& geometry, const Contact& c, int end) {
+  Contact at = c;
+  at.u = end;
+  for (std::size_t k = 0; k < geometry.part(c).pieces().size(); ++k) {
+    const std::optional<Contact> next = beyond_end(geometry, at, int(at.u));
+    if (!next) break;
+    at = *next;
+    if (at.kind == SourceKind::vertex) break;
+    at.u = 1 - at.u;
+  }
+  return geometry.canonical(at);
 }
 
 /// The contact moved to the side or end at which the exit lies.
@@ -296,8 +311,8 @@ class Climb {
       return Progress::moved;
     }
     if (geometry_.is_straight(c_)) {  // level: its ends are as high
-      c_.u = c_.u < 0.5 ? 0 : 1;
-      return leave({ContactExit::Kind::end, int(c_.u)});
+      c_ = end_of_segment(geometry_, c_, c_.u < 0.5 ? 0 : 1);
+      return Progress::moved;
     }
     if (std::abs(slope) > flat * size && second >= 0) return Progress::lost;
     const auto& sides = geometry_.sides(c_);
@@ -475,22 +490,32 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
 
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
   Contact own = geometry.canonical(c);
-  const auto move_to_end = [&](double Contact::*t) {
-    Contact low = own;
-    Contact high = own;
-    low.*t = 0;
-    high.*t = 1;
-    const double rise = glm::dot(geometry.point(high) - geometry.point(low), n);
+  const auto move_to_end = [&](const Contact& low, const Contact& high) {
+    const dvec3 x = geometry.point(own);
+    const dvec3 to_low = geometry.point(low) - x;
+    const dvec3 to_high = geometry.point(high) - x;
+    const double rise = glm::dot(to_high - to_low, n);
     const bool level = std::abs(rise) <= geometry.tie();
-    own = geometry.canonical((level ? own.*t >= 0.5 : rise > 0) ? high : low);
+    const bool nearer_to_high = glm::length(to_high) <= glm::length(to_low);
+    own = geometry.canonical((level ? nearer_to_high : rise > 0) ? high : low);
   };
-  const auto inside = [](double t) { return t > 0 && t < 1; };
-  for (const auto t : {&Contact::v, &Contact::u}) {
-    if (own.kind != SourceKind::face) break;
-    const Patch& patch = geometry.patch(own);
-    if ((t == &Contact::v ? patch.ruled_v : patch.ruled_u) && inside(own.*t)) move_to_end(t);
+  const Part& part = geometry.part(own);
+  for (std::size_t k = 0; own.kind == SourceKind::face; ++k) {
+    const PatchPoint at{own.element, {own.u, own.v}};
+    const std::vector<std::array<dvec2, 2>> all = rulings(geometry.patch(own), at.uv);
+    if (k >= all.size()) break;
+    const dvec3 along =
+        unit(point(part, {at.patch, all[k][1]}) - point(part, {at.patch, all[k][0]}));
+    const auto last = [&](const dvec3& direction) {
+      const std::vector<PatchPoint> path = ruling_path(part, at, direction);
+      const PatchPoint end = path.empty() ? at : path.back();
+      return Contact{own.instance, own.kind, end.patch, end.uv.x, end.uv.y};
+    };
+    move_to_end(last(-along), last(along));
   }
-  if (own.kind == SourceKind::edge && geometry.is_straight(own)) move_to_end(&Contact::u);
+  if (own.kind == SourceKind::edge && geometry.is_straight(own)) {
+    move_to_end(end_of_segment(geometry, own, 0), end_of_segment(geometry, own, 1));
+  }
   return own;
 }
 

@@ -30,6 +30,29 @@ bool is_segment(const BezierCurve& curve) {
   });
 }
 
+/// Which of a part's pieces lie on segments between vertices: alone, or with those in which they go
+/// straight on.
+std::vector<bool> straight_pieces(const Part& part, const std::vector<BezierCurve>& curves) {
+  std::vector<bool> straight;
+  straight.reserve(curves.size());
+  for (const BezierCurve& curve : curves) straight.push_back(is_segment(curve));
+  // What goes on in a curve is none.
+  std::vector<std::size_t> bent;
+  const auto bend = [&](std::size_t k) {
+    straight[k] = false;
+    bent.push_back(k);
+  };
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    if (!straight[k]) bent.push_back(k);
+  }
+  for (std::size_t i = 0; i < bent.size(); ++i) {
+    for (const int next : part.pieces()[bent[i]].end_neighbor) {
+      if (next >= 0 && straight[std::size_t(next)]) bend(std::size_t(next));
+    }
+  }
+  return straight;
+}
+
 }  // namespace
 
 std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn) {
@@ -79,13 +102,12 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
     for (std::size_t i = 0; i < part.pieces().size(); ++i) {
       const EdgePiece& piece = part.pieces()[i];
       own.pieces.push_back({moved(piece.bezier.points, center, scale)});
-      own.straight.push_back(piece.end_vertex[0] >= 0 && piece.end_vertex[1] >= 0 &&
-                             is_segment(own.pieces.back()));
       for (int end = 0; end < 2; ++end) {
         const int vertex = piece.end_vertex[std::size_t(end)];
         if (vertex >= 0) own.ends[std::size_t(vertex)].push_back({-1, int(i), end});
       }
     }
+    own.straight = straight_pieces(part, own.pieces);
     for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
   }
   find_coincidences();

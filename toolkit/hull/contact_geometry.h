@@ -85,7 +85,8 @@ class ContactGeometry {
   /// @pre kind vertex, not repeated
   const std::vector<PieceEnd>& ends(const Contact& c) const;
 
-  /// The piece is a straight segment between vertices: its ends are contacts, nothing inside of it.
+  /// The piece lies on a straight segment between vertices, alone or with others in which it goes
+  /// straight on: the segment's ends are contacts, nothing inside of it.
   /// @pre kind edge
   bool is_straight(const Contact& c) const;
   /// Contacts inside of the patch are contacts of straight segments of it, and so of their ends.

@@ -7,12 +7,14 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
 
-/// Sine of the angle between rulings that are one.
-constexpr double same_ruling = 1e-7;
+/// Sine of the angle between planes, and distance between ends of segments, that are one: borders
+/// of faces that meet are off each other by no more than join_distance.
+constexpr double same_ruling = 1e-6;
 
 int source_of(const ContactGeometry& geometry, const Contact& c) {
   return geometry.scene().model().source_id({SourceKind::face, c.instance, geometry.patch(c).face});
@@ -48,22 +50,38 @@ void label_facets(const ContactGeometry& geometry, HullBoundary& boundary) {
   }
 }
 
-/// The face of whose rulings one begins in contact `end` and runs along the segment. -1: none.
+/// The face of whose rulings those that begin in the contact make up the whole of the segment, from
+/// one patch to the next, in its plane. -1: it is not one face, or none.
+int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling& r,
+                 std::size_t end) {
+  const dvec3 normal = unit_normal(geometry, c);
+  if (glm::length(glm::cross(normal, r.n)) > same_ruling) return -1;
+  const dvec3 along = geometry.to_local(c.instance, unit(r.point[1 - end] - r.point[end]));
+  const std::vector<PatchPoint> path =
+      ruling_path(geometry.part(c), {c.element, {c.u, c.v}}, along);
+  if (path.empty()) return -1;
+  const auto contact = [&](const PatchPoint& p) {
+    return Contact{c.instance, c.kind, p.patch, p.uv.x, p.uv.y};
+  };
+  const dvec3 reached = geometry.point(contact(path.back()));
+  if (glm::distance(reached, r.point[1 - end]) > same_ruling) return -1;
+  const int source = source_of(geometry, c);
+  const bool one = std::all_of(path.begin(), path.end(), [&](const PatchPoint& p) {
+    return source_of(geometry, contact(p)) == source;
+  });
+  return one ? source : -1;
+}
+
+/// That of a face that ends where the segment begins.
 int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t end) {
   const Contact& c = r.contact[end];
   if (c.kind != SourceKind::edge) return -1;
-  const dvec3 along = unit(r.point[1 - end] - r.point[end]);
   for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(c)) {
-    Contact far{side.instance < 0 ? c.instance : side.instance, SourceKind::face, side.patch, 0, 0};
-    const Patch& patch = geometry.patch(far);
-    if (!(along_v(side.side) ? patch.ruled_u : patch.ruled_v)) continue;
     const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
-    far.u = uv.x;
-    far.v = uv.y;
-    double& across = along_v(side.side) ? far.u : far.v;
-    across = 1 - across;
-    const dvec3 ruling = unit(geometry.point(far) - r.point[end]);
-    if (glm::distance(ruling, along) < same_ruling) return source_of(geometry, far);
+    const int instance = side.instance < 0 ? c.instance : side.instance;
+    const Contact own{instance, SourceKind::face, side.patch, uv.x, uv.y};
+    const int source = source_along(geometry, own, r, end);
+    if (source >= 0) return source;
   }
   return -1;
 }

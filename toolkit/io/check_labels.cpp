@@ -21,9 +21,10 @@ constexpr double long_ruling = 1e-2;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-/// Where on a ruling it is looked whether it lies on a face; and which of a scroll's rulings are
-/// looked at where no face is told.
+/// Which of a scroll's rulings are looked at where no face is told; and where on a ruling it is
+/// looked whether it lies on a face.
 constexpr std::array<double, 3> quarters = {0.25, 0.5, 0.75};
+constexpr std::array<double, 5> along_ruling = {0, 0.25, 0.5, 0.75, 1};
 
 /// The ruled faces of a model, as a document without hull.
 HullDocument ruled_faces(const Scene& scene) {
@@ -127,7 +128,7 @@ bool LabelCheck::in_plane(const HullDocument::Source& source, const Face& facet,
 bool LabelCheck::on_face(const DocumentGeometry& geometry, int source,
                          const HullDocument::Ruling& ruling, double near) const {
   const std::vector<HullDocument::Patch>& patches = geometry.source(source).patches;
-  return std::all_of(quarters.begin(), quarters.end(), [&](double s) {
+  return std::all_of(along_ruling.begin(), along_ruling.end(), [&](double s) {
     const dvec3 p = geometry.local((1 - s) * ruling.a.p + s * ruling.b.p);
     for (std::size_t i = 0; i < patches.size(); ++i) {
       Box box;

@@ -7,12 +7,41 @@
 
 namespace taut {
 
+/// Gauss and Newton's step to the surface's point nearest to p, from parameters in [0, 1]^2; it
+/// leads from a border along it or inside. The distances that matter are zero, where second
+/// derivatives count for nothing.
+inline dvec2 step_to_nearest(const SourceJet& j, const dvec3& p, const dvec2& t) {
+  const dvec3 off = p - j.x;
+  const dvec2 square(glm::dot(j.dx[0], j.dx[0]), glm::dot(j.dx[1], j.dx[1]));
+  const dvec2 slope(glm::dot(off, j.dx[0]), glm::dot(off, j.dx[1]));
+  const double mixed = glm::dot(j.dx[0], j.dx[1]);
+  const double determinant = square.x * square.y - mixed * mixed;
+  const auto leaves = [&](int a, double step) { return step < 0 ? t[a] <= 0 : t[a] >= 1; };
+  if (determinant > 0) {
+    const dvec2 step(square.y * slope.x - mixed * slope.y, square.x * slope.y - mixed * slope.x);
+    if (!leaves(0, step.x) && !leaves(1, step.y)) return step / determinant;
+  }
+  // Along one of the parameters, the one that gains more.
+  double best = 0;
+  dvec2 result(0.0);
+  for (const int a : {0, 1}) {
+    if (!(square[a] > 0) || leaves(a, slope[a])) continue;
+    const double gain = slope[a] * slope[a] / square[a];
+    if (!(gain > best)) continue;
+    best = gain;
+    result = dvec2(0.0);
+    result[a] = slope[a] / square[a];
+  }
+  return result;
+}
+
 /// The distance of p from a surface over [0, 1]^2, by Newton's method from the nearest of some
 /// samples. `jet(t)` is the surface's SourceJet.
 template <class Jet>
 double distance_to_surface(const dvec3& p, const Jet& jet) {
   constexpr int samples = 8;
-  constexpr int steps = 16;
+  constexpr int steps = 40;
+  constexpr double least_share = 1.0 / 64;
   dvec2 t(0.0);
   double best = std::numeric_limits<double>::infinity();
   const auto consider = [&](const dvec2& at) {
@@ -24,21 +53,15 @@ double distance_to_surface(const dvec3& p, const Jet& jet) {
   for (int i = 0; i <= samples; ++i) {
     for (int k = 0; k <= samples; ++k) consider(dvec2(i, k) / double(samples));
   }
-  dvec2 now = t;
-  for (int i = 0; i < steps; ++i) {
-    const SourceJet j = jet(now);
-    const dvec3 off = j.x - p;
-    // Gauss and Newton's: the distances that matter are zero, where the second derivatives count
-    // for nothing.
-    const double E = glm::dot(j.dx[0], j.dx[0]);
-    const double F = glm::dot(j.dx[0], j.dx[1]);
-    const double G = glm::dot(j.dx[1], j.dx[1]);
-    const dvec2 slope(glm::dot(off, j.dx[0]), glm::dot(off, j.dx[1]));
-    const double determinant = E * G - F * F;
-    if (!(determinant > 0)) break;
-    const dvec2 step(G * slope.x - F * slope.y, E * slope.y - F * slope.x);
-    now = glm::clamp(now - step / determinant, dvec2(0.0), dvec2(1.0));
-    consider(now);
+  for (int i = 0; i < steps && best > 0; ++i) {
+    const double before = best;
+    const dvec2 from = t;
+    const dvec2 step = step_to_nearest(jet(from), p, from);
+    // Where the surface degenerates, at corners, a whole step may lead astray.
+    for (double share = 1; share >= least_share && !(best < before); share *= 0.5) {
+      consider(glm::clamp(from + share * step, dvec2(0.0), dvec2(1.0)));
+    }
+    if (!(best < before)) break;
   }
   return best;
 }

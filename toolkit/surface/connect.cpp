@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "taut/core/error.h"
@@ -12,6 +13,7 @@
 #include "taut/surface/model.h"
 #include "taut/surface/point_grid.h"
 #include "taut/surface/repeated_patches.h"
+#include "taut/surface/rulings.h"
 #include "taut/surface/side_joins.h"
 #include "taut/surface/split_crests.h"
 
@@ -136,6 +138,7 @@ class Connector {
   void classify_joins();
   bool is_smooth(const Use& a, const Use& b) const;
   bool is_seam(const Join& join) const;
+  bool rulings_go_on(const Join& join) const;
   bool is_pole(int side) const;
   dvec3 point_at(int number) const;
   void identify_points();
@@ -186,13 +189,15 @@ void Connector::classify_joins() {
   }
 }
 
-/// Where a ruled patch ends, rulings end; on both sides of a crest support points are few, on it
-/// many. Across other smooth joins support points move on from one patch to the next.
+/// Where a ruled patch ends, rulings end, unless those of another go straight on; on both sides of
+/// a crest support points are few, on it many. Across other smooth joins support points move on
+/// from one patch to the next.
 /// @pre the join is smooth
 bool Connector::is_seam(const Join& join) const {
   const bool straight = is_straight(sides_[to_size(join[0].side)].curve);
   const bool ruled[2] = {patch_of(join[0].side).ruled(), patch_of(join[1].side).ruled()};
-  if (ruled[0] || ruled[1]) return !straight || ruled[0] != ruled[1];
+  if (ruled[0] != ruled[1]) return true;
+  if (ruled[0]) return !straight && !rulings_go_on(join);
   return !straight && std::all_of(join.begin(), join.end(), [&](const Use& use) {
     const Side side = all_sides[to_size(use.side % 4)];
     const BezierPatch& patch = patch_of(use.side).bezier;
@@ -201,6 +206,23 @@ bool Connector::is_seam(const Join& join) const {
     return is_crest(patch, direction, s) &&
            may_support(patch, direction, s, corner_points_, tolerance_);
   });
+}
+
+/// Rulings of the one patch that end on the join are continued by those of the other.
+bool Connector::rulings_go_on(const Join& join) const {
+  const int m = 4 * sides_[to_size(join[0].side)].curve.degree();
+  for (int k = 0; k <= m; ++k) {
+    const double t = sample_parameter(k, m);
+    std::array<std::optional<dvec3>, 2> e;
+    for (const std::size_t i : {0u, 1u}) {
+      const Use& use = join[i];
+      const dvec2 uv = on_side(all_sides[to_size(use.side % 4)], use.reversed ? 1 - t : t);
+      e[i] = ruling_direction(patch_of(use.side), uv);
+    }
+    if (!e[0] || !e[1]) return false;
+    if (glm::length(glm::cross(*e[0], *e[1])) > same_ruling_angle) return false;
+  }
+  return true;
 }
 
 /// G1 along a border x(t) is det(X, X', A, B) = 0 with homogeneous X and cross derivatives A, B: a
@@ -503,6 +525,7 @@ void find_rulings(std::vector<Patch>& patches) {
     const bool plane = is_plane(patch.bezier);
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
+    patch.ruled_obliquely = !patch.ruled() && is_developable(patch.bezier);
   }
 }
 

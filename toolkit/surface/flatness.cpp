@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "taut/core/tolerances.h"
 
@@ -27,6 +28,45 @@ HomogeneousBound largest_entries(const std::vector<dvec4>& points) {
   }
   return result;
 }
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+
+/// What the rounding of a patch's control points may do to its derivatives.
+class DerivativeRounding {
+ public:
+  explicit DerivativeRounding(const BezierPatch& patch) {
+    const auto [least, most] =
+        std::minmax_element(patch.points.begin(), patch.points.end(),
+                            [](const dvec4& a, const dvec4& b) { return a.w < b.w; });
+    const double ratio = most->w / least->w;
+    const double rounding = coordinate_rounding * largest_coordinate(patch.points) * ratio;
+    const double p = patch.degree_u;
+    const double q = patch.degree_v;
+    u_ = 2 * p * rounding;
+    v_ = 2 * q * rounding;
+    // Weights enter the second derivatives once more.
+    uu_ = 4 * p * p * rounding * ratio;
+    uv_ = 4 * p * q * rounding * ratio;
+    vv_ = 4 * q * q * rounding * ratio;
+  }
+
+  /// The second fundamental form's determinant is zero up to rounding. @pre n is the unit normal
+  bool may_be_parabolic(const PatchJet2& j, const dvec3& n) const {
+    const double area = glm::length(glm::cross(j.Su, j.Sv));
+    const double turn = (u_ * glm::length(j.Sv) + v_ * glm::length(j.Su)) / area;
+    const double L = glm::dot(j.Suu, n);
+    const double M = glm::dot(j.Suv, n);
+    const double N = glm::dot(j.Svv, n);
+    const double eL = uu_ + turn * glm::length(j.Suu);
+    const double eM = uv_ + turn * glm::length(j.Suv);
+    const double eN = vv_ + turn * glm::length(j.Svv);
+    return std::abs(L * N - M * M) <=
+           eL * std::abs(N) + eN * std::abs(L) + 2 * eM * std::abs(M) + eL * eN + eM * eM;
+  }
+
+ private:
+  double u_, v_, uu_, uv_, vv_;
+};
 
 }  // namespace
 
@@ -58,6 +98,30 @@ bool is_ruled(const BezierPatch& patch, Direction direction) {
       const dvec4 d = glm::abs(patch.at(i, j) - 2.0 * patch.at(i - 1, j) + patch.at(i - 2, j));
       if (std::max({d.x, d.y, d.z}) > ruled_rounding * largest.space) return false;
       if (d.w > ruled_rounding * largest.weight) return false;
+    }
+  }
+  return true;
+}
+
+bool is_developable(const BezierPatch& patch) {
+  const DerivativeRounding rounding(patch);
+  // In u and v the degrees of the numerator, a polynomial in fourfold products of the homogeneous
+  // control points and their derivatives squared, are no more than this.
+  const int mu = 8 * patch.degree_u - 4;
+  const int mv = 8 * patch.degree_v - 4;
+  const auto inside = [](int k, int m) {
+    return 0.5 - 0.5 * std::cos(std::numbers::pi * (k + 0.5) / (m + 1));
+  };
+  std::vector<dvec3> before(to_size(mv + 1), dvec3(0.0));
+  for (int i = 0; i <= mu; ++i) {
+    for (int k = 0; k <= mv; ++k) {
+      const PatchJet2 j = jet2(patch, inside(i, mu), inside(k, mv));
+      const dvec3 n = unit(glm::cross(j.Su, j.Sv));
+      if (n == dvec3(0.0) || !rounding.may_be_parabolic(j, n)) return false;
+      // Normals turn little from one place to the next unless there is a fold between them.
+      if (i > 0 && glm::dot(n, before[to_size(k)]) <= 0) return false;
+      if (k > 0 && glm::dot(n, before[to_size(k - 1)]) <= 0) return false;
+      before[to_size(k)] = n;
     }
   }
   return true;

@@ -15,6 +15,11 @@ bool is_straight(const BezierCurve& curve);
 /// one: its homogeneous control points are affine in it. Raising the degree changes nothing.
 bool is_ruled(const BezierPatch& patch, Direction direction);
 
+/// The Gauss curvature vanishes everywhere: the numerator of it does where it is looked at, which
+/// is at as many places as determine it. The surface is immersed, but for its border: through all
+/// of its points run straight segments that end on the border (Hartman and Nirenberg 1959).
+bool is_developable(const BezierPatch& patch);
+
 /// All control points lie in one plane.
 bool is_plane(const BezierPatch& patch);
 /// @}

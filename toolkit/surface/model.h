@@ -48,7 +48,10 @@ struct Patch {
   /// parameters.
   bool ruled_u = false;
   bool ruled_v = false;
-  bool ruled() const { return ruled_u || ruled_v; }
+  /// Neither, but developable: the straight segments run across the parameter lines, or along them
+  /// at a speed of their own.
+  bool ruled_obliquely = false;
+  bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
   /// The first patch of the part with the same control points, which lies before this one, or -1.
   /// A patch that repeats one takes no part in joins; its borders and corners are those of the
   /// other.
@@ -142,10 +145,10 @@ class Part {
   ///
   /// Seams are the smooth joins that get pieces too, for supporting planes can leave a surface
   /// there though it has no edge: those of a ruled patch with one that is not, those of ruled
-  /// patches that are not straight, and crests as above. Their ends are as those of edges, except
-  /// that edges do not see them: an edge goes on where a seam ends beside it, though its pieces end
-  /// in a vertex there. Seams are no edges; vertices that stand at their ends alone, and their
-  /// pieces, come last.
+  /// patches that are not straight, unless the straight segments of the one go on in the other, and
+  /// crests as above. Their ends are as those of edges, except that edges do not see them: an edge
+  /// goes on where a seam ends beside it, though its pieces end in a vertex there. Seams are no
+  /// edges; vertices that stand at their ends alone, and their pieces, come last.
   /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]
   void connect(double smooth_angle);
   bool connected() const { return connected_; }
