@@ -8,7 +8,7 @@
 
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/rulings_between.h"
 
 namespace taut_test {
 namespace {
@@ -86,9 +86,10 @@ void add_part(const taut::ContactSystem& system, const TrimStretch& s, int patch
   const dvec2 a = at(from);
   const dvec2 b = at(to);
   if (depth > 0 && winding.distance(a, b) < glm::distance(a, b)) {
-    const Ruling middle = ruling_between(system, from, to, 0.5);
-    add_part(system, s, patch, from, middle, depth - 1, winding);
-    add_part(system, s, patch, middle, to, depth - 1, winding);
+    const std::optional<Ruling> middle = ruling_between(system, from, to, 0.5);
+    if (!middle) depth = 1;
+    add_part(system, s, patch, from, middle.value_or(to), depth - 1, winding);
+    if (middle) add_part(system, s, patch, *middle, to, depth - 1, winding);
   } else if (s.reversed) {
     winding.add(b, a);
   } else {

@@ -13,6 +13,7 @@
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_ends.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/rulings_between.h"
 #include "taut/hull/surface_seeds.h"
 
 namespace taut {
@@ -315,10 +316,10 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
           if (s < -overlap || s > 1 + overlap) continue;
           const double off = glm::dot(en, en) + glm::dot(e0, e0) + glm::dot(e1, e1);
           if (off - s * s * square > 0.25 * square + same_curve * same_curve) continue;
-          const Ruling there = ruling_between(system_, from, to, s);
-          if (glm::distance(there.n, seed.n) < same_curve &&
-              glm::distance(there.point[0], x0) < same_curve &&
-              glm::distance(there.point[1], x1) < same_curve) {
+          const std::optional<Ruling> there = ruling_between(system_, from, to, s);
+          if (there && glm::distance(there->n, seed.n) < same_curve &&
+              glm::distance(there->point[0], x0) < same_curve &&
+              glm::distance(there->point[1], x1) < same_curve) {
             return true;
           }
         }
