@@ -87,9 +87,8 @@ class ContactSystem {
   static constexpr int step_limit = 20;
   static constexpr double step_bound = 0.7;
   static constexpr double converged_step = 1e-11;
-  static constexpr double noise_step = 1e-7;
-  /// Steps of least length that are shorter are rounding if residuals are.
-  static constexpr double settled_step = 1e-6;
+  /// Steps below this that do not get shorter are the rounding of contacts that nearly merge.
+  static constexpr double noise_step = 1e-6;
   static constexpr double residual_limit = 1e-13;
   /// A turn of n per length below which its sense is not trusted.
   static constexpr double least_turn = 1e-6;
@@ -103,12 +102,9 @@ class ContactSystem {
       const LinearEquation extra = equation(s);
       const std::optional<double> length = step(s, &extra, steps);
       if (!length) return false;
-      if (*length < converged_step || (*length<noise_step&& * length> 0.5 * last)) {
-        return residual(s) < residual_limit;
-      }
-      if (steps == Steps::least && *length < settled_step && residual(s) < residual_limit) {
-        return true;
-      }
+      if (*length < converged_step) return residual(s) < residual_limit;
+      const bool noise = *length < noise_step && *length > 0.5 * last;
+      if (noise && residual(s) < residual_limit) return true;
       last = *length;
     }
     return false;
