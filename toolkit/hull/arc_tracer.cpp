@@ -738,13 +738,17 @@ bool Trace::ends_merged() {
 bool Trace::is_followed(const Ruling& from, const Ruling& to) {
   const RulingsBetween between(system_, from, to);
   if (between.empty()) return true;
-  const auto in_element = [](double t) { return std::abs(t - 0.5) <= 0.5 + parameter_slack; };
+  // As lengths: about a pole parameters are less exact.
+  const auto stays = [](double t, const dvec3& dx) {
+    return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) <= parameter_slack;
+  };
   const auto supports = [&](double s) {
     const std::optional<MovingRuling> m = between(s);
     if (!m) return false;
     const CommonSupport& at = m->at;
     for (std::size_t i = 0; i < 2; ++i) {
-      if (!in_element(at.contact[i].u) || !in_element(at.contact[i].v)) return false;
+      const Contact& c = at.contact[i];
+      if (!stays(c.u, at.jet[i].dx[0]) || !stays(c.v, at.jet[i].dx[1])) return false;
     }
     return query_(at.n, at.contact[0]).h <= glm::dot(at.jet[0].x, at.n) + geometry_.tie();
   };

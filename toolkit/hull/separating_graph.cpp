@@ -55,6 +55,8 @@ constexpr double overlap = 0.2;
 constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
+/// How far contacts move at most where the direction turns by so much, in the scene's frame.
+constexpr double moved_contact = 8;
 /// The circle about a pole's normal on which curves are sought.
 constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
@@ -97,6 +99,7 @@ class GraphTracer {
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,
                     double slack = 0) const;
   bool lies_in_facet(const CommonSupport& s) const;
+  static bool is_beside(const FacetNode& node, const CommonSupport& seed, double off);
   bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int node_at(const TracedArc& traced);
@@ -626,6 +629,16 @@ bool GraphTracer::lies_in_facet(const CommonSupport& s) const {
   });
 }
 
+/// Whether the seed, in a direction that is hardly off the node's, is on a curve that leaves it:
+/// its contacts are two of the node's own that have moved by as little.
+bool GraphTracer::is_beside(const FacetNode& node, const CommonSupport& seed, double off) {
+  const double reach = same_branch + moved_contact * off;
+  return std::all_of(seed.jet.begin(), seed.jet.begin() + seed.count, [&](const ContactJet& j) {
+    return std::any_of(node.points.begin(), node.points.end(),
+                       [&](const dvec3& p) { return glm::distance(p, j.x) < reach; });
+  });
+}
+
 /// Whether the seed is a facet, with other contacts beside the two: a node for it, if it is new.
 bool GraphTracer::is_facet(const CommonSupport& seed) {
   const std::vector<Contact> contacts(seed.contact.begin(), seed.contact.begin() + seed.count);
@@ -634,6 +647,7 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
     if (lies_in(node, seed.n, contacts)) return true;
     const double off = glm::distance(node.n, seed.n);
     if (off < same_plane && has_contacts(node, contacts, off)) return true;
+    if (off < nearly_same_plane && is_beside(node, seed, off)) return true;
   }
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, seed.n, contacts);
   if (!f || !f->is_facet()) return false;
