@@ -11,6 +11,8 @@ namespace {
 /// Newton's method may move the interpolated ruling by this share of the chord: more than curves
 /// turn between two neighbouring rulings, less than to another solution.
 constexpr double correction_share = 0.15;
+/// Rulings are no shorter than this share of both their neighbours.
+constexpr double least_length = 0.1;
 /// What rounding may move contacts by that nearly merge.
 constexpr double rounded = 1e-7;
 /// An arc that is so many times its chord is none that was traced.
@@ -98,6 +100,8 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
       to_(to),
       square_(square(to.n - from.n) + square(to.point[0] - from.point[0]) +
               square(to.point[1] - from.point[1])) {
+  shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
+                      glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
   if (merged(from) == merged(to)) {
     fit();
@@ -210,6 +214,8 @@ bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
 /// Not another solution, like the one with the contacts exchanged.
 bool RulingsBetween::is_near(const MovingRuling& start, const MovingRuling& m) const {
   if (merges() && glm::dot(start.at.d(), m.at.d()) <= 0) return false;
+  // Any two contacts in one point are a solution.
+  if (!merges() && glm::length(m.at.d()) < least_length * shorter_) return false;
   const double limit = std::max(correction_share * correction_share * square_, rounded * rounded);
   return square(m.at.n - start.at.n) + square(m.at.jet[0].x - start.at.jet[0].x) +
              square(m.at.jet[1].x - start.at.jet[1].x) <=

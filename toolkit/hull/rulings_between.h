@@ -81,6 +81,7 @@ class RulingsBetween {
   const Ruling& from_;
   const Ruling& to_;
   double square_ = 0;      // of the chord
+  double shorter_ = 0;     // of the two rulings' lengths
   int free_end_ = -1;      // at which the contacts merge
   double length_ = 0;      // of the ruling at the other one
   Polynomial polynomial_;  // in s, or in the length's share
