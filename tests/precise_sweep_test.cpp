@@ -79,11 +79,15 @@ TEST_P(Blobs, AreExact) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
 
 /// One or two curves end in a pole, about which their contacts are near to each other all along.
-INSTANTIATE_TEST_SUITE_P(EndsInPoles, Blobs, testing::Values(27U, 47U, 115U, 355U, 653U));
+INSTANTIATE_TEST_SUITE_P(EndsInPoles, Blobs, testing::Values(27U, 47U, 115U, 265U, 355U, 653U));
 
 /// Contacts approach each other slowly across a join, as two ends on it are near to each other; or
 /// pass by a pole.
 INSTANTIATE_TEST_SUITE_P(SlowEnds, Blobs, testing::Values(394U, 614U));
+
+/// Rulings across a join are so short, over long ways, that what is between two of them must be
+/// told apart from other solutions.
+INSTANTIATE_TEST_SUITE_P(ShortRulings, Blobs, testing::Values(37U, 38U, 108U, 161U, 288U, 350U));
 
 /// Of so many scenes at least 99% are exact. Those that are not say so: of all of them the
 /// certificate is true.
@@ -129,6 +133,20 @@ TEST(PreciseSweep, HundredPosedTeapots) {
     scenes.add(scene, "teapot " + std::to_string(seed));
   }
   scenes.expect_most_exact();
+}
+
+/// Facets have their corners in poles, or curves pass close by: three and eight equal spheres on a
+/// triangle and a cube.
+TEST(PreciseSweep, TurnedEqualSpheres) {
+  for (unsigned seed = 1; seed <= 32; ++seed) {
+    Random random(seed);
+    Shape shape;
+    for (int k = 0; k < (seed % 2 == 0 ? 8 : 3); ++k) {
+      const dvec3 corner(k & 1, (k >> 1) & 1, (k >> 2) & 1);
+      shape = shape + shifted(sphere(0.25), corner);
+    }
+    expect_exact(make_scene(mapped(shape, random_rotation(random))), 100, std::to_string(seed));
+  }
 }
 
 /// Two to eight spheres of any size and place.

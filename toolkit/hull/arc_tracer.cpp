@@ -62,6 +62,9 @@ constexpr std::array<double, 5> merging_shares = {0.1, 0.3, 0.5, 0.7, 0.9};
 constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.
 constexpr double least_distance = 2e-4;
+/// The same of two that are about a pole: no farther from it than so many times their distance.
+constexpr double least_distance_at_pole = 1e-6;
+constexpr double about_pole = 8;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
@@ -127,6 +130,7 @@ class Trace {
   bool merge();
   bool merge_at_pole();
   bool runs_into(const dvec3& pole);
+  bool is_about_pole() const;
   bool crosses();
   bool ends_merged();
   bool is_followed(const Ruling& from, const Ruling& to);
@@ -610,6 +614,20 @@ bool Trace::merge_at_pole() {
   return false;
 }
 
+/// Whether both contacts are near to one pole. The surface about it is homogeneous to second order,
+/// and the contacts as far from each other as from the pole: they can be told apart down to where
+/// heights are rounding.
+bool Trace::is_about_pole() const {
+  const Contact& c = at_.contact[0];
+  if (c.kind != SourceKind::face) return false;
+  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    if (!is_pole(geometry_, c, side)) return false;
+    const dvec3 x = geometry_.point(at_pole(c, side));
+    return std::max(glm::distance(at_.jet[0].x, x), glm::distance(at_.jet[1].x, x)) <
+           about_pole * glm::length(at_.d());
+  });
+}
+
 /// Ends the arc in the pole at x, if both contacts run there. On straight ways: their distance need
 /// not be linear, being small where the curvatures hardly differ.
 bool Trace::runs_into(const dvec3& x) {
@@ -854,7 +872,8 @@ std::optional<Trace::Pace> Trace::near_merging() {
     return std::nullopt;
   }
   if (ends_merged()) return merged();
-  if (apart < least_distance) return lost("two contacts approach each other and do not merge");
+  const double least = is_about_pole() ? least_distance_at_pole : least_distance;
+  if (apart < least) return lost("two contacts approach each other and do not merge");
   // A third contact may yet surpass them.
   step_ = -0.5 * apart / rate;
   return std::nullopt;
