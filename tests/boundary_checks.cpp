@@ -8,7 +8,7 @@
 
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/rulings_between.h"
 
 namespace taut_test {
 namespace {
@@ -86,9 +86,10 @@ void add_part(const taut::ContactSystem& system, const TrimStretch& s, int patch
   const dvec2 a = at(from);
   const dvec2 b = at(to);
   if (depth > 0 && winding.distance(a, b) < glm::distance(a, b)) {
-    const Ruling middle = ruling_between(system, from, to, 0.5);
-    add_part(system, s, patch, from, middle, depth - 1, winding);
-    add_part(system, s, patch, middle, to, depth - 1, winding);
+    const std::optional<Ruling> middle = ruling_between(system, from, to, 0.5);
+    if (!middle) depth = 1;
+    add_part(system, s, patch, from, middle.value_or(to), depth - 1, winding);
+    if (middle) add_part(system, s, patch, *middle, to, depth - 1, winding);
   } else if (s.reversed) {
     winding.add(b, a);
   } else {
@@ -269,7 +270,38 @@ class BoundaryCheck {
     raise(facts_.support, error);
   }
 
+  /// Between two neighbouring ones, also near free ends, where all lengths are small.
+  void check_between(const taut::ContactSystem& system, const Ruling& from, const Ruling& to) {
+    constexpr double slack = 1e-9;
+    for (const double s : {0.25, 0.6, 0.85}) {
+      const std::optional<Ruling> r = taut::ruling_between(system, from, to, s);
+      if (!r) {
+        ++facts_.no_rulings;
+        continue;
+      }
+      BoundaryFacts own;
+      std::swap(own, facts_);
+      bool outside = false;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Contact& c = r->contact[i];
+        check_contact(r->n, c, r->point[i]);
+        check_support(r->n, c, r->point[i]);
+        const taut::ContactJet jet = geometry_.jet(c);
+        // As lengths: about a pole parameters are less exact.
+        const auto beyond = [](double t, const dvec3& dx) {
+          return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) > slack;
+        };
+        outside = outside || beyond(c.u, jet.dx[0]) || beyond(c.v, jet.dx[1]);
+      }
+      std::swap(own, facts_);
+      raise(facts_.between, std::max({own.point, own.stationary, own.support}));
+      raise(facts_.between, glm::dot(r->point[0] - r->point[1], r->n));
+      if (outside) ++facts_.no_rulings;
+    }
+  }
+
   void check_residuals() {
+    const taut::ContactSystem system(geometry_);
     for (const taut::SeparatingArc& arc : boundary_.arcs) {
       for (const taut::ArcPiece& piece : arc.pieces) {
         for (const Ruling& r : piece.rulings) {
@@ -279,6 +311,9 @@ class BoundaryCheck {
             points_.push_back(r.point[i]);
           }
           raise(facts_.tie, glm::dot(r.point[0] - r.point[1], r.n));
+        }
+        for (std::size_t k = 0; k + 1 < piece.rulings.size(); ++k) {
+          check_between(system, piece.rulings[k], piece.rulings[k + 1]);
         }
       }
     }
@@ -498,7 +533,8 @@ std::ostream& operator<<(std::ostream& out, const BoundaryFacts& f) {
       << f.bare_scrolls << ", loop gap " << f.loop_gap << ", region gap " << f.region_gap
       << ", Euler " << f.euler << "; point " << f.point << ", stationary " << f.stationary
       << ", tie " << f.tie << ", support " << f.support << " at ";
-  vector(f.worst_support) << "; missed " << f.misses << " of " << f.directions << " as ";
+  vector(f.worst_support) << ", between " << f.between << ", none " << f.no_rulings << "; missed "
+                          << f.misses << " of " << f.directions << " as ";
   vector(f.missed) << ", overshoot " << f.overshoot << "; mismatches " << f.mismatches << " of "
                    << f.points << " (" << f.undecided << " undecided, " << f.flat
                    << " flat) as patch " << f.mismatch.element << " (" << f.mismatch.u << ", "

@@ -33,6 +33,8 @@ struct BoundaryFacts {
   double side = 0;        ///< distance of a facet's curved side's ends from its contacts
   double support = 0;     ///< |h(n) - x . n|
   taut::dvec3 worst_support = taut::dvec3(0.0);
+  double between = 0;  ///< the largest of these residuals of rulings between neighbouring ones
+  int no_rulings = 0;  ///< of such places: none is found, or outside of its element
   /// @}
 
   /// @name Random directions
@@ -58,7 +60,8 @@ struct BoundaryFacts {
     return open_curves == 0 && misplaced == 0 && bare_scrolls == 0 && loop_gap <= gap &&
            region_gap <= gap && open_facets == 0 && euler == 2 && point <= residual &&
            stationary <= residual && tie <= residual && side <= residual && support <= residual &&
-           misses == 0 && overshoot <= residual && mismatches == 0 && flat == 0;
+           between <= residual && no_rulings == 0 && misses == 0 && overshoot <= residual &&
+           mismatches == 0 && flat == 0;
   }
 };
 

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "boundary_checks.h"
 #include "hull_checks.h"
 #include "taut/hull/boundary_measures.h"
+#include "taut/hull/culling.h"
+#include "taut/hull/free_ends.h"
 #include "taut/hull/precise_hull.h"
 
 namespace taut {
@@ -79,11 +82,42 @@ TEST_P(Blobs, AreExact) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Blobs, testing::Range(1U, 22U));
 
 /// One or two curves end in a pole, about which their contacts are near to each other all along.
-INSTANTIATE_TEST_SUITE_P(EndsInPoles, Blobs, testing::Values(27U, 47U, 115U, 355U, 653U));
+INSTANTIATE_TEST_SUITE_P(EndsInPoles, Blobs, testing::Values(27U, 47U, 115U, 265U, 355U, 653U));
 
 /// Contacts approach each other slowly across a join, as two ends on it are near to each other; or
 /// pass by a pole.
 INSTANTIATE_TEST_SUITE_P(SlowEnds, Blobs, testing::Values(394U, 614U));
+
+/// Rulings across a join are so short, over long ways, that what is between two of them must be
+/// told apart from other solutions.
+INSTANTIATE_TEST_SUITE_P(ShortRulings, Blobs, testing::Values(37U, 38U, 108U, 161U, 288U, 350U));
+
+bool is_reached(const HullBoundary& boundary, const dvec3& x, const dvec3& n) {
+  constexpr double same = 1e-6;
+  const auto ends_here = [&](const Ruling& r) {
+    return glm::distance(r.point[0], x) < same && glm::distance(r.n, n) < same;
+  };
+  return std::any_of(boundary.arcs.begin(), boundary.arcs.end(), [&](const SeparatingArc& arc) {
+    if (arc.closed) return false;
+    return (arc.facet[0] < 0 && ends_here(arc.pieces.front().rulings.front())) ||
+           (arc.facet[1] < 0 && ends_here(arc.pieces.back().rulings.back()));
+  });
+}
+
+/// Curves in valleys so shallow across a join that samples and climbs do not show them: both of
+/// their free ends are reached.
+TEST(PreciseSweep, FreeEndsOfShallowValleys) {
+  for (const unsigned seed : {427U, 510U, 641U}) {
+    const Scene scene = make_scene(blob(seed));
+    const Hull hull = boundary_of(scene);
+    const ContactGeometry geometry(scene);
+    SupportQuery query(scene);
+    const GaussMap map(scene, {.threads = 1, .progress = {}});
+    for (const FreeEnd& end : free_ends(geometry, query, cull(scene, map, {.threads = 1}).cells)) {
+      EXPECT_TRUE(is_reached(*hull.boundary, geometry.point(end.contact), end.n)) << seed;
+    }
+  }
+}
 
 /// Of so many scenes at least 99% are exact. Those that are not say so: of all of them the
 /// certificate is true.
@@ -129,6 +163,20 @@ TEST(PreciseSweep, HundredPosedTeapots) {
     scenes.add(scene, "teapot " + std::to_string(seed));
   }
   scenes.expect_most_exact();
+}
+
+/// Facets have their corners in poles, or curves pass close by: three and eight equal spheres on a
+/// triangle and a cube.
+TEST(PreciseSweep, TurnedEqualSpheres) {
+  for (unsigned seed = 1; seed <= 32; ++seed) {
+    Random random(seed);
+    Shape shape;
+    for (int k = 0; k < (seed % 2 == 0 ? 8 : 3); ++k) {
+      const dvec3 corner(k & 1, (k >> 1) & 1, (k >> 2) & 1);
+      shape = shape + shifted(sphere(0.25), corner);
+    }
+    expect_exact(make_scene(mapped(shape, random_rotation(random))), 100, std::to_string(seed));
+  }
 }
 
 /// Two to eight spheres of any size and place.

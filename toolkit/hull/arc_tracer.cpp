@@ -7,6 +7,7 @@
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_ends.h"
+#include "taut/hull/rulings_between.h"
 
 namespace taut {
 namespace {
@@ -55,10 +56,15 @@ constexpr double slowest_merging = -0.05;
 /// of their distance.
 constexpr double pole_reach = 8e-3;
 constexpr double pole_share = 0.02;
+/// Where rulings are looked for between the last one and a free end.
+constexpr std::array<double, 5> merging_shares = {0.1, 0.3, 0.5, 0.7, 0.9};
 /// Steps below this share of the distance between two contacts are stuck.
 constexpr double stuck_share = 0.01;
 /// Contacts nearer than this that do not merge are lost.
 constexpr double least_distance = 2e-4;
+/// The same of two that are about a pole: no farther from it than so many times their distance.
+constexpr double least_distance_at_pole = 1e-6;
+constexpr double about_pole = 8;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
@@ -124,7 +130,10 @@ class Trace {
   bool merge();
   bool merge_at_pole();
   bool runs_into(const dvec3& pole);
+  bool is_about_pole() const;
   bool crosses();
+  bool ends_merged();
+  bool is_followed(const Ruling& from, const Ruling& to);
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
   Pace exchange(const Event& event);
@@ -605,6 +614,20 @@ bool Trace::merge_at_pole() {
   return false;
 }
 
+/// Whether both contacts are near to one pole. The surface about it is homogeneous to second order,
+/// and the contacts as far from each other as from the pole: they can be told apart down to where
+/// heights are rounding.
+bool Trace::is_about_pole() const {
+  const Contact& c = at_.contact[0];
+  if (c.kind != SourceKind::face) return false;
+  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    if (!is_pole(geometry_, c, side)) return false;
+    const dvec3 x = geometry_.point(at_pole(c, side));
+    return std::max(glm::distance(at_.jet[0].x, x), glm::distance(at_.jet[1].x, x)) <
+           about_pole * glm::length(at_.d());
+  });
+}
+
 /// Ends the arc in the pole at x, if both contacts run there. On straight ways: their distance need
 /// not be linear, being small where the curvatures hardly differ.
 bool Trace::runs_into(const dvec3& x) {
@@ -719,6 +742,38 @@ bool Trace::merge() {
   return true;
 }
 
+/// Ends the arc where the contacts merge, if the rulings on the way there are found.
+bool Trace::ends_merged() {
+  if (!merge()) return false;
+  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
+  if (is_followed(rulings[rulings.size() - 2], rulings.back())) return true;
+  rulings.pop_back();
+  arc_.contacts.clear();
+  return false;
+}
+
+/// Whether the rulings between two of them are found, in the same elements, and support the model.
+bool Trace::is_followed(const Ruling& from, const Ruling& to) {
+  const RulingsBetween between(system_, from, to);
+  if (between.empty()) return true;
+  // As lengths: about a pole parameters are less exact.
+  const auto stays = [](double t, const dvec3& dx) {
+    return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) <= parameter_slack;
+  };
+  const auto supports = [&](double s) {
+    const std::optional<MovingRuling> m = between(s);
+    if (!m) return false;
+    const CommonSupport& at = m->at;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Contact& c = at.contact[i];
+      if (!stays(c.u, at.jet[i].dx[0]) || !stays(c.v, at.jet[i].dx[1])) return false;
+    }
+    return query_(at.n, at.contact[0]).h <= glm::dot(at.jet[0].x, at.n) + geometry_.tie();
+  };
+  if (!between.merges()) return supports(0.5);
+  return std::all_of(merging_shares.begin(), merging_shares.end(), supports);
+}
+
 /// Where a contact moves along an edge or a seam, it is told as one of that; along another smooth
 /// join, as one of the patch into which its region extends. Sets the tangent anew; false if there
 /// is none.
@@ -816,8 +871,9 @@ std::optional<Trace::Pace> Trace::near_merging() {
     step_ = -0.5 * apart / rate;
     return std::nullopt;
   }
-  if (merge()) return merged();
-  if (apart < least_distance) return lost("two contacts approach each other and do not merge");
+  if (ends_merged()) return merged();
+  const double least = is_about_pole() ? least_distance_at_pole : least_distance;
+  if (apart < least) return lost("two contacts approach each other and do not merge");
   // A third contact may yet surpass them.
   step_ = -0.5 * apart / rate;
   return std::nullopt;
@@ -829,6 +885,9 @@ Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
   const double there = plane ? length_to(*plane) : 0;
   if (!plane || there < -plane_slack || there > length_to(next) + plane_slack) {
     return shorter("no common plane with a contact that surpasses two");
+  }
+  if (step_ > border_step && there > plane_slack && !is_followed(at_.ruling(), plane->ruling())) {
+    return shorter("the rulings before a common plane are not found");
   }
   std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
   if (there <= 0 && rulings.size() > 1) rulings.pop_back();
@@ -867,7 +926,7 @@ Trace::Pace Trace::advance() {
     // The nearer the contacts are to merging, the worse the system is conditioned.
     const double apart = glm::length(at_.d());
     const bool approach = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) < 0;
-    if (approach && apart < 2 * merge_distance && step_ < stuck_share * apart && merge()) {
+    if (approach && apart < 2 * merge_distance && step_ < stuck_share * apart && ends_merged()) {
       return merged();
     }
     return shorter("a separating curve cannot be followed");
@@ -893,6 +952,9 @@ Trace::Pace Trace::advance() {
   const Support top = query_(next->n, next->contact[0]);
   if (top.h > glm::dot(next->jet[0].x, next->n) + geometry_.tie()) {
     return surpassed(*next, top.contact);
+  }
+  if (step_ > border_step && !is_followed(at_.ruling(), next->ruling())) {
+    return shorter("the rulings between two of a separating curve are not found");
   }
   const bool moved = length_to(*next) > margin_slack;
   idle_ = moved ? 0 : idle_ + 1;

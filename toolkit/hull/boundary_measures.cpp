@@ -6,6 +6,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_system.h"
 #include "taut/hull/quadrature.h"
+#include "taut/hull/rulings_between.h"
 
 namespace taut {
 namespace {
@@ -104,271 +105,7 @@ void add_patch(const ContactJet& j, const Region& region, double w, Sample& sum)
   sum[curvature] -= w * form / (2 * length * length);
 }
 
-/// A ruling within an interval and its derivative along it.
-struct Moving {
-  CommonSupport at;
-  dvec3 dn = dvec3(0.0);
-  std::array<dvec2, 2> dp = {dvec2(0.0), dvec2(0.0)};
-  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
-
-  /// Derivatives of the points and of the unit normal from those of the parameters and of n.
-  void complete() {
-    for (std::size_t i = 0; i < 2; ++i) {
-      dx[i] = dp[i].x * at.jet[i].dx[0] + dp[i].y * at.jet[i].dx[1];
-    }
-    dn -= glm::dot(dn, at.n) * at.n;
-  }
-  void move(const CurveTangent& t, double speed) {
-    dn = speed * t.n;
-    for (std::size_t i = 0; i < 2; ++i) dp[i] = speed * t.parameter[i];
-    complete();
-  }
-};
-
 dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
-double chord_square(const Ruling& from, const Ruling& to) {
-  const auto square = [](const dvec3& x) { return glm::dot(x, x); };
-  return square(to.n - from.n) + square(to.point[0] - from.point[0]) +
-         square(to.point[1] - from.point[1]);
-}
-
-/// A free end: its two points are one, though they may come from two elements.
-bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
-
-/// n and the contacts' parameters of a ruling, as functions of one variable.
-using RulingState = std::array<double, 7>;
-
-RulingState state(const dvec3& n, const dvec2& p0, const dvec2& p1) {
-  return {n.x, n.y, n.z, p0.x, p0.y, p1.x, p1.y};
-}
-
-/// Hermite's interpolation in Newton's form.
-class RulingPolynomial {
- public:
-  void add(double r, const RulingState& value) { append(r, value, nullptr); }
-  void add(double r, const RulingState& value, const RulingState& slope) {
-    append(r, value, nullptr);
-    append(r, value, &slope);
-  }
-
-  RulingState value(double r) const { return evaluate(r)[0]; }
-  RulingState slope(double r) const { return evaluate(r)[1]; }
-
- private:
-  std::array<RulingState, 2> evaluate(double r) const {
-    RulingState p{}, q{};
-    for (std::size_t k = node_.size(); k-- > 0;) {
-      for (std::size_t c = 0; c < p.size(); ++c) {
-        q[c] = q[c] * (r - node_[k]) + p[c];
-        p[c] = p[c] * (r - node_[k]) + coefficient_[k][c];
-      }
-    }
-    return {p, q};
-  }
-  /// The next divided difference: what is left of the value, or of the slope at the node that was
-  /// added last, over the product of distances to the nodes before.
-  void append(double r, const RulingState& value, const RulingState* slope) {
-    const auto [p, q] = evaluate(r);
-    double product = 1;
-    for (std::size_t k = 0; k + (slope != nullptr ? 1 : 0) < node_.size(); ++k) {
-      product *= r - node_[k];
-    }
-    RulingState next;
-    for (std::size_t c = 0; c < next.size(); ++c) {
-      next[c] = (slope != nullptr ? (*slope)[c] - q[c] : value[c] - p[c]) / product;
-    }
-    node_.push_back(r);
-    coefficient_.push_back(next);
-  }
-
-  std::vector<double> node_;
-  std::vector<RulingState> coefficient_;
-};
-
-/// The rulings between two neighbouring ones.
-class RulingInterval {
- public:
-  RulingInterval(const ContactSystem& system, const Ruling& from, const Ruling& to)
-      : system_(system), from_(from), to_(to), square_(chord_square(from, to)) {
-    const bool begins = merged(from);
-    const bool ends = merged(to);
-    if (begins == ends) {
-      fit();
-    } else {
-      free_end_ = begins ? 0 : 1;
-      fit_free_end(begins ? from : to, begins ? to : from);
-    }
-  }
-
-  bool empty() const { return square_ == 0; }
-
-  Moving operator()(double s) const {
-    if (free_end_ >= 0) return near_free_end(s);
-    Moving m = moving(from_, polynomial_, s, 1);
-    const Moving start = m;
-    const bool solved = solve_share(m, s);
-    // Otherwise, or if it is another solution, the polynomial is better.
-    if (!solved || chord_square(start.at.ruling(), m.at.ruling()) > square_ / 4) return start;
-    find_speed(m);
-    return m;
-  }
-
- private:
-  static RulingState place(const Moving& m) {
-    return state(m.at.n, parameters(m.at.contact[0]), parameters(m.at.contact[1]));
-  }
-  static RulingState rate(const Moving& m) { return state(m.dn, m.dp[0], m.dp[1]); }
-
-  /// Between the ends, with their slopes unless these are noise (next to a pole, say): where
-  /// Newton's method begins.
-  void fit() {
-    double s = 0;
-    for (const Ruling* end : {&from_, &to_}) {
-      Moving m;
-      m.at = CommonSupport(system_.geometry(), *end);
-      if (find_speed(m) && !bends(from_, to_, m)) {
-        polynomial_.add(s, place(m), rate(m));
-      } else {
-        polynomial_.add(s, place(m));
-      }
-      s = 1;
-    }
-  }
-
-  /// The ruling in the plane across the chord that divides it in the ratio s, as ruling_between()
-  /// has it, near m.
-  bool solve_share(Moving& m, double s) const {
-    const dvec3 dn = (to_.n - from_.n) / square_;
-    return system_.solve(m.at, [&](const CommonSupport& at) {
-      LinearEquation e;
-      e.n = dn;
-      e.residual = glm::dot(at.n - from_.n, dn) - s;
-      for (std::size_t i = 0; i < 2; ++i) {
-        const dvec3 g = (to_.point[i] - from_.point[i]) / square_;
-        e.residual += glm::dot(at.jet[i].x - from_.point[i], g);
-        e.add_point(at, int(i), g);
-      }
-      return e;
-    });
-  }
-
-  /// Derivatives with respect to the share of the chord, which its share in the tangent tells.
-  bool find_speed(Moving& m) const {
-    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
-    if (!t) return false;
-    const double share = glm::dot(to_.n - from_.n, t->n) +
-                         glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
-                         glm::dot(to_.point[1] - from_.point[1], t->x[1]);
-    const double speed = square_ / share;
-    // An arc ten times its chord is none that was traced.
-    if (!(std::abs(speed) < 10 * std::sqrt(square_))) return false;
-    m.move(*t, speed);
-    return true;
-  }
-
-  /// Next to a free end the contacts, and n, are smooth functions of r, their distance in units of
-  /// the last ruling's length (mathematics: near an A3 end, m +- rho e; a B3 end, linear). They are
-  /// interpolated from the end and rulings from r = 1/4 on, with slopes.
-  ///
-  /// Newton's method finds those in between unless it cannot tell them better than a quadratic: at
-  /// a distance rho from the end its system's smallest singular value is about rho^3, so the error
-  /// of its answer about the rounding unit over that; and the quadratic errs by about rho^3.
-  void fit_free_end(const Ruling& end, const Ruling& longer) {
-    Moving m;
-    m.at = CommonSupport(system_.geometry(), longer);
-    const double square = glm::dot(m.at.d(), m.at.d());
-    const RulingState begin = state(end.n, parameters(end.contact[0]), parameters(end.contact[1]));
-    polynomial_.add(0, begin);
-    if (!find_slope(m, 1, square) || bends(end, longer, m)) {
-      // Too far from the end, or too close to it for the tangent: straight.
-      polynomial_.add(1, place(m));
-      return;
-    }
-    polynomial_.add(1, place(m), rate(m));
-    for (const double r : {0.75, 0.5, 0.25}) {
-      const double length = r * std::sqrt(square);
-      if (length * length * length < std::sqrt(rounding_unit)) break;
-      Moving next = moving(end, polynomial_, r, 1);
-      if (!solve_length(next, r, square, end) || !find_slope(next, r, square)) break;
-      polynomial_.add(r, place(next), rate(next));
-    }
-  }
-
-  /// Derivatives with respect to r, where |d|^2 = r^2 `square`.
-  bool find_slope(Moving& m, double r, double square) const {
-    const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
-    if (!t) return false;
-    m.move(*t, r * square / glm::dot(m.at.d(), t->x[0] - t->x[1]));
-    return true;
-  }
-
-  /// The derivatives in m are not those of a curve that runs about straight between the two.
-  static bool bends(const Ruling& begin, const Ruling& end, const Moving& m) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const dvec2 straight = parameters(end.contact[i]) - parameters(begin.contact[i]);
-      const dvec2 bend = m.dp[i] - straight;
-      if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
-    }
-    return false;
-  }
-
-  /// The contacts have moved farther than half the way from the end to where they started.
-  static bool is_far(const CommonSupport& start, const CommonSupport& at, const Ruling& end) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const dvec2 p = parameters(start.contact[i]);
-      const dvec2 change = parameters(at.contact[i]) - p;
-      const dvec2 way = 0.5 * (p - parameters(end.contact[i]));
-      if (glm::dot(change, change) > glm::dot(way, way)) return true;
-    }
-    return false;
-  }
-
-  /// The ruling with |d|^2 = r^2 `square` near m.
-  bool solve_length(Moving& m, double r, double square, const Ruling& end) const {
-    const CommonSupport start = m.at;
-    const bool solved = system_.solve(m.at, [&](const CommonSupport& at) {
-      LinearEquation e;
-      const dvec3 d = at.d() / (r * r * square);
-      e.residual = 0.5 * (glm::dot(at.d(), d) - 1);
-      e.add_point(at, 0, d);
-      e.add_point(at, 1, -d);
-      return e;
-    });
-    // Not another solution, like the one with the contacts exchanged.
-    return solved && !is_far(start, m.at, end);
-  }
-
-  Moving moving(const Ruling& elements, const RulingPolynomial& polynomial, double r,
-                double sense) const {
-    const RulingState value = polynomial.value(r);
-    const RulingState slope = polynomial.slope(r);
-    Ruling ruling = elements;
-    Moving m;
-    const dvec3 n(value[0], value[1], value[2]);
-    ruling.n = glm::normalize(n);
-    m.dn = sense / glm::length(n) * dvec3(slope[0], slope[1], slope[2]);
-    for (std::size_t i = 0; i < 2; ++i) {
-      ruling.contact[i].u = value[3 + 2 * i];
-      ruling.contact[i].v = value[4 + 2 * i];
-      m.dp[i] = sense * dvec2(slope[3 + 2 * i], slope[4 + 2 * i]);
-    }
-    m.at = CommonSupport(system_.geometry(), ruling);
-    m.complete();
-    return m;
-  }
-
-  Moving near_free_end(double s) const {
-    return free_end_ == 0 ? moving(from_, polynomial_, s, 1) : moving(to_, polynomial_, 1 - s, -1);
-  }
-
-  const ContactSystem& system_;
-  const Ruling& from_;
-  const Ruling& to_;
-  double square_;
-  int free_end_ = -1;
-  RulingPolynomial polynomial_;
-};
 
 /// The contact at a share of the way along a stretch of an edge.
 Contact contact_on(const EdgeStretch& side, double s) {
@@ -414,7 +151,7 @@ class Summation {
   void add_polygon(const HullFace& face);
   void add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side);
 
-  void add_scroll(const Moving& m, Sample& sum) const;
+  void add_scroll(const MovingRuling& m, Sample& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
   void add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
                 Sample& sum);
@@ -565,7 +302,7 @@ void Summation::add_line(const Region& region, const dvec2& p, const dvec2& rate
 /// The points a + r (b - a) of the rulings, with the area element n . (dX/ds x (b - a)) dr ds,
 /// which is positive where contact 0 lies to the right of n's path. Three nodes in r are exact for
 /// its fourth degree. Curvature is half the length times the angle that n turns by.
-void Summation::add_scroll(const Moving& m, Sample& sum) const {
+void Summation::add_scroll(const MovingRuling& m, Sample& sum) const {
   const dvec3 a = m.at.jet[0].x - origin_;
   const dvec3 along = -m.at.d();
   const double size0 = glm::dot(m.at.n, glm::cross(m.dx[0], along));
@@ -617,10 +354,12 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
   const bool scroll = in_scroll_[arc][piece];
   const std::vector<Trace>& traces = traces_[arc][piece];
   for (std::size_t k = 1; k < rulings.size(); ++k) {
-    const RulingInterval between(system_, rulings[k - 1], rulings[k]);
+    const RulingsBetween between(system_, rulings[k - 1], rulings[k]);
     if (between.empty()) continue;
     const auto f = [&](double s, double weight, Sample& sample) {
-      const Moving m = between(s);
+      // Where no ruling is found there is none that is exact; the accuracy tells what it costs.
+      const auto exact = between.merges() ? std::nullopt : between(s);
+      const MovingRuling m = exact ? *exact : between.interpolated(s);
       if (scroll) add_scroll(m, sample);
       for (std::size_t i = 0; i < 2; ++i) {
         if (!is(i, SourceKind::edge)) continue;

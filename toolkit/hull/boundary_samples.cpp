@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "taut/hull/contact_system.h"
+#include "taut/hull/rulings_between.h"
 
 namespace taut {
 namespace {
@@ -232,7 +233,9 @@ void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
   for (int p = first; p < first + count; ++p) {
     const std::vector<Ruling>& rulings = pieces[std::size_t(p)].rulings;
     add_intervals(
-        rulings, [&] { return ruling_between(system_, rulings[0], rulings[1], 0.5); }, division);
+        rulings,
+        [&] { return ruling_between(system_, rulings[0], rulings[1], 0.5).value_or(rulings[0]); },
+        division);
     for (std::size_t k = 0; k + 1 < rulings.size(); ++k) from.emplace_back(p, k);
   }
   const auto begin = int(all_.samples.size());
@@ -240,7 +243,9 @@ void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
   for (const Place& place : division.places(sagitta_, least_parts)) {
     const auto [piece, k] = from[place.interval];
     const std::vector<Ruling>& rulings = pieces[std::size_t(piece)].rulings;
-    along.push_back({arc, piece, ruling_between(system_, rulings[k], rulings[k + 1], place.s)});
+    const std::optional<Ruling> r = ruling_between(system_, rulings[k], rulings[k + 1], place.s);
+    if (!r) continue;
+    along.push_back({arc, piece, *r});
     add_ruling(along.back());
   }
   for (std::size_t k = 0; k + 1 < along.size(); ++k) {
@@ -426,9 +431,10 @@ void BoundarySampler::add_rows(int arc, int piece) {
       lengths.push_back(std::sqrt(std::max(form, 0.0)));
     }
     visit_evenly(lengths, side_, [&](std::size_t k, double s) {
-      const Ruling r = ruling_between(system_, rulings[k], rulings[k + 1], s);
-      const dvec3 across = unit(r.point[i] - r.point[1 - i]);
-      add_beside(geometry_.jet(r.contact[i]), r.n, across, r.contact[i]);
+      const std::optional<Ruling> r = ruling_between(system_, rulings[k], rulings[k + 1], s);
+      if (!r) return;
+      const dvec3 across = unit(r->point[i] - r->point[1 - i]);
+      add_beside(geometry_.jet(r->contact[i]), r->n, across, r->contact[i]);
     });
   }
 }

@@ -248,7 +248,8 @@ class Climb {
     }
     for (int a = 0; a < 2; ++a) {
       const double room = room_for(a, step[a]);
-      const bool meets = std::abs(step[a]) * share >= room && std::abs(step[a]) > room;
+      // The same quotient: the product may be rounded to less than the room.
+      const bool meets = std::abs(step[a]) > room && room / std::abs(step[a]) <= share;
       at[a] = meets && !at_pole(a, step[a]) ? (step[a] < 0 ? 0.0 : 1.0)
                                             : std::clamp(at[a] + share * step[a], 0.0, 1.0);
     }

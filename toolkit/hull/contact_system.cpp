@@ -10,6 +10,11 @@ namespace {
 /// rounding is that of longer ones.
 constexpr double small_tangent = 0.05;
 
+/// Share of the largest singular value below which one is taken for zero in steps of least length:
+/// what is off by less than a ten thousandth there misses residuals by a ten thousandth of it, and
+/// rounding does not move contacts by more than that.
+constexpr double least_singular = 1e-9;
+
 constexpr int max_unknowns = 2 + 2 * CommonSupport::capacity;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_unknowns,
                              max_unknowns>;
@@ -126,11 +131,19 @@ void LinearEquation::add_point(const CommonSupport& s, int i, const dvec3& g) {
   parameter[std::size_t(i)] += dvec2(glm::dot(j.dx[0], g), glm::dot(j.dx[1], g));
 }
 
-std::optional<double> ContactSystem::step(CommonSupport& s, const LinearEquation* extra) const {
+std::optional<double> ContactSystem::step(CommonSupport& s, const LinearEquation* extra,
+                                          Steps steps) const {
   ++iterations_;
   Linearized l(s);
   if (extra != nullptr) l.add(s, *extra);
-  const Vector x = l.matrix.partialPivLu().solve(l.right);
+  Vector x;
+  if (steps == Steps::full) {
+    x = l.matrix.partialPivLu().solve(l.right);
+  } else {
+    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+    decomposition.setThreshold(least_singular);
+    x = decomposition.compute(l.matrix).solve(l.right);
+  }
   const double length = x.norm();
   if (!(length < step_bound)) return std::nullopt;
   s.n = glm::normalize(s.n + l.direction(x));
@@ -250,37 +263,6 @@ std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
     t.x[k] *= factor;
   }
   return t;
-}
-
-Ruling ruling_between(const ContactSystem& system, const Ruling& from, const Ruling& to, double s) {
-  if (s == 0) return from;
-  if (s == 1) return to;
-  const auto mix = [&](double a, double b) { return (1 - s) * a + s * b; };
-  Ruling start = from;
-  start.n = glm::normalize((1 - s) * from.n + s * to.n);
-  for (std::size_t i = 0; i < 2; ++i) {
-    start.contact[i].u = mix(from.contact[i].u, to.contact[i].u);
-    start.contact[i].v = mix(from.contact[i].v, to.contact[i].v);
-  }
-  CommonSupport support(system.geometry(), start);
-  const bool merging = from.point[0] == from.point[1] || to.point[0] == to.point[1];
-  if (merging) return support.ruling();
-  const dvec3 dn = to.n - from.n;
-  const std::array<dvec3, 2> dx = {to.point[0] - from.point[0], to.point[1] - from.point[1]};
-  const double square = glm::dot(dn, dn) + glm::dot(dx[0], dx[0]) + glm::dot(dx[1], dx[1]);
-  if (square == 0) return from;
-  const bool solved = system.solve(support, [&](const CommonSupport& at) {
-    LinearEquation e;
-    e.n = dn / square;
-    e.residual = glm::dot(at.n - from.n, e.n) - s;
-    for (int i = 0; i < 2; ++i) {
-      const dvec3 g = dx[std::size_t(i)] / square;
-      e.residual += glm::dot(at.jet[std::size_t(i)].x - from.point[std::size_t(i)], g);
-      e.add_point(at, i, g);
-    }
-    return e;
-  });
-  return solved ? support.ruling() : CommonSupport(system.geometry(), start).ruling();
 }
 
 }  // namespace taut

@@ -59,17 +59,14 @@ class ContactSystem {
   /// False if it does not converge, `s` is of no use then.
   template <class Equation>
   bool solve(CommonSupport& s, Equation equation) const {
-    double last = infinity;
-    for (int k = 0; k < step_limit; ++k) {
-      const LinearEquation extra = equation(s);
-      const std::optional<double> length = step(s, &extra);
-      if (!length) return false;
-      if (*length < converged_step || (*length<noise_step&& * length> 0.5 * last)) {
-        return residual(s) < residual_limit;
-      }
-      last = *length;
-    }
-    return false;
+    return iterate(s, equation, Steps::full);
+  }
+  /// The same by steps of least length, which leave alone what the system does not tell to within
+  /// rounding: of contacts so near to each other that it is nearly singular, from a start that is
+  /// near the solution. What is found supports to within rounding as well.
+  template <class Equation>
+  bool settle(CommonSupport& s, Equation equation) const {
+    return iterate(s, equation, Steps::least);
   }
   /// The same of three contacts.
   bool solve(CommonSupport& s) const;
@@ -90,24 +87,34 @@ class ContactSystem {
   static constexpr int step_limit = 20;
   static constexpr double step_bound = 0.7;
   static constexpr double converged_step = 1e-11;
-  static constexpr double noise_step = 1e-7;
+  /// Steps below this that do not get shorter are the rounding of contacts that nearly merge.
+  static constexpr double noise_step = 1e-6;
   static constexpr double residual_limit = 1e-13;
   /// A turn of n per length below which its sense is not trusted.
   static constexpr double least_turn = 1e-6;
 
-  std::optional<double> step(CommonSupport& s, const LinearEquation* extra) const;
+  enum class Steps { full, least };
+
+  template <class Equation>
+  bool iterate(CommonSupport& s, const Equation& equation, Steps steps) const {
+    double last = infinity;
+    for (int k = 0; k < step_limit; ++k) {
+      const LinearEquation extra = equation(s);
+      const std::optional<double> length = step(s, &extra, steps);
+      if (!length) return false;
+      if (*length < converged_step) return residual(s) < residual_limit;
+      const bool noise = *length < noise_step && *length > 0.5 * last;
+      if (noise && residual(s) < residual_limit) return true;
+      last = *length;
+    }
+    return false;
+  }
+  std::optional<double> step(CommonSupport& s, const LinearEquation* extra,
+                             Steps steps = Steps::full) const;
   double residual(const CommonSupport& s) const;
 
   const ContactGeometry& geometry_;
   mutable long iterations_ = 0;
 };
-
-/// The ruling of a piece of a separating curve between two neighbouring rulings, exact to rounding:
-/// at s it is the one in the plane, across the chord from `from` to `to` in the space of
-/// (n, point 0, point 1), that divides the chord in the ratio s. Smooth in s; s = 0 and 1 give the
-/// two themselves, and a little outside of [0, 1] it goes on. Where they merge into a free end (a
-/// ruling of length zero) it is interpolated.
-/// @pre the two have the same elements
-Ruling ruling_between(const ContactSystem& system, const Ruling& from, const Ruling& to, double s);
 
 }  // namespace taut

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/hull/contact_system.h"
+#include "taut/hull/rulings_between.h"
 
 namespace taut {
 namespace {
@@ -47,6 +48,10 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
         const dvec3 d = r.point[0] - r.point[1];
         return turn(geometry.jet(r.contact[i]), r.n, i == 0 ? d : -d);
       };
+      // Where no ruling is found between two, that of the nearer one.
+      const auto side_between = [&](const Ruling& a, const Ruling& b, double s) {
+        return side(ruling_between(system, a, b, s).value_or(s < 0.5 ? a : b));
+      };
       Crease& own = creases_[{first.instance, first.element}];
       const auto add = [&](double from, double to, double sense) {
         if (std::abs(to - from) < same_parameter) return;
@@ -60,9 +65,9 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
       std::size_t k = 0;
       while (k + 1 < rulings.size()) {
         std::size_t next = k + 1;
-        const double here = side(ruling_between(system, rulings[k], rulings[next], 0.5));
+        const double here = side_between(rulings[k], rulings[next], 0.5);
         while (next + 1 < rulings.size() && side(rulings[next]) * here > 0 &&
-               side(ruling_between(system, rulings[next], rulings[next + 1], 0.5)) * here > 0) {
+               side_between(rulings[next], rulings[next + 1], 0.5) * here > 0) {
           ++next;
         }
         double to = rulings[next].contact[i].u;
@@ -75,9 +80,9 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
           double upper = before ? 1.0 : 0.5;
           for (int h = 0; h < halving_limit && upper - lower > 1e-15; ++h) {
             const double middle = 0.5 * (lower + upper);
-            (side(ruling_between(system, a, b, middle)) * here > 0 ? lower : upper) = middle;
+            (side_between(a, b, middle) * here > 0 ? lower : upper) = middle;
           }
-          to = ruling_between(system, a, b, upper).contact[i].u;
+          to = ruling_between(system, a, b, upper).value_or(b).contact[i].u;
         }
         add(from, to, here);
         from = to;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "taut/hull/rulings_between.h"
+
 namespace taut {
 
 KeptChords::KeptChords(const ContactGeometry& geometry, const HullBoundary& boundary,
@@ -19,8 +21,9 @@ void KeptChords::add(const CurveChord& chord) {
   chords_.emplace(std::minmax(chord.a, chord.b), chord);
 }
 
-/// Across pieces, where one of them ends, unless that is one of the chord's ends already.
-ArcPlace KeptChords::middle_of(const CurveChord& chord) const {
+/// Across pieces, where one of them ends, unless that is one of the chord's ends already. None if
+/// no exact ruling is found there.
+std::optional<ArcPlace> KeptChords::middle_of(const CurveChord& chord) const {
   const ArcPlace& from = chord.from;
   const ArcPlace& to = chord.to;
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(from.arc)].pieces;
@@ -28,13 +31,16 @@ ArcPlace KeptChords::middle_of(const CurveChord& chord) const {
     const auto i = std::size_t(chord.contact);
     return glm::distance(a.point[i], b.point[i]) <= least_;
   };
-  const auto bisected = [&](int piece, const Ruling& a, const Ruling& b) {
-    return ArcPlace{from.arc, piece, ruling_between(system_, a, b, 0.5)};
+  const auto bisected = [&](int piece, const Ruling& a,
+                            const Ruling& b) -> std::optional<ArcPlace> {
+    const std::optional<Ruling> middle = ruling_between(system_, a, b, 0.5);
+    if (!middle) return std::nullopt;
+    return ArcPlace{from.arc, piece, *middle};
   };
   for (int p = from.piece; p < to.piece; ++p) {
     const Ruling& end = pieces[std::size_t(p)].rulings.back();
     if (near(end, from.ruling)) continue;
-    if (!near(end, to.ruling)) return {from.arc, p, end};
+    if (!near(end, to.ruling)) return ArcPlace{from.arc, p, end};
     const bool begins_here = p == from.piece;
     return bisected(p, begins_here ? from.ruling : pieces[std::size_t(p)].rulings.front(), end);
   }
@@ -52,7 +58,9 @@ std::optional<KeptEdges::Middle> KeptChords::middle(int a, int b) const {
   if (glm::distance(chord.from.ruling.point[i], chord.to.ruling.point[i]) <= least_) {
     return std::nullopt;
   }
-  const Ruling r = middle_of(chord).ruling;
+  const std::optional<ArcPlace> at = middle_of(chord);
+  if (!at) return std::nullopt;
+  const Ruling& r = at->ruling;
   const Contact c = geometry_.canonical(r.contact[i]);
   return Middle{{r.n, c}, geometry_.scene().frame().to_model(geometry_.point(c))};
 }
@@ -61,7 +69,7 @@ void KeptChords::bisect(int a, int b, int middle) {
   const auto found = chords_.find(std::minmax(a, b));
   const CurveChord chord = found->second;
   chords_.erase(found);
-  const ArcPlace at = middle_of(chord);
+  const ArcPlace at = *middle_of(chord);  // there, as it was asked for
   add({chord.a, middle, chord.contact, chord.from, at});
   add({middle, chord.b, chord.contact, at, chord.to});
   inserted_.emplace(middle, faces_.beside(at.arc, at.piece, chord.contact));

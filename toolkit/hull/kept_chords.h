@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,7 @@ class KeptChords : public KeptEdges {
   const std::map<int, TouchedFaces>& inserted() const { return inserted_; }
 
  private:
-  ArcPlace middle_of(const CurveChord& chord) const;
+  std::optional<ArcPlace> middle_of(const CurveChord& chord) const;
   void add(const CurveChord& chord);
 
   const ContactGeometry& geometry_;

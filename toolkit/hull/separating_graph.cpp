@@ -14,6 +14,7 @@
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_ends.h"
 #include "taut/hull/point_hull.h"
+#include "taut/hull/rulings_between.h"
 #include "taut/hull/surface_seeds.h"
 
 namespace taut {
@@ -33,6 +34,13 @@ constexpr double least_part = 0.05;
 constexpr double beside_plane = 1.25;
 /// Turn, in radians, from a free end to where its curve's contacts have parted.
 constexpr double end_step = 1e-3;
+/// Distances of two contacts that have parted from a free end, the first that are found count; and
+/// how far from the end they are at most, in units of these.
+constexpr std::array<double, 4> parted_lengths = {8e-3, 4e-3, 1e-3, 2.5e-4};
+constexpr double parted_reach = 64;
+/// How far aside from the end they are sought, in the same units: along a join between patches
+/// contacts part slowly.
+constexpr std::array<double, 7> parted_aside = {0, 4, -4, 12, -12, 32, -32};
 /// Free ends that are nearer are one.
 constexpr double same_end = 1e-4;
 /// Spots that are left unresolved before the search is given up.
@@ -55,6 +63,8 @@ constexpr double overlap = 0.2;
 constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
+/// How far contacts move at most where the direction turns by so much, in the scene's frame.
+constexpr double moved_contact = 8;
 /// The circle about a pole's normal on which curves are sought.
 constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
@@ -107,6 +117,7 @@ class GraphTracer {
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,
                     double slack = 0) const;
   bool lies_in_facet(const CommonSupport& s) const;
+  static bool is_beside(const FacetNode& node, const CommonSupport& seed, double off);
   bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int node_at(const TracedArc& traced);
@@ -121,6 +132,7 @@ class GraphTracer {
   std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells, double margin) const;
   void search_cells(const std::vector<CulledCell>& cells);
   bool is_reached(const FreeEnd& end) const;
+  std::optional<CommonSupport> parted(const FreeEnd& end, double length, double aside);
   void part_beside(const FreeEnd& end);
   void find_planes();
   void find_poles();
@@ -327,10 +339,10 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
           if (s < -overlap || s > 1 + overlap) continue;
           const double off = glm::dot(en, en) + glm::dot(e0, e0) + glm::dot(e1, e1);
           if (off - s * s * square > 0.25 * square + same_curve * same_curve) continue;
-          const Ruling there = ruling_between(system_, from, to, s);
-          if (glm::distance(there.n, seed.n) < same_curve &&
-              glm::distance(there.point[0], x0) < same_curve &&
-              glm::distance(there.point[1], x1) < same_curve) {
+          const std::optional<Ruling> there = ruling_between(system_, from, to, s);
+          if (there && glm::distance(there->n, seed.n) < same_curve &&
+              glm::distance(there->point[0], x0) < same_curve &&
+              glm::distance(there->point[1], x1) < same_curve) {
             return true;
           }
         }
@@ -645,6 +657,16 @@ bool GraphTracer::lies_in_facet(const CommonSupport& s) const {
   });
 }
 
+/// Whether the seed, in a direction that is hardly off the node's, is on a curve that leaves it:
+/// its contacts are two of the node's own that have moved by as little.
+bool GraphTracer::is_beside(const FacetNode& node, const CommonSupport& seed, double off) {
+  const double reach = same_branch + moved_contact * off;
+  return std::all_of(seed.jet.begin(), seed.jet.begin() + seed.count, [&](const ContactJet& j) {
+    return std::any_of(node.points.begin(), node.points.end(),
+                       [&](const dvec3& p) { return glm::distance(p, j.x) < reach; });
+  });
+}
+
 /// Whether the seed is a facet, with other contacts beside the two: a node for it, if it is new.
 bool GraphTracer::is_facet(const CommonSupport& seed) {
   const std::vector<Contact> contacts(seed.contact.begin(), seed.contact.begin() + seed.count);
@@ -653,6 +675,7 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
     if (lies_in(node, seed.n, contacts)) return true;
     const double off = glm::distance(node.n, seed.n);
     if (off < same_plane && has_contacts(node, contacts, off)) return true;
+    if (off < nearly_same_plane && is_beside(node, seed, off)) return true;
   }
   std::optional<FacetContacts> f = facet_contacts(geometry_, query_, seed.n, contacts);
   if (!f || !f->is_facet()) return false;
@@ -832,9 +855,77 @@ bool GraphTracer::is_reached(const FreeEnd& end) const {
   return false;
 }
 
-/// Seeks the curve that ends in the free end between directions to both sides of it, where the
-/// contacts have parted.
+/// The contact moved along its smooth surface by a tangent, over the join at which it stands if the
+/// tangent leads there. None if it does not stay in a patch.
+std::optional<Contact> moved(const ContactGeometry& geometry, const Contact& c, const dvec3& by) {
+  std::vector<Contact> elements = {c};
+  for (const ContactExit& exit : exits(geometry, c)) {
+    const std::optional<Contact> over = beyond(geometry, c, exit);
+    if (over && over->kind == SourceKind::face &&
+        glm::distance(geometry.point(*over), geometry.point(c)) < same_branch) {
+      elements.push_back(*over);
+    }
+  }
+  for (Contact own : elements) {
+    const ContactJet j = geometry.jet(own);
+    const dvec2 r(glm::dot(j.dx[0], by), glm::dot(j.dx[1], by));
+    const double uu = glm::dot(j.dx[0], j.dx[0]);
+    const double uv = glm::dot(j.dx[0], j.dx[1]);
+    const double vv = glm::dot(j.dx[1], j.dx[1]);
+    const double det = uu * vv - uv * uv;
+    if (!(det > 0)) continue;
+    own.u += (vv * r.x - uv * r.y) / det;
+    own.v += (uu * r.y - uv * r.x) / det;
+    if (own.u >= 0 && own.u <= 1 && own.v >= 0 && own.v <= 1) return own;
+  }
+  return std::nullopt;
+}
+
+/// Two contacts of one surface that have parted from the free end by so much, sought about a point
+/// that lies so many times as far aside.
+std::optional<CommonSupport> GraphTracer::parted(const FreeEnd& end, double length, double aside) {
+  if (end.kind != FreeEnd::Kind::face) return std::nullopt;
+  const dvec3 middle = aside * length * glm::cross(end.n, end.along);
+  CommonSupport s;
+  for (const double sense : {-0.5, 0.5}) {
+    const auto c = moved(geometry_, end.contact, middle + sense * length * end.along);
+    if (!c) return std::nullopt;
+    s.add(geometry_, *c);
+    const dvec3 normal = unit_normal(geometry_, *c);
+    s.n += glm::dot(normal, end.n) < 0 ? -normal : normal;
+  }
+  s.n = glm::normalize(s.n);
+  const dvec3 x = geometry_.point(end.contact);
+  const bool found = system_.settle(s, [&](const CommonSupport& now) {
+    LinearEquation e;
+    const dvec3 d = now.d() / length;
+    e.residual = 0.5 * (glm::dot(now.d(), d) - length);
+    e.add_point(now, 0, d);
+    e.add_point(now, 1, -d);
+    return e;
+  });
+  const auto in_element = [](double t) { return t >= 0 && t <= 1; };
+  for (std::size_t i = 0; found && i < 2; ++i) {
+    if (!in_element(s.contact[i].u) || !in_element(s.contact[i].v)) return std::nullopt;
+    if (glm::distance(s.jet[i].x, x) > parted_reach * length) return std::nullopt;
+  }
+  if (!found || query_(s.n, s.contact[0]).h > glm::dot(s.jet[0].x, s.n) + geometry_.tie()) {
+    return std::nullopt;
+  }
+  return s;
+}
+
+/// Seeks the curve that ends in the free end: from two contacts that have parted from it, or
+/// between directions to both sides of it.
 void GraphTracer::part_beside(const FreeEnd& end) {
+  for (const double length : parted_lengths) {
+    for (const double aside : parted_aside) {
+      const std::optional<CommonSupport> seed = parted(end, length, aside);
+      if (!seed || is_traced(*seed)) continue;
+      trace(*seed);
+      if (is_reached(end)) return;
+    }
+  }
   const dvec3 ahead = glm::cross(end.n, end.along);
   for (const double sense : {1.0, -1.0}) {
     const auto beside = [&](double side) {

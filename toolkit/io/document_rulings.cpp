@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/hull/rulings_between.h"
+
 namespace taut {
 namespace {
 
@@ -94,7 +96,9 @@ bool DocumentRulings::solve_between(const HullDocument::Ruling& from,
   }
   bool solved = true;
   for (std::size_t i = 1; i + 1 < node.size(); ++i) {
-    const Ruling r = ruling_between(system_, ends[0], ends[1], node[i]);
+    const std::optional<Ruling> exact = ruling_between(system_, ends[0], ends[1], node[i]);
+    if (!exact) return false;
+    const Ruling& r = *exact;
     const CommonSupport support(system_.geometry(), r);
     double residual = std::abs(glm::dot(support.d(), r.n));
     for (std::size_t k = 0; k < 2; ++k) {

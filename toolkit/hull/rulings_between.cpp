@@ -1,0 +1,270 @@
+#include "taut/hull/rulings_between.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// Newton's method may move the interpolated ruling by this share of the chord: more than curves
+/// turn between two neighbouring rulings, less than to another solution.
+constexpr double correction_share = 0.15;
+/// Rulings are no shorter than this share of both their neighbours.
+constexpr double least_length = 0.1;
+/// What rounding may move contacts by that nearly merge.
+constexpr double rounded = 1e-7;
+/// An arc that is so many times its chord is none that was traced.
+constexpr double longest_arc = 10;
+
+dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
+
+double square(const dvec3& x) { return glm::dot(x, x); }
+
+/// A free end: its two points are one, though they may come from two elements.
+bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
+
+/// The derivatives in m are not those of a curve that runs about straight between the two.
+bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const dvec2 straight = parameters(end.contact[i]) - parameters(begin.contact[i]);
+    const dvec2 bend = m.dp[i] - straight;
+    if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void MovingRuling::complete() {
+  for (std::size_t i = 0; i < 2; ++i) {
+    dx[i] = dp[i].x * at.jet[i].dx[0] + dp[i].y * at.jet[i].dx[1];
+  }
+  dn -= glm::dot(dn, at.n) * at.n;
+}
+
+void MovingRuling::move(const CurveTangent& t, double speed) {
+  dn = speed * t.n;
+  for (std::size_t i = 0; i < 2; ++i) dp[i] = speed * t.parameter[i];
+  complete();
+}
+
+void RulingsBetween::Polynomial::add(double r, const State& value, const State& slope) {
+  append(r, value, nullptr);
+  append(r, value, &slope);
+}
+
+std::array<RulingsBetween::State, 2> RulingsBetween::Polynomial::evaluate(double r) const {
+  State p{}, q{};
+  for (std::size_t k = node_.size(); k-- > 0;) {
+    for (std::size_t c = 0; c < p.size(); ++c) {
+      q[c] = q[c] * (r - node_[k]) + p[c];
+      p[c] = p[c] * (r - node_[k]) + coefficient_[k][c];
+    }
+  }
+  return {p, q};
+}
+
+/// The next divided difference: what is left of the value, or of the slope at the node that was
+/// added last, over the product of distances to the nodes before.
+void RulingsBetween::Polynomial::append(double r, const State& value, const State* slope) {
+  const auto [p, q] = evaluate(r);
+  double product = 1;
+  for (std::size_t k = 0; k + (slope != nullptr ? 1 : 0) < node_.size(); ++k) {
+    product *= r - node_[k];
+  }
+  State next;
+  for (std::size_t c = 0; c < next.size(); ++c) {
+    next[c] = (slope != nullptr ? (*slope)[c] - q[c] : value[c] - p[c]) / product;
+  }
+  node_.push_back(r);
+  coefficient_.push_back(next);
+}
+
+RulingsBetween::State RulingsBetween::state(const dvec3& n, const dvec2& p0, const dvec2& p1) {
+  return {n.x, n.y, n.z, p0.x, p0.y, p1.x, p1.y};
+}
+
+RulingsBetween::State RulingsBetween::place(const MovingRuling& m) {
+  return state(m.at.n, parameters(m.at.contact[0]), parameters(m.at.contact[1]));
+}
+
+RulingsBetween::State RulingsBetween::rate(const MovingRuling& m) {
+  return state(m.dn, m.dp[0], m.dp[1]);
+}
+
+RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, const Ruling& to)
+    : system_(system),
+      from_(from),
+      to_(to),
+      square_(square(to.n - from.n) + square(to.point[0] - from.point[0]) +
+              square(to.point[1] - from.point[1])) {
+  shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
+                      glm::distance(to.point[0], to.point[1]));
+  if (empty()) return;
+  if (merged(from) == merged(to)) {
+    fit();
+  } else {
+    free_end_ = merged(from) ? 0 : 1;
+    fit_free_end(merged(from) ? from : to, merged(from) ? to : from);
+  }
+}
+
+/// Between the ends, with their slopes unless these are noise (next to a pole, say).
+void RulingsBetween::fit() {
+  double s = 0;
+  for (const Ruling* end : {&from_, &to_}) {
+    MovingRuling m;
+    m.at = CommonSupport(system_.geometry(), *end);
+    if (find_speed(m) && !bends(from_, to_, m)) {
+      polynomial_.add(s, place(m), rate(m));
+    } else {
+      polynomial_.add(s, place(m));
+    }
+    s = 1;
+  }
+}
+
+/// In the share of the longer one's length: from the end, the longer one and some in between, with
+/// slopes.
+void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
+  MovingRuling m;
+  m.at = CommonSupport(system_.geometry(), longer);
+  length_ = glm::length(m.at.d());
+  polynomial_.add(0, state(end.n, parameters(end.contact[0]), parameters(end.contact[1])));
+  if (!find_slope(m, 1) || bends(end, longer, m)) {
+    // Too far from the end, or too close to it for the tangent: straight.
+    polynomial_.add(1, place(m));
+    return;
+  }
+  polynomial_.add(1, place(m), rate(m));
+  for (const double r : {0.75, 0.5, 0.25}) {
+    if (!is_distinct(r)) break;
+    MovingRuling next = moving(r, 1);
+    if (!solve_length(next, r) || !find_slope(next, r)) break;
+    polynomial_.add(r, place(next), rate(next));
+  }
+}
+
+bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
+  const dvec3 dn = (to_.n - from_.n) / square_;
+  const MovingRuling start = m;
+  const auto equation = [&](const CommonSupport& at) {
+    LinearEquation e;
+    e.n = dn;
+    e.residual = glm::dot(at.n - from_.n, dn) - s;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec3 g = (to_.point[i] - from_.point[i]) / square_;
+      e.residual += glm::dot(at.jet[i].x - from_.point[i], g);
+      e.add_point(at, int(i), g);
+    }
+    return e;
+  };
+  if (system_.solve(m.at, equation) && is_near(start, m)) return true;
+  m = start;
+  return system_.settle(m.at, equation) && is_near(start, m);
+}
+
+/// The ruling of r times the longer one's length.
+bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
+  const double length = r * length_;
+  const MovingRuling start = m;
+  const auto equation = [&](const CommonSupport& at) {
+    LinearEquation e;
+    const dvec3 d = at.d() / length;
+    e.residual = 0.5 * (glm::dot(at.d(), d) - length);
+    e.add_point(at, 0, d);
+    e.add_point(at, 1, -d);
+    return e;
+  };
+  if (system_.solve(m.at, equation) && is_near(start, m)) return true;
+  m = start;
+  return system_.settle(m.at, equation) && is_near(start, m);
+}
+
+/// The rounding of the system's answer, a rounding unit over the cube of the length, is less than
+/// what a quadratic misses.
+bool RulingsBetween::is_distinct(double r) const {
+  const double length = r * length_;
+  return length * length * length >= std::sqrt(rounding_unit);
+}
+
+/// Derivatives with respect to the share of the chord, which its share in the tangent tells.
+bool RulingsBetween::find_speed(MovingRuling& m) const {
+  const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+  if (!t) return false;
+  const double share = glm::dot(to_.n - from_.n, t->n) +
+                       glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
+                       glm::dot(to_.point[1] - from_.point[1], t->x[1]);
+  const double speed = square_ / share;
+  if (!(std::abs(speed) < longest_arc * std::sqrt(square_))) return false;
+  m.move(*t, speed);
+  return true;
+}
+
+/// Derivatives with respect to the share r of the length.
+bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
+  const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+  if (!t) return false;
+  m.move(*t, r * length_ * length_ / glm::dot(m.at.d(), t->x[0] - t->x[1]));
+  return true;
+}
+
+/// Not another solution, like the one with the contacts exchanged.
+bool RulingsBetween::is_near(const MovingRuling& start, const MovingRuling& m) const {
+  if (merges() && glm::dot(start.at.d(), m.at.d()) <= 0) return false;
+  // Any two contacts in one point are a solution.
+  if (!merges() && glm::length(m.at.d()) < least_length * shorter_) return false;
+  const double limit = std::max(correction_share * correction_share * square_, rounded * rounded);
+  return square(m.at.n - start.at.n) + square(m.at.jet[0].x - start.at.jet[0].x) +
+             square(m.at.jet[1].x - start.at.jet[1].x) <=
+         limit;
+}
+
+MovingRuling RulingsBetween::moving(double r, double sense) const {
+  const State value = polynomial_.value(r);
+  const State slope = polynomial_.slope(r);
+  Ruling ruling = from_;
+  MovingRuling m;
+  const dvec3 n(value[0], value[1], value[2]);
+  ruling.n = glm::normalize(n);
+  m.dn = sense / glm::length(n) * dvec3(slope[0], slope[1], slope[2]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ruling.contact[i].u = value[3 + 2 * i];
+    ruling.contact[i].v = value[4 + 2 * i];
+    m.dp[i] = sense * dvec2(slope[3 + 2 * i], slope[4 + 2 * i]);
+  }
+  m.at = CommonSupport(system_.geometry(), ruling);
+  m.complete();
+  return m;
+}
+
+MovingRuling RulingsBetween::interpolated(double s) const {
+  return free_end_ == 1 ? moving(1 - s, -1) : moving(s, 1);
+}
+
+std::optional<MovingRuling> RulingsBetween::operator()(double s) const {
+  MovingRuling m = interpolated(s);
+  if (free_end_ < 0) {
+    if (!solve_share(m, s)) return std::nullopt;
+    find_speed(m);
+    return m;
+  }
+  const double r = free_end_ == 0 ? s : 1 - s;
+  if (r == 0) return m;
+  if (r < 0 || !solve_length(m, r)) return std::nullopt;
+  return m;
+}
+
+std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& from,
+                                     const Ruling& to, double s) {
+  if (s == 0) return from;
+  if (s == 1) return to;
+  const RulingsBetween between(system, from, to);
+  if (between.empty()) return from;
+  const std::optional<MovingRuling> m = between(s);
+  return m ? std::optional(m->at.ruling()) : std::nullopt;
+}
+
+}  // namespace taut

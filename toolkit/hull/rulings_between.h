@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "taut/hull/contact_system.h"
+#include "taut/hull/hull_boundary.h"
+
+namespace taut {
+
+/// A ruling that moves along a separating curve, and its derivatives.
+struct MovingRuling {
+  CommonSupport at;
+  dvec3 dn = dvec3(0.0);
+  std::array<dvec2, 2> dp = {dvec2(0.0), dvec2(0.0)};  ///< of the contacts' parameters
+  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};  ///< of their points
+
+  void move(const CurveTangent& t, double speed);
+  /// Those of the points and of the unit normal from those of the parameters and of n.
+  void complete();
+};
+
+/// The rulings of a piece of a separating curve between two neighbouring ones, exact to rounding,
+/// as smooth functions of s in [0, 1].
+///
+/// At s it is the one in the plane, across the chord from the first to the last in the space of
+/// (n, point 0, point 1), that divides the chord in the ratio s. Where the two contacts merge at
+/// one end (a ruling of length zero) it is the one whose length is s or 1 - s times the longer
+/// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
+/// A3 end, m +- rho e; a B3 end, linear). Newton's method starts from Hermite's interpolation.
+class RulingsBetween {
+ public:
+  /// @pre the two have the same elements; all outlive it
+  RulingsBetween(const ContactSystem& system, const Ruling& from, const Ruling& to);
+
+  /// The two are the same.
+  bool empty() const { return square_ == 0; }
+  bool merges() const { return free_end_ >= 0; }
+  /// The ruling at s, which may leave [0, 1] by a little, but not beyond a free end. None if
+  /// Newton's method does not converge to one near the interpolated one. Next to a free end the
+  /// derivatives are the interpolation's.
+  std::optional<MovingRuling> operator()(double s) const;
+  /// What it starts from: next to a free end, where rounding moves the contacts of exact rulings,
+  /// the smoother one.
+  MovingRuling interpolated(double s) const;
+
+ private:
+  /// n and the contacts' parameters of a ruling.
+  using State = std::array<double, 7>;
+  /// Hermite's interpolation in Newton's form.
+  class Polynomial {
+   public:
+    void add(double r, const State& value) { append(r, value, nullptr); }
+    void add(double r, const State& value, const State& slope);
+    State value(double r) const { return evaluate(r)[0]; }
+    State slope(double r) const { return evaluate(r)[1]; }
+
+   private:
+    std::array<State, 2> evaluate(double r) const;
+    void append(double r, const State& value, const State* slope);
+
+    std::vector<double> node_;
+    std::vector<State> coefficient_;
+  };
+  static State state(const dvec3& n, const dvec2& p0, const dvec2& p1);
+  static State place(const MovingRuling& m);
+  static State rate(const MovingRuling& m);
+
+  void fit();
+  void fit_free_end(const Ruling& end, const Ruling& longer);
+  bool solve_share(MovingRuling& m, double s) const;
+  bool solve_length(MovingRuling& m, double r) const;
+  bool is_distinct(double r) const;
+  bool find_speed(MovingRuling& m) const;
+  bool find_slope(MovingRuling& m, double r) const;
+  bool is_near(const MovingRuling& start, const MovingRuling& m) const;
+  MovingRuling moving(double r, double sense) const;
+
+  const ContactSystem& system_;
+  const Ruling& from_;
+  const Ruling& to_;
+  double square_ = 0;      // of the chord
+  double shorter_ = 0;     // of the two rulings' lengths
+  int free_end_ = -1;      // at which the contacts merge
+  double length_ = 0;      // of the ruling at the other one
+  Polynomial polynomial_;  // in s, or in the length's share
+};
+
+/// A single one of them.
+std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& from,
+                                     const Ruling& to, double s);
+
+}  // namespace taut
