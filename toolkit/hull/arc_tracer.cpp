@@ -28,8 +28,10 @@ constexpr double growth = 1.6;
 constexpr double plane_slack = 1e-6;
 /// How far the corrector may move the prediction, as a share of the step.
 constexpr double correction_limit = 0.15;
-/// Margins below this are crossed.
+/// Margins below this are crossed; or below what the rounding of coordinates far from the origin
+/// does to them, but for places where that is more than the limit: beside poles.
 constexpr double margin_slack = 1e-12;
+constexpr double margin_slack_limit = 1e-6;
 /// Turns of n that are tried as the first step away from where contacts are singular.
 constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
 /// Share of such a turn by which contacts are told apart.
@@ -106,6 +108,7 @@ class Trace {
   double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
     return exit_margin(geometry_, s, contact, exit).residual;
   }
+  double slack(int contact) const;
   /// A contact that the step takes across a pole, or -1, and the side.
   std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
   bool pass_pole(int contact, Side side, double length);
@@ -236,11 +239,11 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
   for (int i = 0; i < 2; ++i) {
     for (const ContactExit& exit : exits_[std::size_t(i)]) {
       const double after = margin(next, i, exit);
-      if (after >= -margin_slack) continue;
+      if (after >= -slack(i)) continue;
       const double before = std::max(margin(at_, i, exit), 0.0);
       const double share = before / (before - after);
       const std::optional<Event> event = solved_event(next, share, i, exit);
-      if (!event || event->length > length + margin_slack) {
+      if (!event || event->length > length + slack(i)) {
         known = false;
         continue;
       }
@@ -248,6 +251,15 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
     }
   }
   return first;
+}
+
+/// How far below zero a contact's margins may be for rounding.
+double Trace::slack(int contact) const {
+  const ContactJet& j = at_.jet[std::size_t(contact)];
+  double size = 1;
+  for (int a = 0; a < j.dimension; ++a) size = std::min(size, glm::length(j.dx[std::size_t(a)]));
+  const double rounding = std::min(geometry_.rounding(), margin_slack_limit * size) / size;
+  return std::max(margin_slack, rounding);
 }
 
 std::pair<int, Side> Trace::pole_crossed(const CommonSupport& next) const {
@@ -737,7 +749,8 @@ bool Trace::settle() {
       // As lengths: about a pole parameters are less exact.
       const Side side = all_sides[std::size_t(exit.index)];
       const double size = std::min(1.0, glm::length(at_.jet[i].dx[along_v(side) ? 0 : 1]));
-      if (std::max(std::abs(e.residual), std::abs(along)) * size > border_slack) continue;
+      const double slack = std::max(border_slack, geometry_.rounding());
+      if (std::max(std::abs(e.residual), std::abs(along)) * size > slack) continue;
       const std::optional<Contact> over = beyond(geometry_, c, exit);
       if (!over || over->kind == SourceKind::vertex) continue;
       if (over->kind == SourceKind::face) {
@@ -802,6 +815,11 @@ void Trace::drop_empty_pieces() {
     // What begins and ends the arc is told by its first ruling and its last.
     if (k == 0) move_to(pieces[1].rulings.front(), pieces[0].rulings.front());
     if (k + 1 == pieces.size()) move_to(pieces[k - 1].rulings.back(), pieces[k].rulings.back());
+    if (k > 0 && k + 1 < pieces.size()) {
+      // One contact crosses its border here, the other one in the piece's other end.
+      move_to(pieces[k - 1].rulings.back(), pieces[k - 1].rulings.back());
+      move_to(pieces[k + 1].rulings.front(), pieces[k + 1].rulings.front());
+    }
     pieces.erase(pieces.begin() + std::ptrdiff_t(k));
   }
 }

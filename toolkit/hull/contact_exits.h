@@ -43,6 +43,10 @@ std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c)
 /// the limit. Zero where there is none.
 dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c);
 
+/// How far the rounding of coordinates may have turned the normal at a pole, in radians.
+/// @pre the contact lies at a pole
+double pole_turn(const ContactGeometry& geometry, const Contact& pole);
+
 /// The contact about the pole, in whichever patch, that supports locally in a direction near the
 /// pole's normal. @pre the contact lies at a pole
 std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,

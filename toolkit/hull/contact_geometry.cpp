@@ -48,9 +48,9 @@ std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const d
 ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
   const Box box = scene.model().control_box();
   const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-  tie_ =
-      std::max(support_tie,
-               tie_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z));
+  rounding_ =
+      coordinate_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z);
+  tie_ = std::max(support_tie, rounding_);
   const Scene::Content& content = scene.content();
   const std::vector<Part>& parts = scene.model().parts();
   parts_.resize(parts.size());

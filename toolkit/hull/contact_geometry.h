@@ -43,6 +43,9 @@ class ContactGeometry {
   /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
   /// where the model is so far from the origin that its coordinates are rounded to more.
   double tie() const { return tie_; }
+  /// What the rounding of the model's coordinates may do to points, to planes through them and to
+  /// slopes at joins of surfaces, in the scene's frame (coordinate_rounding).
+  double rounding() const { return rounding_; }
   const Part& part(const Contact& c) const;
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little
@@ -115,6 +118,7 @@ class ContactGeometry {
   void share(const Contact& repeated);
 
   const Scene& scene_;
+  double rounding_ = 0;
   double tie_ = 0;
   std::vector<PartElements> parts_;
   Coincidences coincidences_;

@@ -69,8 +69,13 @@ FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
 class ContactSet {
  public:
   ContactSet(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
-             const std::vector<Contact>& pieces)
-      : geometry_(geometry), query_(query), n_(n), frame_(tangent_frame(n)), pieces_(pieces) {
+             const std::vector<Contact>& pieces, double slack)
+      : geometry_(geometry),
+        query_(query),
+        n_(n),
+        frame_(tangent_frame(n)),
+        pieces_(pieces),
+        slack_(slack) {
     curves_.reserve(pieces.size());
     for (const Contact& piece : pieces) {
       std::vector<dvec3>& curve = curves_.emplace_back();
@@ -81,7 +86,8 @@ class ContactSet {
   }
 
   void add(const Contact& c) {
-    contacts_.push_back(snapped(geometry_, clamped(c), corner_distance));
+    const double near = std::max(corner_distance, geometry_.rounding());
+    contacts_.push_back(snapped(geometry_, clamped(c), near));
     points_.push_back(geometry_.point(contacts_.back()));
   }
   std::optional<FacetContacts> complete();
@@ -107,6 +113,7 @@ class ContactSet {
   dvec3 n_;
   std::array<dvec3, 2> frame_;
   const std::vector<Contact>& pieces_;
+  double slack_;
   std::vector<std::vector<dvec3>> curves_;
   std::vector<Contact> contacts_;
   std::vector<dvec3> points_;
@@ -180,7 +187,8 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
 std::optional<Contact> ContactSet::found(const dvec3& towards) {
   const Support s = query_(glm::normalize(n_ + side_turn * towards), contacts_[0]);
   const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
-  if (!c || glm::dot(geometry_.point(*c), n_) < glm::dot(points_[0], n_) - geometry_.tie()) {
+  const double least = glm::dot(points_[0], n_) - geometry_.tie() - slack_;
+  if (!c || glm::dot(geometry_.point(*c), n_) < least) {
     return std::nullopt;
   }
   return c;
@@ -249,8 +257,8 @@ bool FacetContacts::is_curved() const {
 
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
                                             const dvec3& n, const std::vector<Contact>& known,
-                                            const std::vector<Contact>& pieces) {
-  ContactSet set(geometry, query, n, pieces);
+                                            const std::vector<Contact>& pieces, double slack) {
+  ContactSet set(geometry, query, n, pieces, slack);
   for (const Contact& c : known) set.add(c);
   return set.complete();
 }

@@ -54,12 +54,23 @@ constexpr double overlap = 0.2;
 constexpr double same_plane = 1e-7;
 /// Those of facets with curved sides are the same below this one.
 constexpr double nearly_same_plane = 1e-5;
+/// Or, far from the origin, below so many times the root of what coordinates are rounded to.
+constexpr double root_turn = 10;
 /// The circle about a pole's normal on which curves are sought.
 constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
 constexpr int circle_halvings = 10;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
+
+/// Normal of the polygon's mean plane (Newell's).
+dvec3 outline_normal(const std::vector<dvec3>& points) {
+  dvec3 sum(0.0);
+  for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+    sum += glm::cross(points[k] - points[0], points[k + 1] - points[0]);
+  }
+  return unit(sum);
+}
 
 class GraphTracer {
  public:
@@ -113,6 +124,7 @@ class GraphTracer {
   void part_beside(const FreeEnd& end);
   void find_planes();
   void find_poles();
+  std::optional<Landmark> facet_at_pole(const dvec3& n, const Contact& pole, double turn);
   void add_pole(const dvec3& n, const Contact& c);
   void part_about(const dvec3& n, const Contact& pole);
   void part_closely(const Sighting& a, const Sighting& b, int depth);
@@ -328,12 +340,17 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
   return false;
 }
 
-/// Whether the contacts are in the plane of a facet with curved sides. Its direction is the limit
-/// of those of planes with two contacts on one of the curves, which Newton's method cannot tell
-/// apart.
+/// Whether the contacts are in the plane of a facet with curved sides or corners at poles. Its
+/// direction is the limit of those of planes with two contacts on one of the curves, or about two
+/// of the poles, which Newton's method cannot tell apart. Planes turn with the root of the heights
+/// over which contacts tie.
 bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
                           const std::vector<Contact>& contacts) const {
-  return !node.sides.empty() && glm::distance(node.n, n) < nearly_same_plane &&
+  const bool at_poles =
+      std::any_of(node.contacts.begin(), node.contacts.end(),
+                  [&](const Contact& c) { return pole_side(geometry_, c).has_value(); });
+  const double turn = std::max(nearly_same_plane, root_turn * std::sqrt(geometry_.rounding()));
+  return (!node.sides.empty() || at_poles) && glm::distance(node.n, n) < turn &&
          has_contacts(node, contacts);
 }
 
@@ -427,20 +444,37 @@ void GraphTracer::find_poles() {
         const dvec3 x = geometry_.point(c);
         if (normal == dvec3(0.0)) continue;
         for (const dvec3& n : {normal, -normal}) {
-          if (query_(n, c).h > glm::dot(x, n) + geometry_.tie()) continue;
+          const double turn = pole_turn(geometry_, c);
+          if (query_(n, c).h > glm::dot(x, n) + geometry_.tie() + turn) continue;
           add_pole(n, c);
           const bool known =
               std::any_of(landmarks_.begin(), landmarks_.end(),
                           [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
           if (known) continue;
-          std::optional<FacetContacts> f = facet_contacts(geometry_, query_, n, {c});
-          if (!f || f->contacts.size() < 3) continue;
-          landmarks_.push_back({n, *f});
-          add_node(n, std::move(*f));
+          const std::optional<Landmark> facet = facet_at_pole(n, c, turn);
+          if (!facet) continue;
+          landmarks_.push_back(*facet);
+          add_node(facet->n, facet->facet);
         }
       }
     }
   }
+}
+
+/// The facet of three contacts or more at whose corner the pole lies, where the pole's normal is
+/// known to within `turn` only: its plane is that of the contacts.
+std::optional<Landmark> GraphTracer::facet_at_pole(const dvec3& n, const Contact& pole,
+                                                   double turn) {
+  const auto facet = [&](const dvec3& normal, double slack) {
+    std::optional<FacetContacts> f = facet_contacts(geometry_, query_, normal, {pole}, {}, slack);
+    return f && f->contacts.size() >= 3 ? f : std::nullopt;
+  };
+  std::optional<FacetContacts> f = facet(n, turn);
+  if (!f || turn < geometry_.tie()) return f ? std::optional(Landmark{n, *f}) : std::nullopt;
+  dvec3 normal = outline_normal(f->points);
+  if (glm::dot(normal, n) < 0) normal = -normal;
+  f = facet(normal, 0);
+  return f ? std::optional(Landmark{normal, *f}) : std::nullopt;
 }
 
 /// Once for all patches that meet in it.
@@ -867,7 +901,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
     if (given_up()) break;
     if (is_crossed(change)) continue;
     const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
-    if (seed && !is_traced(*seed)) trace(*seed);
+    if (seed && !is_traced(*seed) && !lies_in_facet(*seed)) trace(*seed);
   }
   for (const auto& [n, pole] : poles_) part_about(n, pole);
   PointHull hull(box);
