@@ -21,6 +21,25 @@ std::vector<dvec4> moved(const std::vector<dvec4>& points, const dvec3& center, 
   return result;
 }
 
+/// Makes the points of a collapsed side one point, where rounding has left some length of it, which
+/// would turn the normals about it.
+void collapse(BezierPatch& patch, Side side, double tie) {
+  std::vector<dvec4*> points;
+  const int last = along_v(side) ? patch.degree_v : patch.degree_u;
+  points.reserve(std::size_t(last) + 1);
+  for (int k = 0; k <= last; ++k) {
+    const int u = at_upper_end(side) ? patch.degree_u : 0;
+    const int v = at_upper_end(side) ? patch.degree_v : 0;
+    points.push_back(along_v(side) ? &patch.at(u, k) : &patch.at(k, v));
+  }
+  const dvec3 x = euclidean(*points.front());
+  const bool rounded = std::all_of(points.begin(), points.end(), [&](const dvec4* p) {
+    return glm::distance(euclidean(*p), x) <= tie;
+  });
+  if (!rounded) return;
+  for (dvec4* p : points) *p = homogeneous(x, p->w);
+}
+
 /// Whether the control points lie on a line, to within rounding.
 bool is_segment(const BezierCurve& curve) {
   const dvec3 first = euclidean(curve.points.front());
@@ -71,6 +90,7 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
       own.patches.push_back({b.degree_u, b.degree_v, moved(b.points, center, scale)});
       for (const Side side : all_sides) {
         const Border& border = patch.borders[std::size_t(side)];
+        if (border.kind == BorderKind::collapsed) collapse(own.patches.back(), side, tie_);
         if (border.piece < 0 || patch.repeats >= 0) continue;
         auto& sides = patch.ruled() ? own.ruled_sides : own.sides;
         sides[std::size_t(border.piece)].push_back({-1, int(i), side, border.piece_reversed});

@@ -104,6 +104,7 @@ class GraphTracer {
   bool is_end_known(const std::vector<ArcPiece>& pieces) const;
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
+  bool ties_with(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,
                     double slack = 0) const;
   bool lies_in_facet(const CommonSupport& s) const;
@@ -130,6 +131,7 @@ class GraphTracer {
   void part_closely(const Sighting& a, const Sighting& b, int depth);
   bool is_in_plane(const dvec3& n) const;
   void fail(const dvec3& n, const char* reason);
+  void tell_failures();
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -145,6 +147,7 @@ class GraphTracer {
   std::vector<std::pair<dvec3, Contact>> poles_;  // that support, with their normals
   std::vector<int> waiting_;                      // nodes whose slots may be open
   std::map<int, const char*> not_left_;  // nodes with sides across which no curve was found
+  std::vector<std::pair<CommonSupport, const char*>> failed_;  // starts that led nowhere
 };
 
 /// One spot is told once.
@@ -229,8 +232,8 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     tie.add(geometry_, b.contact);
     if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < geometry_.tie()) {
       if (!is_traced(tie)) trace(tie);
-    } else if (!lies_in_facet(tie)) {
-      fail(a.n, "two contacts that are not joined are not parted either");
+    } else {
+      failed_.emplace_back(tie, "two contacts that are not joined are not parted either");
     }
     return;
   }
@@ -293,7 +296,7 @@ bool GraphTracer::is_crossed(const SupportChange& change) const {
 /// Whether there is too much that cannot be resolved, or it costs too much. Counted in the cells of
 /// support queries, so that the same is given up each time.
 bool GraphTracer::given_up() {
-  if (stopped_ || graph_.unresolved.size() >= failure_limit) return true;
+  if (stopped_ || graph_.unresolved.size() + failed_.size() >= failure_limit) return true;
   if (query_.cells() - first_cells_ <= cell_limit_) return false;
   fail(dvec3(0.0), "the search for separating curves was given up: contact along curves or areas");
   stopped_ = true;
@@ -349,9 +352,14 @@ bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
   const bool at_poles =
       std::any_of(node.contacts.begin(), node.contacts.end(),
                   [&](const Contact& c) { return pole_side(geometry_, c).has_value(); });
+  return (!node.sides.empty() || at_poles) && ties_with(node, n, contacts);
+}
+
+/// The plane is the node's as far as heights tell.
+bool GraphTracer::ties_with(const FacetNode& node, const dvec3& n,
+                            const std::vector<Contact>& contacts) const {
   const double turn = std::max(nearly_same_plane, root_turn * std::sqrt(geometry_.rounding()));
-  return (!node.sides.empty() || at_poles) && glm::distance(node.n, n) < turn &&
-         has_contacts(node, contacts);
+  return glm::distance(node.n, n) < turn && has_contacts(node, contacts);
 }
 
 /// All of the contacts are in the facet's plane, or below it by less than `slack`.
@@ -681,7 +689,7 @@ void GraphTracer::trace(const CommonSupport& seed) {
     if (is_facet(seed)) {
       trace_waiting();
     } else {
-      fail(seed.n, reason);
+      failed_.emplace_back(seed, reason);
     }
   };
   TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
@@ -726,6 +734,7 @@ void GraphTracer::trace(const CommonSupport& seed) {
   reverse(behind.pieces);
   arc.pieces = std::move(behind.pieces);
   append(arc.pieces, std::move(ahead.pieces));
+  drop_empty_pieces(geometry_, arc.pieces);
   const int index = store(std::move(arc));
   connect(index, 0, begin);
   connect(index, 1, end);
@@ -918,14 +927,28 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   for (const FreeEnd& end : free_ends(geometry_, query_, uncrossed(cells))) {
     if (!given_up() && !is_reached(end)) part_beside(end);
   }
+  tell_failures();
+  graph_.newton_iterations = system_.iterations();
+  return std::move(graph_);
+}
+
+/// Starts that led nowhere, unless others led to the curve or facet there; and sides of facets that
+/// no curve leaves across.
+void GraphTracer::tell_failures() {
+  for (const auto& [start, reason] : failed_) {
+    const std::vector<Contact> contacts = {start.contact[0], start.contact[1]};
+    const dvec3& n = start.n;
+    const bool in_facet =
+        std::any_of(graph_.nodes.begin(), graph_.nodes.end(),
+                    [&](const FacetNode& node) { return ties_with(node, n, contacts); });
+    if (!in_facet && !is_traced(start)) fail(n, reason);
+  }
   for (const auto& [node, reason] : not_left_) {
     const FacetNode& own = graph_.nodes[std::size_t(node)];
     for (std::size_t k = 0; k < own.slots.size(); ++k) {
       if (own.slots[k].arc < 0 && !own.is_curved(k)) fail(own.n, reason);
     }
   }
-  graph_.newton_iterations = system_.iterations();
-  return std::move(graph_);
 }
 
 }  // namespace
