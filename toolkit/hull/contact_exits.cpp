@@ -307,8 +307,8 @@ class Climb {
       return Progress::moved;
     }
     if (geometry_.is_straight(c_)) {  // level: its ends are as high
-      c_.u = c_.u < 0.5 ? 0 : 1;
-      return leave({ContactExit::Kind::end, int(c_.u)});
+      c_ = geometry_.straight_end(c_, c_.u < 0.5 ? 0 : 1);
+      return Progress::moved;
     }
     if (std::abs(slope) > slack(size) && second >= 0) return Progress::lost;
     const auto& sides = geometry_.sides(c_);
@@ -493,14 +493,18 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
 
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
   Contact own = geometry.canonical(c);
+  // Of a segment's ends, the nearer one where it is level.
+  const auto higher = [&](const Contact& low, const Contact& high, double t) {
+    const double rise = glm::dot(geometry.point(high) - geometry.point(low), n);
+    const bool level = std::abs(rise) <= geometry.tie();
+    return (level ? t >= 0.5 : rise > 0) ? high : low;
+  };
   const auto move_to_end = [&](double Contact::*t) {
     Contact low = own;
     Contact high = own;
     low.*t = 0;
     high.*t = 1;
-    const double rise = glm::dot(geometry.point(high) - geometry.point(low), n);
-    const bool level = std::abs(rise) <= geometry.tie();
-    own = geometry.canonical((level ? own.*t >= 0.5 : rise > 0) ? high : low);
+    own = geometry.canonical(higher(low, high, own.*t));
   };
   const auto inside = [](double t) { return t > 0 && t < 1; };
   for (const auto t : {&Contact::v, &Contact::u}) {
@@ -508,7 +512,11 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
     const Patch& patch = geometry.patch(own);
     if ((t == &Contact::v ? patch.ruled_v : patch.ruled_u) && inside(own.*t)) move_to_end(t);
   }
-  if (own.kind == SourceKind::edge && geometry.is_straight(own)) move_to_end(&Contact::u);
+  if (own.kind == SourceKind::edge && geometry.is_straight(own)) {
+    const Contact low = geometry.straight_end(own, 0);
+    const Contact high = geometry.straight_end(own, 1);
+    own = higher(low, high, own.u);
+  }
   return own;
 }
 
