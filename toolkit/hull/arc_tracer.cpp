@@ -110,7 +110,7 @@ class Trace {
   }
   Event event_here(int contact, const ContactExit& exit) const;
   bool precedes(const Event& a, const Event& b) const;
-  double slack(int contact) const;
+  double slack(int contact, const ContactExit& exit) const;
   /// About a free end heights differ by the fourth power of distances.
   double merging_distance() const {
     return std::max(merge_distance, 2 * std::pow(geometry_.rounding(), 0.25));
@@ -243,7 +243,8 @@ bool Trace::precedes(const Event& a, const Event& b) const {
   const auto at_end = [](const Event& e) {
     return e.exit.kind == ContactExit::Kind::side || e.exit.kind == ContactExit::Kind::end;
   };
-  const bool one_place = std::abs(a.length - b.length) <= std::max(slack(0), slack(1));
+  const bool one_place =
+      std::abs(a.length - b.length) <= std::max(slack(a.contact, a.exit), slack(b.contact, b.exit));
   return one_place && at_end(a) != at_end(b) ? at_end(a) : a.length < b.length;
 }
 
@@ -264,14 +265,14 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
   for (int i = 0; i < 2; ++i) {
     for (const ContactExit& exit : exits_[std::size_t(i)]) {
       const double after = margin(next, i, exit);
-      if (after >= -slack(i)) continue;
+      if (after >= -slack(i, exit)) continue;
       const double before = std::max(margin(at_, i, exit), 0.0);
       const double share = before / (before - after);
       std::optional<Event> event = solved_event(next, share, i, exit);
       // At the exit but for rounding, which may put it far behind.
-      if (before <= slack(i) && (!event || event->length < -border_step))
+      if (before <= slack(i, exit) && (!event || event->length < -border_step))
         event = event_here(i, exit);
-      if (!event || event->length > length + slack(i)) {
+      if (!event || event->length > length + slack(i, exit)) {
         known = false;
         continue;
       }
@@ -281,11 +282,11 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
   return first;
 }
 
-/// How far below zero a contact's margins may be for rounding.
-double Trace::slack(int contact) const {
-  const ContactJet& j = at_.jet[std::size_t(contact)];
-  double size = 1;
-  for (int a = 0; a < j.dimension; ++a) size = std::min(size, glm::length(j.dx[std::size_t(a)]));
+/// How far below zero a contact's margin may be for rounding.
+double Trace::slack(int contact, const ContactExit& exit) const {
+  const double size =
+      std::min(1.0, exit_length(geometry_, at_.contact[std::size_t(contact)], exit));
+  if (size == 0) return margin_slack_limit;
   const double rounding = std::min(geometry_.rounding(), margin_slack_limit * size) / size;
   return std::max(margin_slack, rounding);
 }

@@ -399,6 +399,22 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
   return e;
 }
 
+double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit) {
+  switch (exit.kind) {
+    case ContactExit::Kind::side:
+      return glm::length(geometry.jet(c).dx[along_v(all_sides[std::size_t(exit.index)]) ? 0 : 1]);
+    case ContactExit::Kind::end:
+      return glm::length(geometry.jet(c).dx[0]);
+    case ContactExit::Kind::face: {
+      const ContactGeometry::PieceSide& side = geometry.sides(c)[std::size_t(exit.index)];
+      return glm::length(inward(geometry.jet(on_side(c, side)), side.side));
+    }
+    case ContactExit::Kind::edge:
+      return glm::length(leaving(geometry, c, geometry.ends(c)[std::size_t(exit.index)]));
+  }
+  return 0;
+}
+
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
                               const ContactExit& exit) {
   const auto first = [&](const std::optional<Contact>& over) {

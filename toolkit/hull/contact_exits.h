@@ -28,6 +28,10 @@ std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c
 LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
                            const ContactExit& exit);
 
+/// The length of the derivative by which the exit's margin is measured at a contact: what rounding
+/// moves the margin by is a length over it.
+double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
+
 /// The contact beyond the exit at which it stands: the same point in the next element. None where
 /// there is no next one that is known (the pole of a collapsed side).
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,

@@ -86,13 +86,20 @@ class ContactSet {
   }
 
   void add(const Contact& c) {
-    const double near = std::max(corner_distance, geometry_.rounding());
-    contacts_.push_back(snapped(geometry_, clamped(c), near));
+    contacts_.push_back(snapped(geometry_, clamped(c), nearness()));
     points_.push_back(geometry_.point(contacts_.back()));
   }
   std::optional<FacetContacts> complete();
 
  private:
+  double nearness() const { return std::max(corner_distance, geometry_.rounding()); }
+  /// The parameter of a piece, or its end if that is no farther.
+  double end_or_inside(Contact piece, double t) const {
+    piece.u = t;
+    const double end = std::round(t);
+    const double speed = glm::length(geometry_.jet(piece).dx[0]);
+    return std::abs(t - end) * speed <= nearness() ? end : t;
+  }
   bool is_known(const Contact& c) const {
     const dvec3 x = geometry_.point(c);
     return std::any_of(points_.begin(), points_.end(),
@@ -136,7 +143,7 @@ std::optional<FacetContacts> ContactSet::outline() const {
       c = contacts_[std::size_t(side.point)];
     } else {
       c = pieces_[std::size_t(side.curve)];
-      c.u = side.t;
+      c.u = end_or_inside(c, side.t);
       c = geometry_.canonical(c);
     }
     f.contacts.push_back(c);
@@ -144,7 +151,8 @@ std::optional<FacetContacts> ContactSet::outline() const {
     EdgeStretch stretch;
     if (side.along >= 0) {
       const Contact& piece = pieces_[std::size_t(side.along)];
-      stretch = {piece.instance, piece.element, side.from, side.to};
+      stretch = {piece.instance, piece.element, end_or_inside(piece, side.from),
+                 end_or_inside(piece, side.to)};
     }
     f.sides.push_back(stretch);
   }
