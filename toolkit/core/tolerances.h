@@ -38,11 +38,6 @@ inline constexpr double support_slack = 1024 * rounding_unit;
 /// coincide.
 inline constexpr double support_tie = 1e-12;
 
-/// The same of a model far from the origin, as a fraction of the sum of the largest coordinates'
-/// sizes: those of two contacts' control points are rounded by half a unit each, and by as much
-/// again in any motion that brought them there.
-inline constexpr double tie_rounding = 2 * rounding_unit;
-
 /// What the rounding of a set of points may do to the plane of some of them, as a fraction of the
 /// sum of the largest coordinates' sizes (2^-49).
 ///

@@ -29,8 +29,10 @@ constexpr double growth = 1.6;
 constexpr double plane_slack = 1e-6;
 /// How far the corrector may move the prediction, as a share of the step.
 constexpr double correction_limit = 0.15;
-/// Margins below this are crossed.
+/// Margins below this are crossed; or below what the rounding of coordinates far from the origin
+/// does to them, but for places where that is more than the limit: beside poles.
 constexpr double margin_slack = 1e-12;
+constexpr double margin_slack_limit = 1e-6;
 /// Turns of n that are tried as the first step away from where contacts are singular.
 constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
 /// Share of such a turn by which contacts are told apart.
@@ -112,10 +114,16 @@ class Trace {
   double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
     return exit_margin(geometry_, s, contact, exit).residual;
   }
+  Event event_here(int contact, const ContactExit& exit) const;
+  bool precedes(const Event& a, const Event& b) const;
+  double slack(int contact, const ContactExit& exit) const;
+  /// About a free end heights differ by the fourth power of distances.
+  double merging_distance() const {
+    return std::max(merge_distance, 2 * std::pow(geometry_.rounding(), 0.25));
+  }
   /// A contact that the step takes across a pole, or -1, and the side.
   std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
   bool pass_pole(int contact, Side side, double length);
-  std::optional<Contact> in_element(const Contact& c, const Contact& other) const;
   bool is_singular(int contact) const;
   bool leave();
   bool leave(double step);
@@ -127,11 +135,11 @@ class Trace {
   void close();
   std::optional<FreeEnd> exact_end(const Ruling& near);
   bool is_ahead(const FreeEnd& end, double length) const;
-  bool merge();
   bool merge_at_pole();
   bool runs_into(const dvec3& pole);
   bool is_about_pole() const;
   bool crosses();
+  bool merge();
   bool ends_merged();
   bool is_followed(const Ruling& from, const Ruling& to);
   std::optional<Pace> near_merging();
@@ -140,9 +148,8 @@ class Trace {
   Pace advance();
   bool settle();
   void begin_piece();
-  void move_to(Ruling& ruling, const Ruling& place) const;
   bool is_sound() const;
-  void drop_empty_pieces();
+  void push_on();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
 
   Pace ended(TracedArc::End end) {
@@ -203,6 +210,16 @@ std::optional<CommonSupport> Trace::stepped(double length) const {
   return s;
 }
 
+/// Moves a contact onto the side or end at which the exit lies, exactly.
+void put_on_border(Contact& c, const ContactExit& exit) {
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    c.u = exit.index;
+  }
+}
+
 std::optional<Event> Trace::solved_event(const CommonSupport& next, double share, int contact,
                                          const ContactExit& exit) const {
   Event event;
@@ -220,19 +237,31 @@ std::optional<Event> Trace::solved_event(const CommonSupport& next, double share
       s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, contact, exit); });
   if (!solved) return std::nullopt;
   // On the border exactly.
-  Contact& c = s.contact[std::size_t(contact)];
-  if (exit.kind == ContactExit::Kind::side) {
-    const Side side = all_sides[std::size_t(exit.index)];
-    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
-  } else if (exit.kind == ContactExit::Kind::end) {
-    c.u = exit.index;
-  }
+  put_on_border(s.contact[std::size_t(contact)], exit);
   for (std::size_t i = 0; i < 2; ++i) {
     s.contact[i].u = std::clamp(s.contact[i].u, 0.0, 1.0);
     s.contact[i].v = std::clamp(s.contact[i].v, 0.0, 1.0);
   }
   s.evaluate(geometry_);
   event.length = length_to(s);
+  return event;
+}
+
+/// Of exits in one place those at the ends of elements come first: beyond them slopes tell nothing.
+bool Trace::precedes(const Event& a, const Event& b) const {
+  const auto at_end = [](const Event& e) {
+    return e.exit.kind == ContactExit::Kind::side || e.exit.kind == ContactExit::Kind::end;
+  };
+  const bool one_place =
+      std::abs(a.length - b.length) <= std::max(slack(a.contact, a.exit), slack(b.contact, b.exit));
+  return one_place && at_end(a) != at_end(b) ? at_end(a) : a.length < b.length;
+}
+
+/// The exit as one at which the contact stands.
+Event Trace::event_here(int contact, const ContactExit& exit) const {
+  Event event{0, contact, exit, at_};
+  put_on_border(event.support.contact[std::size_t(contact)], exit);
+  event.support.evaluate(geometry_);
   return event;
 }
 
@@ -245,18 +274,30 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
   for (int i = 0; i < 2; ++i) {
     for (const ContactExit& exit : exits_[std::size_t(i)]) {
       const double after = margin(next, i, exit);
-      if (after >= -margin_slack) continue;
+      if (after >= -slack(i, exit)) continue;
       const double before = std::max(margin(at_, i, exit), 0.0);
       const double share = before / (before - after);
-      const std::optional<Event> event = solved_event(next, share, i, exit);
-      if (!event || event->length > length + margin_slack) {
+      std::optional<Event> event = solved_event(next, share, i, exit);
+      // At the exit but for rounding, which may put it far behind.
+      if (before <= slack(i, exit) && (!event || event->length < -border_step))
+        event = event_here(i, exit);
+      if (!event || event->length > length + slack(i, exit)) {
         known = false;
         continue;
       }
-      if (!first || event->length < first->length) first = event;
+      if (!first || precedes(*event, *first)) first = event;
     }
   }
   return first;
+}
+
+/// How far below zero a contact's margin may be for rounding.
+double Trace::slack(int contact, const ContactExit& exit) const {
+  const double size =
+      std::min(1.0, exit_length(geometry_, at_.contact[std::size_t(contact)], exit));
+  if (size == 0) return margin_slack_limit;
+  const double rounding = std::min(geometry_.rounding(), margin_slack_limit * size) / size;
+  return std::max(margin_slack, rounding);
 }
 
 std::pair<int, Side> Trace::pole_crossed(const CommonSupport& next) const {
@@ -321,9 +362,10 @@ std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact
 
 /// The point of a contact as one of the element of `other`; a pole's at the parameter of `other`
 /// along its side.
-std::optional<Contact> Trace::in_element(const Contact& c, const Contact& other) const {
-  if (!pole_side(geometry_, c)) return expressed_in(geometry_, c, other);
-  return at_pole_of(geometry_, other, geometry_.point(c));
+std::optional<Contact> in_element(const ContactGeometry& geometry, const Contact& c,
+                                  const Contact& other) {
+  if (!pole_side(geometry, c)) return expressed_in(geometry, c, other);
+  return at_pole_of(geometry, other, geometry.point(c));
 }
 
 /// Whether a contact may move without the direction, or its parameters fail: at a pole, and where
@@ -360,14 +402,14 @@ bool Trace::leave(double step) {
   const CommonSupport next = at_;
   at_ = start;
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<Contact> c = in_element(start.contact[i], next.contact[i]);
+    const std::optional<Contact> c = in_element(geometry_, start.contact[i], next.contact[i]);
     if (!c) return false;
     at_.contact[i] = *c;
   }
   at_.evaluate(geometry_);
   begin_piece();
   at_ = next;
-  push(at_);
+  push_on();
   return true;
 }
 
@@ -452,7 +494,7 @@ bool Trace::arrives(const Landmark& landmark, double length) {
   end.n = landmark.n;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::size_t corner = (*side + 1 - i) % facet.points.size();
-    std::optional<Contact> there = in_element(facet.contacts[corner], at_.contact[i]);
+    std::optional<Contact> there = in_element(geometry_, facet.contacts[corner], at_.contact[i]);
     if (!there) there = climbed(geometry_, at_.contact[i], landmark.n);
     if (!there || !same_element(*there, at_.contact[i]) ||
         glm::distance(geometry_.point(*there), facet.points[corner]) > same_contact) {
@@ -792,7 +834,8 @@ bool Trace::settle() {
       // As lengths: about a pole parameters are less exact.
       const Side side = all_sides[std::size_t(exit.index)];
       const double size = std::min(1.0, glm::length(at_.jet[i].dx[along_v(side) ? 0 : 1]));
-      if (std::max(std::abs(e.residual), std::abs(along)) * size > border_slack) continue;
+      const double slack = std::max(border_slack, geometry_.rounding());
+      if (std::max(std::abs(e.residual), std::abs(along)) * size > slack) continue;
       const std::optional<Contact> over = beyond(geometry_, c, exit);
       if (!over || over->kind == SourceKind::vertex) continue;
       if (over->kind == SourceKind::face) {
@@ -821,6 +864,23 @@ void Trace::begin_piece() {
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
 }
 
+/// Adds the contacts as a ruling. A piece that begins on a collapsed side, where the parameter
+/// along the side is any, does so at the parameter at which it goes on.
+void Trace::push_on() {
+  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
+  for (std::size_t i = 0; i < 2 && rulings.size() == 1; ++i) {
+    Contact& c = rulings.front().contact[i];
+    if (c.kind != SourceKind::face) continue;
+    for (const Side side : all_sides) {
+      const Border& border = geometry_.patch(c).borders[std::size_t(side)];
+      const double across = along_v(side) ? c.u : c.v;
+      if (border.kind != BorderKind::collapsed || across != (at_upper_end(side) ? 1 : 0)) continue;
+      (along_v(side) ? c.v : c.u) = along_v(side) ? at_.contact[i].v : at_.contact[i].u;
+    }
+  }
+  push(at_);
+}
+
 /// All numbers are finite: Newton's method may end in anything on surfaces without tangent planes.
 bool Trace::is_sound() const {
   return std::all_of(arc_.pieces.begin(), arc_.pieces.end(), [](const ArcPiece& piece) {
@@ -830,44 +890,13 @@ bool Trace::is_sound() const {
   });
 }
 
-/// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
-/// they reach there.
-void Trace::move_to(Ruling& ruling, const Ruling& place) const {
-  ruling.n = place.n;
-  ruling.point = place.point;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Contact c = snapped(geometry_, place.contact[i], shortest_piece);
-    if (const auto own = in_element(c, ruling.contact[i])) ruling.contact[i] = *own;
-  }
-}
-
-/// Leaves out pieces without length, as they arise where a contact passes a corner between elements
-/// or the arc ends in it: their neighbours meet there.
-void Trace::drop_empty_pieces() {
-  std::vector<ArcPiece>& pieces = arc_.pieces;
-  const auto is_empty = [](const ArcPiece& piece) {
-    const Ruling& a = piece.rulings.front();
-    return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& b) {
-      return square(b.n - a.n) + square(b.point[0] - a.point[0]) + square(b.point[1] - a.point[1]) <
-             shortest_piece * shortest_piece;
-    });
-  };
-  for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
-    if (!is_empty(pieces[k])) continue;
-    // What begins and ends the arc is told by its first ruling and its last.
-    if (k == 0) move_to(pieces[1].rulings.front(), pieces[0].rulings.front());
-    if (k + 1 == pieces.size()) move_to(pieces[k - 1].rulings.back(), pieces[k].rulings.back());
-    pieces.erase(pieces.begin() + std::ptrdiff_t(k));
-  }
-}
-
 /// Where the step would take the two contacts into each other: shortens it, until they are so near
 /// that they merge.
 std::optional<Trace::Pace> Trace::near_merging() {
   const double apart = glm::length(at_.d());
   const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / apart;
   if (rate >= 0 || apart >= -2 * rate * step_) return std::nullopt;
-  if (apart >= merge_distance) {
+  if (apart >= merging_distance()) {
     step_ = -0.5 * apart / rate;
     return std::nullopt;
   }
@@ -926,7 +955,8 @@ Trace::Pace Trace::advance() {
     // The nearer the contacts are to merging, the worse the system is conditioned.
     const double apart = glm::length(at_.d());
     const bool approach = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) < 0;
-    if (approach && apart < 2 * merge_distance && step_ < stuck_share * apart && ends_merged()) {
+    if (approach && apart < 2 * merging_distance() && step_ < stuck_share * apart &&
+        ends_merged()) {
       return merged();
     }
     return shorter("a separating curve cannot be followed");
@@ -960,7 +990,7 @@ Trace::Pace Trace::advance() {
   idle_ = moved ? 0 : idle_ + 1;
   if (idle_ > idle_limit) return lost("a separating curve stays on a border");
   at_ = *next;
-  if (moved) push(at_);
+  if (moved) push_on();
   if (event) return exchange(*event);
   if (moved && !home_) {
     home_ = at_;
@@ -986,11 +1016,50 @@ TracedArc Trace::run(const Progress& progress, bool aside) {
     pace = k < step_limit ? advance() : lost("a separating curve has no end");
   }
   if (!is_sound()) lost("a separating curve is not finite");
-  drop_empty_pieces();
+  drop_empty_pieces(geometry_, arc_.pieces);
   return std::move(arc_);
 }
 
+/// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
+/// they reach there.
+void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
+  ruling.n = place.n;
+  ruling.point = place.point;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact c = snapped(geometry, place.contact[i], shortest_piece);
+    if (const auto own = in_element(geometry, c, ruling.contact[i])) ruling.contact[i] = *own;
+  }
+}
+
 }  // namespace
+
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+  const auto square = [](const dvec3& x) { return glm::dot(x, x); };
+  // At its ends, where heights tie over as much.
+  const double tied = std::max(shortest_piece, std::sqrt(geometry.rounding()));
+  const auto is_empty = [&](std::size_t k) {
+    const std::vector<Ruling>& rulings = pieces[k].rulings;
+    const double shortest = k == 0 || k + 1 == pieces.size() ? tied : shortest_piece;
+    const Ruling& a = rulings.front();
+    return std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& b) {
+      return square(b.n - a.n) + square(b.point[0] - a.point[0]) + square(b.point[1] - a.point[1]) <
+             shortest * shortest;
+    });
+  };
+  for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
+    if (!is_empty(k)) continue;
+    // What begins and ends the arc is told by its first ruling and its last.
+    if (k == 0) move_to(geometry, pieces[1].rulings.front(), pieces[0].rulings.front());
+    if (k + 1 == pieces.size())
+      move_to(geometry, pieces[k - 1].rulings.back(), pieces[k].rulings.back());
+    if (k > 0 && k + 1 < pieces.size()) {
+      // One contact crosses its border here, the other one in the piece's other end.
+      move_to(geometry, pieces[k - 1].rulings.back(), pieces[k - 1].rulings.back());
+      move_to(geometry, pieces[k + 1].rulings.front(), pieces[k + 1].rulings.front());
+    }
+    pieces.erase(pieces.begin() + std::ptrdiff_t(k));
+  }
+}
 
 TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
                     std::span<const Landmark> landmarks, const Progress& progress, bool aside) {

@@ -57,4 +57,8 @@ TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const Comm
                     std::span<const Landmark> landmarks, const Progress& progress,
                     bool aside = false);
 
+/// Leaves out pieces without length, as they arise where a contact passes a corner between elements
+/// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
+
 }  // namespace taut

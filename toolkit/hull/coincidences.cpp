@@ -91,6 +91,7 @@ Contact Coincidences::first(const Contact& c) const {
     if (r.swapped) std::swap(u, v);
     at = {r.instance, c.kind, r.element, u, v};
   }
+  if (const auto place = places_.find(key(at)); place != places_.end()) return place->second;
   if (c.kind == SourceKind::vertex) at.u = at.v = 0;
   if (c.kind == SourceKind::edge) at.v = 0;
   return at;

@@ -28,10 +28,17 @@ class Coincidences {
   /// for pieces after reversing.
   Coincidences(const std::vector<PlacedElement>& elements, double tolerance);
 
-  bool empty() const { return repeats_.empty(); }
+  /// Lets a vertex be a point of an edge, unless it is one already.
+  void place(const Contact& vertex, const Contact& on_edge) {
+    places_.try_emplace(key(vertex), on_edge);
+  }
+
+  bool empty() const { return repeats_.empty() && places_.empty(); }
   /// An earlier element is the same.
-  bool repeats(const Contact& c) const { return !empty() && repeats_.contains(key(c)); }
-  /// The same point on the first element that is the same.
+  bool repeats(const Contact& c) const {
+    return !empty() && (repeats_.contains(key(c)) || places_.contains(key(c)));
+  }
+  /// The same point on the first element that is the same, or on the edge on which it was placed.
   Contact first(const Contact& c) const;
   /// The element repeats another one with its first parameter reversed.
   bool reversed(const Contact& c) const;
@@ -50,6 +57,7 @@ class Coincidences {
   static Key key(const Contact& c) { return {int(c.kind), c.instance, c.element}; }
 
   std::map<Key, Repeat> repeats_;
+  std::map<Key, Contact> places_;
 };
 
 }  // namespace taut

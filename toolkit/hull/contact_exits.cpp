@@ -78,20 +78,6 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
-/// The end of the straight segment on which a piece lies, beyond the piece's end.
-Contact end_of_segment(const ContactGeometry& geometry, const Contact& c, int end) {
-  Contact at = c;
-  at.u = end;
-  for (std::size_t k = 0; k < geometry.part(c).pieces().size(); ++k) {
-    const std::optional<Contact> next = beyond_end(geometry, at, int(at.u));
-    if (!next) break;
-    at = *next;
-    if (at.kind == SourceKind::vertex) break;
-    at.u = 1 - at.u;
-  }
-  return geometry.canonical(at);
-}
-
 /// The contact moved to the side or end at which the exit lies.
 Contact at_exit(Contact c, const ContactExit& exit) {
   if (exit.kind == ContactExit::Kind::side) {
@@ -187,6 +173,15 @@ class Climb {
   /// Share of a patch that steps may take where the value is not concave.
   static constexpr double stride = 0.2;
 
+  /// What rounding may leave of a level tangent's slope, by the tangent's length.
+  double slack(double size) const { return flat * size + geometry_.rounding(); }
+  bool is_bent(double second, double size) const {
+    return second > bent * size * size + geometry_.rounding();
+  }
+  bool rises(const dvec3& tangent) const {
+    return glm::dot(tangent, n_) > slack(glm::length(tangent));
+  }
+
   Progress leave(const ContactExit& exit) {
     const std::optional<Contact> next = beyond(geometry_, c_, exit);
     if (!next) return Progress::lost;
@@ -201,8 +196,8 @@ class Climb {
     const dvec2 size(glm::length(j.dx[0]), glm::length(j.dx[1]));
     dvec2 at(c_.u, c_.v);
     for (int a = 0; a < 2; ++a) {
-      const bool low = at[a] <= 0 && slope[a] < -flat * (size[a] + small_tangent);
-      const bool high = at[a] >= 1 && slope[a] > flat * (size[a] + small_tangent);
+      const bool low = at[a] <= 0 && slope[a] < -slack(size[a] + small_tangent);
+      const bool high = at[a] >= 1 && slope[a] > slack(size[a] + small_tangent);
       if (!low && !high) continue;
       const Side side = a == 0 ? (low ? Side::u0 : Side::u1) : (low ? Side::v0 : Side::v1);
       if (is_pole(geometry_, c_, side)) return off_the_pole();
@@ -220,8 +215,8 @@ class Climb {
         if (size[a] == 0) continue;
         const double second = a == 0 ? uu : vv;
         // Where the value is not concave, far, off a minimum too; where it is flat, nowhere.
-        const bool level = std::abs(slope[a]) <= flat * (size[a] + small_tangent) &&
-                           second <= bent * size[a] * size[a];
+        const bool level =
+            std::abs(slope[a]) <= slack(size[a] + small_tangent) && !is_bent(second, size[a]);
         step[a] = second < 0 ? -slope[a] / second : level ? 0 : std::copysign(stride, slope[a]);
       }
     }
@@ -265,7 +260,8 @@ class Climb {
       const double t = along_v(side) ? c_.u : c_.v;
       if ((at_upper_end(side) ? 1 - t : t) > about_pole || !is_pole(geometry_, c_, side)) continue;
       const Contact pole = at_exit(c_, {ContactExit::Kind::side, int(side)});
-      if (glm::length(glm::cross(unit_normal(geometry_, pole), n_)) >= pole_angle) continue;
+      const double least = std::max(pole_angle, 2 * pole_turn(geometry_, pole));
+      if (glm::length(glm::cross(unit_normal(geometry_, pole), n_)) >= least) continue;
       c_ = pole;
       return true;
     }
@@ -275,7 +271,8 @@ class Climb {
   Progress off_the_pole() {
     if (left_pole_) return Progress::lost;
     const dvec3 normal = unit_normal(geometry_, c_);
-    if (glm::length(glm::cross(normal, n_)) < pole_angle) return Progress::arrived;
+    const double least = std::max(pole_angle, 2 * pole_turn(geometry_, c_));
+    if (glm::length(glm::cross(normal, n_)) < least) return Progress::arrived;
     const std::optional<Contact> start = way_off_pole(geometry_, c_, n_);
     if (!start) return Progress::lost;
     left_pole_ = true;
@@ -299,10 +296,10 @@ class Climb {
     const ContactJet j = geometry_.jet(c_);
     const double slope = glm::dot(j.dx[0], n_);
     const double size = glm::length(j.dx[0]);
-    if (c_.u <= 0 && slope < -flat * size) return leave({ContactExit::Kind::end, 0});
-    if (c_.u >= 1 && slope > flat * size) return leave({ContactExit::Kind::end, 1});
+    if (c_.u <= 0 && slope < -slack(size)) return leave({ContactExit::Kind::end, 0});
+    if (c_.u >= 1 && slope > slack(size)) return leave({ContactExit::Kind::end, 1});
     const double second = glm::dot(j.dxx, n_);
-    const bool level = std::abs(slope) <= flat * size && second <= bent * size * size;
+    const bool level = std::abs(slope) <= slack(size) && !is_bent(second, size);
     double step = second < 0 ? -slope / second : level ? 0 : std::copysign(stride, slope);
     step = std::clamp(step, -0.5, 0.5);
     const double to = std::clamp(c_.u + step, 0.0, 1.0);
@@ -312,14 +309,14 @@ class Climb {
       return Progress::moved;
     }
     if (geometry_.is_straight(c_)) {  // level: its ends are as high
-      c_ = end_of_segment(geometry_, c_, c_.u < 0.5 ? 0 : 1);
+      c_ = geometry_.straight_end(c_, c_.u < 0.5 ? 0 : 1);
       return Progress::moved;
     }
-    if (std::abs(slope) > flat * size && second >= 0) return Progress::lost;
+    if (std::abs(slope) > slack(size) && second >= 0) return Progress::lost;
     const auto& sides = geometry_.sides(c_);
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const dvec3 c = inward(geometry_.jet(on_side(c_, sides[k])), sides[k].side);
-      if (elevation(c, n_) > flat) return leave({ContactExit::Kind::face, int(k)});
+      if (rises(c)) return leave({ContactExit::Kind::face, int(k)});
     }
     return Progress::arrived;
   }
@@ -329,7 +326,7 @@ class Climb {
     for (std::size_t k = 0; k < ends.size(); ++k) {
       // The other end of a straight edge is a contact of its own.
       if (geometry_.is_straight(at_end(c_, ends[k]))) continue;
-      if (elevation(leaving(geometry_, c_, ends[k]), n_) > flat) {
+      if (rises(leaving(geometry_, c_, ends[k]))) {
         return leave({ContactExit::Kind::edge, int(k)});
       }
     }
@@ -404,6 +401,22 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
   return e;
 }
 
+double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit) {
+  switch (exit.kind) {
+    case ContactExit::Kind::side:
+      return glm::length(geometry.jet(c).dx[along_v(all_sides[std::size_t(exit.index)]) ? 0 : 1]);
+    case ContactExit::Kind::end:
+      return glm::length(geometry.jet(c).dx[0]);
+    case ContactExit::Kind::face: {
+      const ContactGeometry::PieceSide& side = geometry.sides(c)[std::size_t(exit.index)];
+      return glm::length(inward(geometry.jet(on_side(c, side)), side.side));
+    }
+    case ContactExit::Kind::edge:
+      return glm::length(leaving(geometry, c, geometry.ends(c)[std::size_t(exit.index)]));
+  }
+  return 0;
+}
+
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
                               const ContactExit& exit) {
   const auto first = [&](const std::optional<Contact>& over) {
@@ -441,6 +454,13 @@ std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c)
       return side;
   }
   return std::nullopt;
+}
+
+double pole_turn(const ContactGeometry& geometry, const Contact& pole) {
+  const std::optional<Side> side = pole_side(geometry, pole);
+  if (!side) return 0;
+  const double size = glm::length(geometry.jet(pole).dx[along_v(*side) ? 0 : 1]);
+  return size > 0 ? geometry.rounding() / size : 0;
 }
 
 std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
@@ -515,7 +535,7 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
     move_to_end(last(-along), last(along));
   }
   if (own.kind == SourceKind::edge && geometry.is_straight(own)) {
-    move_to_end(end_of_segment(geometry, own, 0), end_of_segment(geometry, own, 1));
+    move_to_end(geometry.straight_end(own, 0), geometry.straight_end(own, 1));
   }
   return own;
 }

@@ -28,6 +28,10 @@ std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c
 LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
                            const ContactExit& exit);
 
+/// The length of the derivative by which the exit's margin is measured at a contact: what rounding
+/// moves the margin by is a length over it.
+double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
+
 /// The contact beyond the exit at which it stands: the same point in the next element. None where
 /// there is no next one that is known (the pole of a collapsed side).
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
@@ -42,6 +46,10 @@ std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c)
 /// The outward normal in the direction of Su x Sv at the contact, in the scene's frame; at a pole
 /// the limit. Zero where there is none.
 dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c);
+
+/// How far the rounding of coordinates may have turned the normal at a pole, in radians.
+/// @pre the contact lies at a pole
+double pole_turn(const ContactGeometry& geometry, const Contact& pole);
 
 /// The contact about the pole, in whichever patch, that supports locally in a direction near the
 /// pole's normal. @pre the contact lies at a pole

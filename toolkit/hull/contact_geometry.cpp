@@ -5,6 +5,7 @@
 
 #include "taut/bounds/scene_content.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/nearest_parameter.h"
 
 namespace taut {
 namespace {
@@ -21,36 +22,47 @@ std::vector<dvec4> moved(const std::vector<dvec4>& points, const dvec3& center, 
   return result;
 }
 
+/// Makes the points of a collapsed side one point, where rounding has left some length of it, which
+/// would turn the normals about it.
+void collapse(BezierPatch& patch, Side side, double tie) {
+  std::vector<dvec4*> points;
+  const int last = along_v(side) ? patch.degree_v : patch.degree_u;
+  points.reserve(std::size_t(last) + 1);
+  for (int k = 0; k <= last; ++k) {
+    const int u = at_upper_end(side) ? patch.degree_u : 0;
+    const int v = at_upper_end(side) ? patch.degree_v : 0;
+    points.push_back(along_v(side) ? &patch.at(u, k) : &patch.at(k, v));
+  }
+  const dvec3 x = euclidean(*points.front());
+  const bool rounded = std::all_of(points.begin(), points.end(), [&](const dvec4* p) {
+    return glm::distance(euclidean(*p), x) <= tie;
+  });
+  if (!rounded) return;
+  for (dvec4* p : points) *p = homogeneous(x, p->w);
+}
+
 /// Whether the control points lie on a line, to within rounding.
-bool is_segment(const BezierCurve& curve) {
+bool is_segment(const BezierCurve& curve, double rounding) {
   const dvec3 first = euclidean(curve.points.front());
   const dvec3 along = unit(euclidean(curve.points.back()) - first);
   return std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec4& p) {
-    return glm::length(glm::cross(euclidean(p) - first, along)) <= coordinate_rounding;
+    return glm::length(glm::cross(euclidean(p) - first, along)) <= rounding;
   });
 }
 
-/// Which of a part's pieces lie on segments between vertices: alone, or with those in which they go
-/// straight on.
-std::vector<bool> straight_pieces(const Part& part, const std::vector<BezierCurve>& curves) {
-  std::vector<bool> straight;
-  straight.reserve(curves.size());
-  for (const BezierCurve& curve : curves) straight.push_back(is_segment(curve));
-  // What goes on in a curve is none.
-  std::vector<std::size_t> bent;
-  const auto bend = [&](std::size_t k) {
-    straight[k] = false;
-    bent.push_back(k);
-  };
-  for (std::size_t k = 0; k < curves.size(); ++k) {
-    if (!straight[k]) bent.push_back(k);
+/// The vertex in which a piece ends, or the straight pieces do that go on from it; -1 if there is
+/// none.
+int last_vertex(const std::vector<EdgePiece>& pieces, const std::vector<bool>& segments, int piece,
+                std::size_t end) {
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const EdgePiece& own = pieces[std::size_t(piece)];
+    if (own.end_vertex[end] >= 0) return own.end_vertex[end];
+    const int next = own.end_neighbor[end];
+    if (next < 0 || !segments[std::size_t(next)]) return -1;
+    end = pieces[std::size_t(next)].end_neighbor[0] == piece ? 1 : 0;
+    piece = next;
   }
-  for (std::size_t i = 0; i < bent.size(); ++i) {
-    for (const int next : part.pieces()[bent[i]].end_neighbor) {
-      if (next >= 0 && straight[std::size_t(next)]) bend(std::size_t(next));
-    }
-  }
-  return straight;
+  return -1;
 }
 
 }  // namespace
@@ -71,9 +83,9 @@ std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const d
 ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
   const Box box = scene.model().control_box();
   const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-  tie_ =
-      std::max(support_tie,
-               tie_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z));
+  rounding_ =
+      coordinate_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z);
+  tie_ = std::max(support_tie, rounding_);
   const Scene::Content& content = scene.content();
   const std::vector<Part>& parts = scene.model().parts();
   parts_.resize(parts.size());
@@ -94,6 +106,7 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
       own.patches.push_back({b.degree_u, b.degree_v, moved(b.points, center, scale)});
       for (const Side side : all_sides) {
         const Border& border = patch.borders[std::size_t(side)];
+        if (border.kind == BorderKind::collapsed) collapse(own.patches.back(), side, tie_);
         if (border.piece < 0 || patch.repeats >= 0) continue;
         auto& sides = patch.ruled() ? own.ruled_sides : own.sides;
         sides[std::size_t(border.piece)].push_back({-1, int(i), side, border.piece_reversed});
@@ -107,8 +120,8 @@ ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
         if (vertex >= 0) own.ends[std::size_t(vertex)].push_back({-1, int(i), end});
       }
     }
-    own.straight = straight_pieces(part, own.pieces);
     for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
+    find_straight(part, own);
   }
   find_coincidences();
 }
@@ -135,6 +148,30 @@ PlacedElement ContactGeometry::placed(const Contact& c) const {
   return result;
 }
 
+/// Straight pieces that go on into each other between two vertices are one segment.
+void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
+  std::vector<bool> segments;
+  segments.reserve(own.pieces.size());
+  for (const BezierCurve& piece : own.pieces) {
+    segments.push_back(is_segment(piece, std::max(coordinate_rounding, rounding_)));
+  }
+  own.straight.assign(own.pieces.size(), {-1, -1});
+  for (std::size_t k = 0; k < own.pieces.size(); ++k) {
+    if (!segments[k]) continue;
+    const int first = last_vertex(part.pieces(), segments, int(k), 0);
+    const int last = last_vertex(part.pieces(), segments, int(k), 1);
+    if (first < 0 || last < 0) continue;
+    const dvec3 a = own.vertices[std::size_t(first)];
+    const dvec3 along = unit(own.vertices[std::size_t(last)] - a);
+    // Joints may have kinks that are smooth to within what counts as such.
+    const auto is_on = [&](const dvec4& p) {
+      return glm::length(glm::cross(euclidean(p) - a, along)) <= tie_;
+    };
+    const BezierCurve& piece = own.pieces[k];
+    if (is_on(piece.points.front()) && is_on(piece.points.back())) own.straight[k] = {first, last};
+  }
+}
+
 void ContactGeometry::find_coincidences() {
   const Model& model = scene_.model();
   std::vector<PlacedElement> all;
@@ -149,6 +186,41 @@ void ContactGeometry::find_coincidences() {
   }
   coincidences_ = Coincidences(all, tie_);
   for (const Contact& c : coincidences_.all()) share(c);
+  place_points(all);
+}
+
+/// Points beside which no edge ends, and that lie on an edge, are points of it.
+void ContactGeometry::place_points(const std::vector<PlacedElement>& all) {
+  struct Lone {
+    dvec3 x;
+    Contact vertex;
+  };
+  std::vector<Lone> points;
+  for (const PlacedElement& e : all) {
+    const Contact c{e.instance, e.kind, e.element, 0, 0};
+    if (e.kind != SourceKind::vertex || is_repeated(c) || !ends(c).empty()) continue;
+    points.push_back({dvec3(e.points[0]), c});
+  }
+  if (points.empty()) return;
+  std::stable_sort(points.begin(), points.end(),
+                   [](const Lone& a, const Lone& b) { return a.x.x < b.x.x; });
+  for (const PlacedElement& e : all) {
+    const Contact c{e.instance, e.kind, e.element, 0, 0};
+    if (e.kind != SourceKind::edge || is_repeated(c)) continue;
+    Box box;
+    for (const dvec4& p : e.points) box.include(euclidean(p));
+    const dvec3 lower = box.lower - dvec3(tie_);
+    const dvec3 upper = box.upper + dvec3(tie_);
+    const BezierCurve curve{e.points};
+    auto p = std::lower_bound(points.begin(), points.end(), lower.x,
+                              [](const Lone& a, double x) { return a.x.x < x; });
+    for (; p != points.end() && p->x.x <= upper.x; ++p) {
+      if (glm::any(glm::lessThan(p->x, lower)) || glm::any(glm::greaterThan(p->x, upper))) continue;
+      const double t = nearest_parameter(curve, p->x);
+      if (glm::distance(taut::point(curve, t), p->x) > tie_) continue;
+      coincidences_.place(p->vertex, {c.instance, c.kind, c.element, t, 0});
+    }
+  }
 }
 
 /// Lets the first element know what the repeated one has about it.
@@ -191,7 +263,12 @@ const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c)
 }
 
 bool ContactGeometry::is_straight(const Contact& c) const {
-  return elements(c).straight[std::size_t(c.element)];
+  return elements(c).straight[std::size_t(c.element)][0] >= 0;
+}
+
+Contact ContactGeometry::straight_end(const Contact& c, int end) const {
+  const int vertex = elements(c).straight[std::size_t(c.element)][std::size_t(end)];
+  return first({c.instance, SourceKind::vertex, vertex, 0, 0});
 }
 
 BezierCurve ContactGeometry::curve(const Contact& c) const { return {placed(c).points}; }

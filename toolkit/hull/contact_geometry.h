@@ -43,6 +43,9 @@ class ContactGeometry {
   /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
   /// where the model is so far from the origin that its coordinates are rounded to more.
   double tie() const { return tie_; }
+  /// What the rounding of the model's coordinates may do to points, to planes through them and to
+  /// slopes at joins of surfaces, in the scene's frame (coordinate_rounding).
+  double rounding() const { return rounding_; }
   const Part& part(const Contact& c) const;
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little
@@ -59,7 +62,7 @@ class ContactGeometry {
   Contact canonical(const Contact& c) const;
 
   /// The same point on the first of the elements that coincide with the contact's, within
-  /// tie().
+  /// tie(); of a point beside which no edge ends and that lies on an edge, on the edge.
   Contact first(const Contact& c) const { return coincidences_.first(c); }
   /// The contact's element coincides with an earlier one. Contacts are told as ones of the first.
   bool is_repeated(const Contact& c) const { return coincidences_.repeats(c); }
@@ -85,10 +88,12 @@ class ContactGeometry {
   /// @pre kind vertex, not repeated
   const std::vector<PieceEnd>& ends(const Contact& c) const;
 
-  /// The piece lies on a straight segment between vertices, alone or with others in which it goes
-  /// straight on: the segment's ends are contacts, nothing inside of it.
+  /// The piece is a straight segment between vertices, or part of one with others that it goes on
+  /// into: these vertices are contacts, nothing inside.
   /// @pre kind edge
   bool is_straight(const Contact& c) const;
+  /// The vertex at that end (0 or 1) of the segment. @pre straight
+  Contact straight_end(const Contact& c, int end) const;
   /// Contacts inside of the patch are contacts of straight segments of it, and so of their ends.
   /// @pre kind face
   bool is_ruled(const Contact& c) const { return patch(c).ruled(); }
@@ -105,17 +110,20 @@ class ContactGeometry {
     std::vector<BezierPatch> patches;
     std::vector<BezierCurve> pieces;
     std::vector<dvec3> vertices;
-    std::vector<bool> straight;                       // per piece
+    std::vector<std::array<int, 2>> straight;         // per piece, its segment's vertices or -1
     std::vector<std::vector<PieceSide>> sides;        // per piece
     std::vector<std::vector<PieceSide>> ruled_sides;  // per piece
     std::vector<std::vector<PieceEnd>> ends;          // per vertex
   };
   const PartElements& elements(const Contact& c) const;
   PlacedElement placed(const Contact& c) const;
+  void find_straight(const Part& part, PartElements& own) const;
   void find_coincidences();
+  void place_points(const std::vector<PlacedElement>& all);
   void share(const Contact& repeated);
 
   const Scene& scene_;
+  double rounding_ = 0;
   double tie_ = 0;
   std::vector<PartElements> parts_;
   Coincidences coincidences_;

@@ -11,8 +11,6 @@ namespace {
 
 /// Sine of the angle below which control points are in line.
 constexpr double least_sine = 1e-6;
-/// Normals of one plane differ by no more: they are told by pieces as small as a thousandth.
-constexpr double same_normal = 1e-9;
 
 std::vector<dvec3> control_points(const BezierCurve& curve) {
   std::vector<dvec3> points;
@@ -21,55 +19,126 @@ std::vector<dvec3> control_points(const BezierCurve& curve) {
   return points;
 }
 
-/// The normal of the points' plane, by the largest triangle with the longest chord from the first;
-/// zero where they do not lie in one, or lie on a line.
-dvec3 plane_normal(const std::vector<dvec3>& points, double tie) {
-  const dvec3& a = points.front();
-  dvec3 chord(0.0);
-  for (const dvec3& p : points) {
-    if (glm::length(p - a) > glm::length(chord)) chord = p - a;
+/// A plane through points, by the largest triangle with the longest chord from the first.
+struct FittedPlane {
+  dvec3 n = dvec3(0.0);  ///< zero where all lie on a line
+  dvec3 x = dvec3(0.0);
+  double width = 0;  ///< the triangle's height
+
+  explicit FittedPlane(const std::vector<dvec3>& points) : x(points.front()) {
+    dvec3 chord(0.0);
+    for (const dvec3& p : points) {
+      if (glm::length(p - x) > glm::length(chord)) chord = p - x;
+    }
+    for (const dvec3& p : points) {
+      const dvec3 cross = glm::cross(chord, p - x);
+      if (glm::length(cross) > glm::length(n)) n = cross;
+    }
+    const double length = glm::length(chord);
+    const double area = glm::length(n);
+    n = area < least_sine * length * length ? dvec3(0.0) : unit(n);
+    width = length > 0 ? area / length : 0;
   }
-  dvec3 normal(0.0);
-  for (const dvec3& p : points) {
-    const dvec3 cross = glm::cross(chord, p - a);
-    if (glm::length(cross) > glm::length(normal)) normal = cross;
+
+  bool contains(const std::vector<dvec3>& points, double tie, double turn) const {
+    return std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
+      return std::abs(glm::dot(p - x, n)) <= tie + turn * glm::distance(p, x);
+    });
   }
-  if (glm::length(normal) < least_sine * glm::dot(chord, chord)) return dvec3(0.0);
-  normal = glm::normalize(normal);
-  const bool plane = std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
-    return std::abs(glm::dot(p - a, normal)) <= tie;
+};
+
+/// A plane of one piece or more, with their control points.
+struct Candidate {
+  FittedPlane plane;
+  double sense = 1;
+  std::vector<dvec3> points;
+  std::vector<Contact> pieces;
+
+  dvec3 n() const { return sense * plane.n; }
+  double offset() const {
+    double highest = glm::dot(points.front(), n());
+    for (const dvec3& p : points) highest = std::max(highest, glm::dot(p, n()));
+    return highest;
+  }
+};
+
+class PlaneFinder {
+ public:
+  PlaneFinder(const ContactGeometry& geometry, SupportQuery& query)
+      : geometry_(geometry), query_(query) {}
+
+  std::vector<ContactPlane> run();
+
+ private:
+  void add_pieces();
+  void add(const Candidate& own, double sense);
+  /// How far rounding may have turned a plane.
+  double turn(const FittedPlane& plane) const { return geometry_.tie() / plane.width; }
+  bool supports(const Candidate& c, double slack) {
+    return query_(c.n(), c.pieces.front()).h <= c.offset() + geometry_.tie() + slack;
+  }
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  std::vector<Candidate> pieces_;  // one each
+  std::vector<Candidate> planes_;
+};
+
+/// The pieces that are plane and not straight, the widest first: they tell their planes best.
+void PlaneFinder::add_pieces() {
+  const Model& model = geometry_.scene().model();
+  for (int i = 0; i < int(model.instances().size()); ++i) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    for (int k = 0; k < int(part.pieces().size()); ++k) {
+      const Contact piece{i, SourceKind::edge, k, 0, 0};
+      if (geometry_.is_repeated(piece)) continue;
+      std::vector<dvec3> points = control_points(geometry_.curve(piece));
+      const FittedPlane plane(points);
+      if (plane.n == dvec3(0.0) || !plane.contains(points, geometry_.tie(), 0)) continue;
+      pieces_.push_back({plane, 1, std::move(points), {piece}});
+    }
+  }
+  std::stable_sort(pieces_.begin(), pieces_.end(), [](const Candidate& a, const Candidate& b) {
+    return a.plane.width > b.plane.width;
   });
-  return plane ? normal : dvec3(0.0);
+}
+
+/// Puts the piece into the plane that it lies in, or makes one of it if that may support.
+void PlaneFinder::add(const Candidate& own, double sense) {
+  const auto known = std::find_if(planes_.begin(), planes_.end(), [&](const Candidate& c) {
+    return glm::dot(c.n(), sense * own.plane.n) > 0 &&
+           glm::distance(c.n(), sense * own.plane.n) <= turn(c.plane) + turn(own.plane) &&
+           c.plane.contains(own.points, geometry_.tie(), turn(c.plane));
+  });
+  if (known == planes_.end()) {
+    Candidate c = own;
+    c.sense = sense;
+    if (supports(c, turn(c.plane))) planes_.push_back(std::move(c));
+    return;
+  }
+  known->points.insert(known->points.end(), own.points.begin(), own.points.end());
+  known->pieces.push_back(own.pieces.front());
+  FittedPlane wider(known->points);
+  if (glm::dot(wider.n, known->plane.n) < 0) wider.n = -wider.n;
+  known->plane = wider;
+}
+
+std::vector<ContactPlane> PlaneFinder::run() {
+  add_pieces();
+  for (const Candidate& own : pieces_) {
+    for (const double sense : {1.0, -1.0}) add(own, sense);
+  }
+  std::vector<ContactPlane> result;
+  for (Candidate& c : planes_) {
+    if (supports(c, 0)) result.push_back({c.n(), c.offset(), std::move(c.pieces)});
+  }
+  return result;
 }
 
 }  // namespace
 
 std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query) {
-  std::vector<ContactPlane> planes;
-  const Model& model = geometry.scene().model();
-  for (int i = 0; i < int(model.instances().size()); ++i) {
-    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
-    for (int k = 0; k < int(part.pieces().size()); ++k) {
-      const Contact piece{i, SourceKind::edge, k, 0, 0};
-      if (geometry.is_repeated(piece)) continue;
-      const std::vector<dvec3> points = control_points(geometry.curve(piece));
-      const dvec3 normal = plane_normal(points, geometry.tie());
-      if (normal == dvec3(0.0)) continue;
-      for (const dvec3& n : {normal, -normal}) {
-        const double offset = glm::dot(points.front(), n);
-        const auto known = std::find_if(planes.begin(), planes.end(), [&](const ContactPlane& p) {
-          return glm::distance(p.n, n) < std::max(same_normal, geometry.tie()) &&
-                 std::abs(p.offset - offset) <= geometry.tie();
-        });
-        if (known != planes.end()) {
-          known->pieces.push_back(piece);
-        } else if (query(n, piece).h <= offset + geometry.tie()) {
-          planes.push_back({n, offset, {piece}});
-        }
-      }
-    }
-  }
-  return planes;
+  return PlaneFinder(geometry, query).run();
 }
 
 }  // namespace taut

@@ -69,8 +69,13 @@ FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
 class ContactSet {
  public:
   ContactSet(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
-             const std::vector<Contact>& pieces)
-      : geometry_(geometry), query_(query), n_(n), frame_(tangent_frame(n)), pieces_(pieces) {
+             const std::vector<Contact>& pieces, double slack)
+      : geometry_(geometry),
+        query_(query),
+        n_(n),
+        frame_(tangent_frame(n)),
+        pieces_(pieces),
+        slack_(slack) {
     curves_.reserve(pieces.size());
     for (const Contact& piece : pieces) {
       std::vector<dvec3>& curve = curves_.emplace_back();
@@ -81,12 +86,20 @@ class ContactSet {
   }
 
   void add(const Contact& c) {
-    contacts_.push_back(snapped(geometry_, clamped(c), corner_distance));
+    contacts_.push_back(snapped(geometry_, clamped(c), nearness()));
     points_.push_back(geometry_.point(contacts_.back()));
   }
   std::optional<FacetContacts> complete();
 
  private:
+  double nearness() const { return std::max(corner_distance, geometry_.rounding()); }
+  /// The parameter of a piece, or its end if that is no farther.
+  double end_or_inside(Contact piece, double t) const {
+    piece.u = t;
+    const double end = std::round(t);
+    const double speed = glm::length(geometry_.jet(piece).dx[0]);
+    return std::abs(t - end) * speed <= nearness() ? end : t;
+  }
   bool is_known(const Contact& c) const {
     const dvec3 x = geometry_.point(c);
     return std::any_of(points_.begin(), points_.end(),
@@ -107,6 +120,7 @@ class ContactSet {
   dvec3 n_;
   std::array<dvec3, 2> frame_;
   const std::vector<Contact>& pieces_;
+  double slack_;
   std::vector<std::vector<dvec3>> curves_;
   std::vector<Contact> contacts_;
   std::vector<dvec3> points_;
@@ -129,7 +143,7 @@ std::optional<FacetContacts> ContactSet::outline() const {
       c = contacts_[std::size_t(side.point)];
     } else {
       c = pieces_[std::size_t(side.curve)];
-      c.u = side.t;
+      c.u = end_or_inside(c, side.t);
       c = geometry_.canonical(c);
     }
     f.contacts.push_back(c);
@@ -137,7 +151,8 @@ std::optional<FacetContacts> ContactSet::outline() const {
     EdgeStretch stretch;
     if (side.along >= 0) {
       const Contact& piece = pieces_[std::size_t(side.along)];
-      stretch = {piece.instance, piece.element, side.from, side.to};
+      stretch = {piece.instance, piece.element, end_or_inside(piece, side.from),
+                 end_or_inside(piece, side.to)};
     }
     f.sides.push_back(stretch);
   }
@@ -180,7 +195,8 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
 std::optional<Contact> ContactSet::found(const dvec3& towards) {
   const Support s = query_(glm::normalize(n_ + side_turn * towards), contacts_[0]);
   const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
-  if (!c || glm::dot(geometry_.point(*c), n_) < glm::dot(points_[0], n_) - geometry_.tie()) {
+  const double least = glm::dot(points_[0], n_) - geometry_.tie() - slack_;
+  if (!c || glm::dot(geometry_.point(*c), n_) < least) {
     return std::nullopt;
   }
   return c;
@@ -249,8 +265,8 @@ bool FacetContacts::is_curved() const {
 
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
                                             const dvec3& n, const std::vector<Contact>& known,
-                                            const std::vector<Contact>& pieces) {
-  ContactSet set(geometry, query, n, pieces);
+                                            const std::vector<Contact>& pieces, double slack) {
+  ContactSet set(geometry, query, n, pieces, slack);
   for (const Contact& c : known) set.add(c);
   return set.complete();
 }

@@ -65,6 +65,8 @@ constexpr double same_plane = 1e-7;
 constexpr double nearly_same_plane = 1e-5;
 /// How far contacts move at most where the direction turns by so much, in the scene's frame.
 constexpr double moved_contact = 8;
+/// Or, far from the origin, below so many times the root of what coordinates are rounded to.
+constexpr double root_turn = 10;
 /// The circle about a pole's normal on which curves are sought.
 constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
@@ -77,6 +79,15 @@ constexpr int most_refinements = 8;
 constexpr double refined_margin = 1;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
+
+/// Normal of the polygon's mean plane (Newell's).
+dvec3 outline_normal(const std::vector<dvec3>& points) {
+  dvec3 sum(0.0);
+  for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+    sum += glm::cross(points[k] - points[0], points[k + 1] - points[0]);
+  }
+  return unit(sum);
+}
 
 class GraphTracer {
  public:
@@ -114,6 +125,7 @@ class GraphTracer {
   bool is_end_known(const std::vector<ArcPiece>& pieces) const;
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
+  bool ties_with(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,
                     double slack = 0) const;
   bool lies_in_facet(const CommonSupport& s) const;
@@ -136,11 +148,13 @@ class GraphTracer {
   void part_beside(const FreeEnd& end);
   void find_planes();
   void find_poles();
+  std::optional<Landmark> facet_at_pole(const dvec3& n, const Contact& pole, double turn);
   void add_pole(const dvec3& n, const Contact& c);
   void part_about(const dvec3& n, const Contact& pole);
   void part_closely(const Sighting& a, const Sighting& b, int depth);
   bool is_in_plane(const dvec3& n) const;
   void fail(const dvec3& n, const char* reason);
+  void tell_failures();
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -157,6 +171,7 @@ class GraphTracer {
   std::vector<std::pair<dvec3, Contact>> poles_;  // that support, with their normals
   std::vector<int> waiting_;                      // nodes whose slots may be open
   std::map<int, const char*> not_left_;  // nodes with sides across which no curve was found
+  std::vector<std::pair<CommonSupport, const char*>> failed_;  // starts that led nowhere
 };
 
 /// One spot is told once.
@@ -241,8 +256,8 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     tie.add(geometry_, b.contact);
     if (glm::distance(a.n, b.n) < narrow && std::abs(glm::dot(tie.d(), a.n)) < geometry_.tie()) {
       if (!is_traced(tie)) trace(tie);
-    } else if (!lies_in_facet(tie)) {
-      fail(a.n, "two contacts that are not joined are not parted either");
+    } else {
+      failed_.emplace_back(tie, "two contacts that are not joined are not parted either");
     }
     return;
   }
@@ -305,7 +320,7 @@ bool GraphTracer::is_crossed(const SupportChange& change) const {
 /// Whether there is too much that cannot be resolved, or it costs too much. Counted in the cells of
 /// support queries, so that the same is given up each time.
 bool GraphTracer::given_up() {
-  if (stopped_ || graph_.unresolved.size() >= failure_limit) return true;
+  if (stopped_ || graph_.unresolved.size() + failed_.size() >= failure_limit) return true;
   if (query_.cells() - first_cells_ <= cell_limit_) return false;
   fail(dvec3(0.0), "the search for separating curves was given up: contact along curves or areas");
   stopped_ = true;
@@ -352,13 +367,23 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
   return false;
 }
 
-/// Whether the contacts are in the plane of a facet with curved sides. Its direction is the limit
-/// of those of planes with two contacts on one of the curves, which Newton's method cannot tell
-/// apart.
+/// Whether the contacts are in the plane of a facet with curved sides or corners at poles. Its
+/// direction is the limit of those of planes with two contacts on one of the curves, or about two
+/// of the poles, which Newton's method cannot tell apart. Planes turn with the root of the heights
+/// over which contacts tie.
 bool GraphTracer::lies_in(const FacetNode& node, const dvec3& n,
                           const std::vector<Contact>& contacts) const {
-  return !node.sides.empty() && glm::distance(node.n, n) < nearly_same_plane &&
-         has_contacts(node, contacts);
+  const bool at_poles =
+      std::any_of(node.contacts.begin(), node.contacts.end(),
+                  [&](const Contact& c) { return pole_side(geometry_, c).has_value(); });
+  return (!node.sides.empty() || at_poles) && ties_with(node, n, contacts);
+}
+
+/// The plane is the node's as far as heights tell.
+bool GraphTracer::ties_with(const FacetNode& node, const dvec3& n,
+                            const std::vector<Contact>& contacts) const {
+  const double turn = std::max(nearly_same_plane, root_turn * std::sqrt(geometry_.rounding()));
+  return glm::distance(node.n, n) < turn && has_contacts(node, contacts);
 }
 
 /// All of the contacts are in the facet's plane, or below it by less than `slack`.
@@ -459,20 +484,37 @@ void GraphTracer::find_poles() {
         const dvec3 x = geometry_.point(c);
         if (normal == dvec3(0.0)) continue;
         for (const dvec3& n : {normal, -normal}) {
-          if (query_(n, c).h > glm::dot(x, n) + geometry_.tie()) continue;
+          const double turn = pole_turn(geometry_, c);
+          if (query_(n, c).h > glm::dot(x, n) + geometry_.tie() + turn) continue;
           add_pole(n, c);
           const bool known =
               std::any_of(landmarks_.begin(), landmarks_.end(),
                           [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
           if (known) continue;
-          std::optional<FacetContacts> f = facet_contacts(geometry_, query_, n, {c});
-          if (!f || f->contacts.size() < 3) continue;
-          landmarks_.push_back({n, *f});
-          add_node(n, std::move(*f));
+          const std::optional<Landmark> facet = facet_at_pole(n, c, turn);
+          if (!facet) continue;
+          landmarks_.push_back(*facet);
+          add_node(facet->n, facet->facet);
         }
       }
     }
   }
+}
+
+/// The facet of three contacts or more at whose corner the pole lies, where the pole's normal is
+/// known to within `turn` only: its plane is that of the contacts.
+std::optional<Landmark> GraphTracer::facet_at_pole(const dvec3& n, const Contact& pole,
+                                                   double turn) {
+  const auto facet = [&](const dvec3& normal, double slack) {
+    std::optional<FacetContacts> f = facet_contacts(geometry_, query_, normal, {pole}, {}, slack);
+    return f && f->contacts.size() >= 3 ? f : std::nullopt;
+  };
+  std::optional<FacetContacts> f = facet(n, turn);
+  if (!f || turn < geometry_.tie()) return f ? std::optional(Landmark{n, *f}) : std::nullopt;
+  dvec3 normal = outline_normal(f->points);
+  if (glm::dot(normal, n) < 0) normal = -normal;
+  f = facet(normal, 0);
+  return f ? std::optional(Landmark{normal, *f}) : std::nullopt;
 }
 
 /// Once for all patches that meet in it.
@@ -690,7 +732,7 @@ void GraphTracer::trace(const CommonSupport& seed) {
     if (is_facet(seed)) {
       trace_waiting();
     } else {
-      fail(seed.n, reason);
+      failed_.emplace_back(seed, reason);
     }
   };
   TracedArc ahead = trace_arc(system_, query_, seed, landmarks_, progress_);
@@ -735,6 +777,7 @@ void GraphTracer::trace(const CommonSupport& seed) {
   reverse(behind.pieces);
   arc.pieces = std::move(behind.pieces);
   append(arc.pieces, std::move(ahead.pieces));
+  drop_empty_pieces(geometry_, arc.pieces);
   const int index = store(std::move(arc));
   connect(index, 0, begin);
   connect(index, 1, end);
@@ -802,7 +845,7 @@ void GraphTracer::part_cells(const std::vector<CulledCell>& cells) {
     if (given_up()) break;
     if (is_crossed(change)) continue;
     const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
-    if (seed && !is_traced(*seed)) trace(*seed);
+    if (seed && !is_traced(*seed) && !lies_in_facet(*seed)) trace(*seed);
   }
 }
 
@@ -969,14 +1012,28 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
     }
   }
   search_cells(cells);
+  tell_failures();
+  graph_.newton_iterations = system_.iterations();
+  return std::move(graph_);
+}
+
+/// Starts that led nowhere, unless others led to the curve or facet there; and sides of facets that
+/// no curve leaves across.
+void GraphTracer::tell_failures() {
+  for (const auto& [start, reason] : failed_) {
+    const std::vector<Contact> contacts = {start.contact[0], start.contact[1]};
+    const dvec3& n = start.n;
+    const bool in_facet =
+        std::any_of(graph_.nodes.begin(), graph_.nodes.end(),
+                    [&](const FacetNode& node) { return ties_with(node, n, contacts); });
+    if (!in_facet && !is_traced(start)) fail(n, reason);
+  }
   for (const auto& [node, reason] : not_left_) {
     const FacetNode& own = graph_.nodes[std::size_t(node)];
     for (std::size_t k = 0; k < own.slots.size(); ++k) {
       if (own.slots[k].arc < 0 && !own.is_curved(k)) fail(own.n, reason);
     }
   }
-  graph_.newton_iterations = system_.iterations();
-  return std::move(graph_);
 }
 
 }  // namespace

@@ -540,6 +540,7 @@ void Part::connect(double smooth_angle) {
   point_count_ = to_int(vertices_.size());
   find_rulings(patches_);
   split_crests(faces_, patches_, box_);
+  split_junctions(faces_, patches_, box_);
   find_repeated_patches(patches_, box_);
   Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle);
   connector.run();

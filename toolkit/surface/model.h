@@ -129,7 +129,8 @@ class Part {
   ///
   /// Before that, faces are split into more patches, exactly, along crests inside of patches:
   /// curves u = const or v = const, not straight, on which the surface has one tangent plane (as on
-  /// top of a torus), with no surface on one of its sides.
+  /// top of a torus), with no surface on one of its sides; and where a side of another patch that
+  /// runs along one of their own, not straight, ends inside of it.
   ///
   /// Two sides meet if their curves agree, parameter by parameter in either direction, within
   /// join_distance of the part's diagonal; the join of exactly two is smooth if the one surface

@@ -6,6 +6,8 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/surface/crests.h"
+#include "taut/surface/nearest_parameter.h"
+#include "taut/surface/point_grid.h"
 #include "taut/surface/side_joins.h"
 
 namespace taut {
@@ -16,6 +18,9 @@ int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Cuts of one row, beyond which its crests are taken to wind without end.
 constexpr std::size_t cut_limit = 16;
+
+/// How often cuts are looked for that go on from earlier ones.
+constexpr int round_limit = 8;
 
 /// A face's grid of patches. Its rows are numbered: the patches of an interval of u, then of v.
 struct FaceGrid {
@@ -58,30 +63,36 @@ struct Cut {
   double s = 0;
 };
 
-class CrestSplitter {
+class RowSplitter {
  public:
-  CrestSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box)
+  RowSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box)
       : faces_(faces), patches_(patches), box_(box), tolerance_(join_tolerance(box)) {}
 
-  void run() {
+  void split_at_crests() {
     find_grids();
     const std::vector<Cut> crests = find_crests();
     if (crests.empty()) return;
-    sides_ = side_curves(patches_, tolerance_);
-    joins_ = match_sides(patches_, sides_, box_, tolerance_);
-    join_of_.assign(sides_.size(), -1);
-    for (std::size_t j = 0; j < joins_.size(); ++j) {
-      for (const Use& use : joins_[j]) join_of_[to_size(use.side)] = to_int(j);
-    }
-    for (const Cut& crest : crests) add_with_continuations(crest);
-    for (std::vector<double>& row : cuts_) std::sort(row.begin(), row.end());
-    split();
+    find_joins();
+    cut_along(crests);
+  }
+  /// False if there is none.
+  bool split_at_junctions() {
+    find_grids();
+    find_joins();
+    return cut_along(find_junctions());
   }
 
  private:
   void find_grids();
+  void find_joins();
   std::vector<Cut> find_crests() const;
-  void add_with_continuations(const Cut& crest);
+  std::vector<Cut> find_junctions() const;
+  bool ends_on(int side, const BezierCurve& host) const;
+  bool lies_on(const BezierCurve& curve, const dvec3& x) const {
+    return same_point(point(curve, nearest_parameter(curve, x)), x, tolerance_);
+  }
+  bool cut_along(const std::vector<Cut>& cuts);
+  void add_with_continuations(const Cut& first);
   bool add(const Cut& cut, std::vector<Cut>& added);
   bool too_thin(const Cut& cut) const;
   void push_continuations(const Cut& cut, std::vector<Cut>& next) const;
@@ -105,7 +116,7 @@ class CrestSplitter {
   std::vector<int> join_of_;  // per side
 };
 
-void CrestSplitter::find_grids() {
+void RowSplitter::find_grids() {
   grids_.reserve(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const FaceGrid grid(faces_[f], patches_, to_int(face_of_row_.size()));
@@ -115,7 +126,7 @@ void CrestSplitter::find_grids() {
   cuts_.resize(face_of_row_.size());
 }
 
-std::vector<Cut> CrestSplitter::find_crests() const {
+std::vector<Cut> RowSplitter::find_crests() const {
   std::vector<Cut> result;
   const std::vector<dvec3> points = corner_points(patches_);
   for (int p = 0; p < to_int(patches_.size()); ++p) {
@@ -131,13 +142,90 @@ std::vector<Cut> CrestSplitter::find_crests() const {
   return result;
 }
 
+void RowSplitter::find_joins() {
+  sides_ = side_curves(patches_, tolerance_);
+  joins_ = match_sides(patches_, sides_, box_, tolerance_);
+  join_of_.assign(sides_.size(), -1);
+  for (std::size_t j = 0; j < joins_.size(); ++j) {
+    for (const Use& use : joins_[j]) join_of_[to_size(use.side)] = to_int(j);
+  }
+}
+
+/// Whether a side runs along the host from its one end or the other: its middle lies on the host,
+/// or the host ends in between.
+bool RowSplitter::ends_on(int side, const BezierCurve& host) const {
+  const BezierCurve& own = sides_[to_size(side)].curve;
+  if (lies_on(host, point(own, 0.5))) return true;
+  return std::any_of(host.points.begin(), host.points.end(), [&](const dvec4& p) {
+    const bool end = &p == &host.points.front() || &p == &host.points.back();
+    return end && lies_on(own, euclidean(p));
+  });
+}
+
+/// Where sides that meet no other one end inside of others, along which they run.
+std::vector<Cut> RowSplitter::find_junctions() const {
+  struct End {
+    dvec3 x;
+    int side;
+  };
+  std::vector<int> open;
+  std::vector<End> ends;
+  for (const Join& join : joins_) {
+    if (join.size() != 1) continue;
+    const BezierCurve& curve = sides_[to_size(join[0].side)].curve;
+    open.push_back(join[0].side);
+    ends.push_back({euclidean(curve.points.front()), join[0].side});
+    ends.push_back({euclidean(curve.points.back()), join[0].side});
+  }
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const End& a, const End& b) { return a.x.x < b.x.x; });
+  std::vector<Cut> result;
+  for (const int side : open) {
+    const BezierCurve& host = sides_[to_size(side)].curve;
+    Box box;
+    for (const dvec4& p : host.points) box.include(euclidean(p));
+    const dvec3 lower = box.lower - dvec3(tolerance_);
+    const dvec3 upper = box.upper + dvec3(tolerance_);
+    auto end = std::lower_bound(ends.begin(), ends.end(), lower.x,
+                                [](const End& e, double x) { return e.x.x < x; });
+    for (; end != ends.end() && end->x.x <= upper.x; ++end) {
+      if (end->side / 4 == side / 4 || glm::any(glm::lessThan(end->x, lower)) ||
+          glm::any(glm::greaterThan(end->x, upper))) {
+        continue;
+      }
+      const double t = nearest_parameter(host, end->x);
+      const dvec3 x = point(host, t);
+      if (!same_point(x, end->x, tolerance_) ||
+          same_point(x, euclidean(host.points.front()), 2 * tolerance_) ||
+          same_point(x, euclidean(host.points.back()), 2 * tolerance_) ||
+          !ends_on(end->side, host)) {
+        continue;
+      }
+      const bool along = along_v(all_sides[to_size(side % 4)]);
+      const int p = side / 4;
+      result.push_back({grid_of(p).row_of(p, along ? Direction::v : Direction::u), t});
+    }
+  }
+  return result;
+}
+
+/// False if none was possible.
+bool RowSplitter::cut_along(const std::vector<Cut>& cuts) {
+  for (const Cut& cut : cuts) add_with_continuations(cut);
+  const bool any = std::any_of(cuts_.begin(), cuts_.end(),
+                               [](const std::vector<double>& row) { return !row.empty(); });
+  for (std::vector<double>& row : cuts_) std::sort(row.begin(), row.end());
+  if (any) split();
+  return any;
+}
+
 /// The sides that curves u = const (direction u) or v = const of the patch end at.
-std::array<int, 2> CrestSplitter::crossed_sides(int patch, Direction direction) const {
+std::array<int, 2> RowSplitter::crossed_sides(int patch, Direction direction) const {
   const bool u = direction == Direction::u;
   return {4 * patch + int(u ? Side::v0 : Side::u0), 4 * patch + int(u ? Side::v1 : Side::u1)};
 }
 
-bool CrestSplitter::too_thin(const Cut& cut) const {
+bool RowSplitter::too_thin(const Cut& cut) const {
   const FaceGrid& grid = grid_of_row(cut.row);
   const double share = std::min(cut.s, 1 - cut.s);
   for (const int patch : grid.patches_of(cut.row)) {
@@ -154,14 +242,14 @@ bool CrestSplitter::too_thin(const Cut& cut) const {
 }
 
 /// False if the row has too many.
-bool CrestSplitter::add(const Cut& cut, std::vector<Cut>& added) {
+bool RowSplitter::add(const Cut& cut, std::vector<Cut>& added) {
   if (cuts_[to_size(cut.row)].size() >= cut_limit || too_thin(cut)) return false;
   cuts_[to_size(cut.row)].push_back(cut.s);
   added.push_back(cut);
   return true;
 }
 
-void CrestSplitter::push_continuations(const Cut& cut, std::vector<Cut>& next) const {
+void RowSplitter::push_continuations(const Cut& cut, std::vector<Cut>& next) const {
   const FaceGrid& grid = grid_of_row(cut.row);
   for (const int patch : grid.patches_of(cut.row)) {
     for (const int side : crossed_sides(patch, grid.direction_of(cut.row))) {
@@ -181,10 +269,10 @@ void CrestSplitter::push_continuations(const Cut& cut, std::vector<Cut>& next) c
   }
 }
 
-/// All of the crest's cuts or, if they cannot all be made, none.
-void CrestSplitter::add_with_continuations(const Cut& crest) {
+/// The cut and all that it goes on in or, if they cannot all be made, none.
+void RowSplitter::add_with_continuations(const Cut& first) {
   std::vector<Cut> added;
-  std::vector<Cut> next = {crest};
+  std::vector<Cut> next = {first};
   while (!next.empty()) {
     const Cut cut = next.back();
     next.pop_back();
@@ -209,7 +297,7 @@ std::vector<double> with_ends(std::vector<double> cuts) {
   return cuts;
 }
 
-void CrestSplitter::split_face(std::size_t f, std::vector<Patch>& result) const {
+void RowSplitter::split_face(std::size_t f, std::vector<Patch>& result) const {
   const FaceGrid& grid = grids_[f];
   for (int i = 0; i < grid.count_u; ++i) {
     const std::vector<double> u = with_ends(cuts_[to_size(grid.first_row + i)]);
@@ -229,7 +317,7 @@ void CrestSplitter::split_face(std::size_t f, std::vector<Patch>& result) const 
   }
 }
 
-void CrestSplitter::split() {
+void RowSplitter::split() {
   std::vector<Patch> result;
   result.reserve(patches_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -256,7 +344,14 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches) {
 }
 
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
-  CrestSplitter(faces, patches, box).run();
+  RowSplitter(faces, patches, box).split_at_crests();
+}
+
+void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
+  // A cut may end inside of a side that met none before.
+  for (int round = 0; round < round_limit; ++round) {
+    if (!RowSplitter(faces, patches, box).split_at_junctions()) return;
+  }
 }
 
 }  // namespace taut

@@ -19,4 +19,10 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches);
 /// @pre every face's patches are a grid, v within u; rulings are found. The box contains them.
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
 
+/// Splits patches, rows as above, where sides of others end inside of theirs and run along them, so
+/// that whole sides meet; but for sides that are straight, along which no point is extreme. Sides
+/// that run along each other at different parameters are left as they are.
+/// @pre as above
+void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
+
 }  // namespace taut
