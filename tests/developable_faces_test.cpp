@@ -253,6 +253,9 @@ TEST(DevelopableFaces, OthersAreNone) {
   EXPECT_FALSE(is_developable(quarter_of(torus(2, 0.5))));
   EXPECT_FALSE(is_developable(quarter_of(saddle())));
   EXPECT_FALSE(is_developable(quarter_of(paraboloid())));
+  // However small.
+  EXPECT_FALSE(is_developable(moved(quarter_of(sphere()), dmat3(1e-150), dvec3(0.0))));
+  EXPECT_FALSE(is_developable(moved(quarter_of(sphere()), dmat3(1e150), dvec3(0.0))));
   // A bulge across the rulings that is small, but no rounding.
   BezierPatch bent = reparametrised(parabolic_cylinder(), bulged_u, bulged_v);
   bent.at(2, 1).z += 1e-9;
@@ -330,19 +333,19 @@ std::vector<SolidCase> solid_cases() {
     const Shape ruled = reparametrised(shape, same_u, same_v);
     all.push_back(
         {name + ", bulged", ruled, reparametrised(shape, bulged_u, bulged_v), volume, area});
-    Shape splines = shape;
-    splines.surfaces.erase(splines.surfaces.begin());
+    all.push_back({name + ", cut along u", ruled, cut(shape, false), volume, area});
+    // Those whose border curves change stand alone.
+    if (shape.surfaces.size() > 1) return;
+    Shape splines;
     for (const PatchPiece& piece : decompose(shape.surfaces[0])) {
-      splines.surfaces.push_back(
-          refined(reparametrised(piece.bezier, bulged_u, bulged_v), {0.3, 0.5}));
+      splines.surfaces.push_back(refined(reparametrised(piece.bezier, bulged_u, bulged_v), {0.4}));
     }
     all.push_back({name + ", refined", ruled, splines, volume, area});
     all.push_back({name + ", cut along v", ruled, cut(shape, true), volume, area});
-    all.push_back({name + ", cut along u", ruled, cut(shape, false), volume, area});
   };
-  add("cylinder", cylinder(1, 2), 2 * pi, 6 * pi);
   add("solid cylinder", solid_cylinder(1, 2), 2 * pi, 6 * pi);
   add("solid cone", solid_cone(1, 2), 2 * pi / 3, pi * (1 + std::sqrt(5.0)));
+  // Its hull is the solid's.
   add("frustum", frustum(1, 0.5, 2), pi * 7 / 6, pi * (1.25 + 1.5 * std::sqrt(4.25)));
   return all;
 }
@@ -383,8 +386,8 @@ TEST(DevelopableFaces, OfALens) {
 /// Single faces, of one patch and of many: one scroll lies on them.
 TEST(DevelopableFaces, LabelTheirScrolls) {
   for (const auto& [name, patch] : oblique_patches()) {
-    // Hulls of these are a matter of their borders.
-    if (name == "skew tangent developable") continue;
+    // On the hulls of these no whole scroll is on the face.
+    if (name == "skew tangent developable" || name == "skew cone") continue;
     for (const bool many : {false, true}) {
       SCOPED_TRACE(name + (many ? ", refined" : ""));
       const NurbsSurface surface = many ? refined(patch, {0.25, 0.5}) : as_nurbs(patch);
@@ -400,8 +403,6 @@ TEST(DevelopableFaces, LabelTheirScrolls) {
 
 TEST(DevelopableFaces, AreVerified) {
   const Sound sound = sound_hull(lens(0.15));
-  EXPECT_EQ(text_of(verified(sound.hull, sound.scene)).empty(),
-            failed(verified(sound.hull, sound.scene)).empty());
   EXPECT_EQ(failed(verified(sound.hull, sound.scene)), std::set<std::string>{});
   HullDocument untold = sound.hull;
   untold.faces[0].source = -1;
@@ -414,8 +415,9 @@ TEST(DevelopableFaces, AreVerified) {
 /// A face that a scroll goes on from, into another, is not its source.
 TEST(DevelopableFaces, ThatEndWithinAScrollDoNotLabelIt) {
   const Shape quarter = {{as_nurbs(quarter_of(cylinder(1, 2)))}, {}, {}};
-  for (const bool along : {false, true}) {
-    const Sound sound = sound_hull(cut(quarter, along));
+  const Shape apart = cylinder(1, 1) + shifted(cylinder(1, 1), {0, 0, 2});
+  for (const Shape& shape : {cut(quarter, false), cut(quarter, true), apart}) {
+    const Sound sound = sound_hull(shape);
     EXPECT_EQ(failed(verified(sound.hull, sound.scene)), std::set<std::string>{})
         << text_of(verified(sound.hull, sound.scene));
     for (const HullDocument::Face& face : sound.hull.faces) EXPECT_EQ(face.source, -1);

@@ -66,6 +66,25 @@ Shape ball(double r, const dvec3& center) {
   return shifted(mapped(sphere(r), skew_rotation()), center);
 }
 
+// ---- Straight edges
+
+/// Their ends are contacts, wherever they are divided.
+TEST(Events, StraightEdgesOfManyPieces) {
+  const NurbsSurface sheet{1, 1, {0, 0, 0.3, 0.6, 1, 1}, {0, 0, 0.4, 1, 1}, [] {
+                             std::vector<dvec4> points;
+                             for (const double x : {0.0, 0.3, 0.6, 1.0}) {
+                               for (const double y : {0.0, 0.4, 1.0})
+                                 points.emplace_back(x, y, 0, 1);
+                             }
+                             return points;
+                           }()};
+  const Shape pyramid = {{sheet}, {}, {{0.4, 0.3, 1}}};
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    expect_exact(mapped(split(box(1, 2, 3), 0.3, 0.6), turn), {{0, 0, 6}, unknown, unknown, 6});
+    expect_exact(mapped(pyramid, turn), {{0, 0, 5}, unknown, unknown, 1.0 / 3});
+  }
+}
+
 // ---- Curves and patches
 
 /// z = 4 x^3 - 3 x has three points at its top and at its bottom each: two facets with three arcs.

@@ -174,6 +174,12 @@ TEST(Seams, NoneOnWhatIsSmoothThroughout) {
 
 TEST(Seams, NoneOnASolidCylinder) { expect_counts(shapes::solid_cylinder(1, 2), {12, 2, 0, 0, 0}); }
 
+/// The straight segments of the one go on in the other, along parameter lines.
+TEST(Seams, NoneBetweenCylindersInOneLine) {
+  const Shape lower = shapes::cylinder(1, 2);
+  expect_counts(lower + shapes::shifted(lower, {0, 0, 2}), {8, 2, 0, 0, 0});
+}
+
 TEST(Seams, CapsuleHasTwoClosedOnes) {
   expect_counts(capsule(), {12, 0, 0, 8, 0});
   const Part part = connected(capsule());

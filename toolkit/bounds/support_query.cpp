@@ -1,6 +1,7 @@
 #include "taut/bounds/support_query.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -561,9 +562,12 @@ void SupportQuery::Search::seek_end_of_ruling() {
   const PatchPoint at{best_.element, {best_.u, best_.v}};
   const std::optional<dvec3> along = ruling_direction(part.patches()[std::size_t(at.patch)], at.uv);
   if (!along) return;
-  for (const dvec3& direction : {*along, -*along}) {
-    const std::vector<PatchPoint> path = ruling_path(part, at, direction);
-    if (path.empty()) continue;
+  std::array<std::vector<PatchPoint>, 2> paths;
+  for (const std::size_t k : {0u, 1u}) {
+    paths[k] = ruling_path(part, at, k == 0 ? *along : -*along);
+    if (paths[k].empty()) return;  // it is the end
+  }
+  for (const std::vector<PatchPoint>& path : paths) {
     const PatchPoint& end = path.back();
     const Contact there{best_.instance, best_.kind, end.patch, end.uv.x, end.uv.y};
     if (glm::dot(scene_.frame_point(there), n_) < best_h_ - support_slack) continue;

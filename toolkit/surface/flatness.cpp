@@ -29,6 +29,14 @@ HomogeneousBound largest_entries(const std::vector<dvec4>& points) {
   return result;
 }
 
+/// Scaled so that products of coordinates neither over- nor underflow.
+BezierPatch of_unit_size(BezierPatch patch) {
+  const double size = largest_coordinate(patch.points);
+  if (size == 0) return patch;
+  for (dvec4& p : patch.points) p = {dvec3(p) / size, p.w};
+  return patch;
+}
+
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// What the rounding of a patch's control points may do to its derivatives.
@@ -103,7 +111,8 @@ bool is_ruled(const BezierPatch& patch, Direction direction) {
   return true;
 }
 
-bool is_developable(const BezierPatch& patch) {
+bool is_developable(const BezierPatch& original) {
+  const BezierPatch patch = of_unit_size(original);
   const DerivativeRounding rounding(patch);
   // In u and v the degrees of the numerator, a polynomial in fourfold products of the homogeneous
   // control points and their derivatives squared, are no more than this.
