@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "freeform.h"
 #include "models.h"
 #include "surface_checks.h"
 #include "taut/core/tolerances.h"
@@ -450,6 +452,39 @@ TEST(ParameterRate, AgreesWithDifferences) {
       EXPECT_NEAR((ahead.u - behind.u) / (2 * h), rate->x, 1e-8);
       EXPECT_NEAR((ahead.v - behind.v) / (2 * h), rate->y, 1e-8);
     }
+  }
+}
+
+/// Points of the model on an edge are the edge's, others their own.
+TEST(ContactGeometry, PointsOnEdges) {
+  Shape shape = solid_cylinder(1, 2);
+  shape.points = {{std::cos(0.3), std::sin(0.3), 2}, {1, 0, 0}, {1 + 1e-9, 0, 1}, {0, 0, 2}};
+  const Scene scene = make_scene(shape);
+  const ContactGeometry geometry(scene);
+  const std::array<bool, 4> on_edge = {true, true, false, false};
+  for (int k = 0; k < 4; ++k) {
+    const Contact point{0, SourceKind::vertex, k, 0, 0};
+    const Contact c = geometry.canonical(point);
+    EXPECT_EQ(geometry.is_repeated(point), on_edge[std::size_t(k)]) << k;
+    EXPECT_EQ(c.kind == SourceKind::edge, on_edge[std::size_t(k)]) << k;
+    EXPECT_LE(glm::distance(geometry.point(c), geometry.point(point)), geometry.tie()) << k;
+  }
+}
+
+/// Straight pieces that go on into each other are one segment between its vertices.
+TEST(ContactGeometry, SegmentsOfSeveralPieces) {
+  const Scene scene = make_scene(split(box(1, 2, 3), 0.3, 0.6));
+  const ContactGeometry geometry(scene);
+  const Part& part = scene.model().parts()[0];
+  ASSERT_GT(part.pieces().size(), 12U);
+  for (int k = 0; k < int(part.pieces().size()); ++k) {
+    const Contact c{0, SourceKind::edge, k, 0.5, 0};
+    ASSERT_TRUE(geometry.is_straight(c)) << k;
+    const dvec3 d =
+        geometry.point(geometry.straight_end(c, 1)) - geometry.point(geometry.straight_end(c, 0));
+    const dvec3 along = geometry.jet(c).dx[0];
+    EXPECT_LE(glm::length(glm::cross(d, along)), 1e-15) << k;
+    EXPECT_GT(glm::dot(d, along), 0) << k;
   }
 }
 

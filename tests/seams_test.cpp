@@ -421,5 +421,49 @@ TEST(Seams, SourcesOfTheirVertices) {
   }
 }
 
+// ---- Sides that end inside of others
+
+/// A quarter of a cylinder's wall between two heights.
+BezierPatch wall(double from, double to) {
+  const double w = std::sqrt(0.5);
+  BezierPatch patch{2, 1, {}};
+  for (const dvec4& p : {dvec4(1, 0, 0, 1), dvec4(w, w, 0, w), dvec4(0, 1, 0, 1)}) {
+    for (const double z : {from, to}) patch.points.emplace_back(p.x, p.y, z * p.w, p.w);
+  }
+  return patch;
+}
+
+int smooth_borders(const Part& part) {
+  int count = 0;
+  for (const Patch& patch : part.patches()) {
+    for (const Border& b : patch.borders) count += b.kind == BorderKind::smooth ? 1 : 0;
+  }
+  return count;
+}
+
+/// One wall on two, that are divided elsewhere than a third one: all are divided in both places.
+TEST(Junctions, DivideThePatchesBesideThem) {
+  const Interval all{0, 1};
+  Shape shape;
+  shape.surfaces = {as_nurbs(wall(0, 1)), as_nurbs(restricted(wall(1, 2), {0, 0.3}, all)),
+                    as_nurbs(restricted(wall(1, 2), {0.3, 1}, all)),
+                    as_nurbs(restricted(wall(2, 3), {0, 0.6}, all)),
+                    as_nurbs(restricted(wall(2, 3), {0.6, 1}, all))};
+  const Part part = connected(shape);
+  EXPECT_EQ(part.faces().size(), 5U);
+  EXPECT_EQ(part.patches().size(), 9U);
+  EXPECT_EQ(smooth_borders(part), 2 * (6 + 6));
+  for (const Face& face : part.faces()) EXPECT_GE(face.patch_count, 1);
+}
+
+/// Sides that touch others but do not run along them divide nothing.
+TEST(Junctions, NotWhereSidesTouch) {
+  const double c = std::sqrt(0.5);
+  const BezierPatch other{1, 1, {{c, c, 1, 1}, {2, 2, 1, 1}, {2, 0, 3, 1}, {3, 1, 3, 1}}};
+  Shape shape;
+  shape.surfaces = {as_nurbs(wall(0, 1)), as_nurbs(other)};
+  EXPECT_EQ(connected(shape).patches().size(), 2U);
+}
+
 }  // namespace
 }  // namespace taut

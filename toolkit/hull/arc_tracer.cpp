@@ -29,10 +29,11 @@ constexpr double growth = 1.6;
 constexpr double plane_slack = 1e-6;
 /// How far the corrector may move the prediction, as a share of the step.
 constexpr double correction_limit = 0.15;
-/// Margins below this are crossed; or below what the rounding of coordinates far from the origin
-/// does to them, but for places where that is more than the limit: beside poles.
+/// Margins below this are crossed; or below what the rounding of coordinates does to them, but for
+/// places where that is more than a limit, or many times the rounding: beside poles.
 constexpr double margin_slack = 1e-12;
-constexpr double margin_slack_limit = 1e-6;
+constexpr double margin_slack_limit = 1e-9;
+constexpr double margin_noise_limit = 300;
 /// Turns of n that are tried as the first step away from where contacts are singular.
 constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
 /// Share of such a turn by which contacts are told apart.
@@ -75,6 +76,7 @@ struct Event {
   int contact = 0;
   ContactExit exit;
   CommonSupport support;
+  double after = 0;  ///< the margin at the step's end, negative
 };
 
 class Trace {
@@ -248,18 +250,23 @@ std::optional<Event> Trace::solved_event(const CommonSupport& next, double share
 }
 
 /// Of exits in one place those at the ends of elements come first: beyond them slopes tell nothing.
+/// Of a contact's others the one that it passes farthest.
 bool Trace::precedes(const Event& a, const Event& b) const {
   const auto at_end = [](const Event& e) {
     return e.exit.kind == ContactExit::Kind::side || e.exit.kind == ContactExit::Kind::end;
   };
   const bool one_place =
       std::abs(a.length - b.length) <= std::max(slack(a.contact, a.exit), slack(b.contact, b.exit));
-  return one_place && at_end(a) != at_end(b) ? at_end(a) : a.length < b.length;
+  if (!one_place || (a.contact != b.contact && at_end(a) == at_end(b))) return a.length < b.length;
+  return at_end(a) != at_end(b) ? at_end(a) : a.after < b.after;
 }
 
 /// The exit as one at which the contact stands.
 Event Trace::event_here(int contact, const ContactExit& exit) const {
-  Event event{0, contact, exit, at_};
+  Event event;
+  event.contact = contact;
+  event.exit = exit;
+  event.support = at_;
   put_on_border(event.support.contact[std::size_t(contact)], exit);
   event.support.evaluate(geometry_);
   return event;
@@ -285,6 +292,7 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
         known = false;
         continue;
       }
+      event->after = after;
       if (!first || precedes(*event, *first)) first = event;
     }
   }
@@ -295,9 +303,9 @@ std::optional<Event> Trace::first_event(const CommonSupport& next, double length
 double Trace::slack(int contact, const ContactExit& exit) const {
   const double size =
       std::min(1.0, exit_length(geometry_, at_.contact[std::size_t(contact)], exit));
-  if (size == 0) return margin_slack_limit;
-  const double rounding = std::min(geometry_.rounding(), margin_slack_limit * size) / size;
-  return std::max(margin_slack, rounding);
+  const double limit = std::max(margin_slack_limit, margin_noise_limit * geometry_.rounding());
+  if (geometry_.rounding() >= limit * size) return limit;
+  return std::max(margin_slack, geometry_.rounding() / size);
 }
 
 std::pair<int, Side> Trace::pole_crossed(const CommonSupport& next) const {
