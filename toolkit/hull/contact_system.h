@@ -103,7 +103,7 @@ class ContactSystem {
       const std::optional<double> length = step(s, &extra, steps);
       if (!length) return false;
       if (*length < converged_step) return residual(s) < residual_limit;
-      const bool noise = *length < noise_step && *length > 0.5 * last;
+      const bool noise = *length<noise_step&& * length> 0.5 * last;
       if (noise && residual(s) < residual_limit) return true;
       last = *length;
     }

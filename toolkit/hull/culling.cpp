@@ -18,11 +18,13 @@ namespace {
 
 constexpr int level_limit = 20;
 
-/// The sphere is sampled at one direction for some patches, between 24 and 6144 in all: the more
+/// The sphere is sampled at one direction for some patches, between 96 and 6144 in all: the more
 /// patches there are, the more of them lie under the samples and need no queries of their own.
 constexpr std::size_t patches_per_direction = 8;
-constexpr int coarsest_directions = 1;
+constexpr int coarsest_directions = 2;
 constexpr int finest_directions = 5;
+/// Edges have no cells: where they are curved, this many levels of directions at least.
+constexpr int directions_for_edges = 3;
 
 /// A pyramid that is this many cells of the spread samples wide needs no query of its own.
 constexpr double dense_samples = 4;
@@ -46,11 +48,19 @@ struct Beacon {
   bool known = false;
 };
 
+bool has_curved_edges(const Model& model) {
+  return std::any_of(model.parts().begin(), model.parts().end(), [](const Part& part) {
+    return std::any_of(part.pieces().begin(), part.pieces().end(), [](const EdgePiece& piece) {
+      return piece.edge >= 0 && piece.bezier.degree() > 1;
+    });
+  });
+}
+
 /// Support points of directions spread over the sphere, one for each of its cells.
 class SpreadSamples {
  public:
   SpreadSamples(const Scene& scene, std::size_t patches, const CullingOptions& options)
-      : level_(coarsest_directions) {
+      : level_(has_curved_edges(scene.model()) ? directions_for_edges : coarsest_directions) {
     while (level_ < finest_directions &&
            (std::size_t(6) << (2 * (level_ + 1))) * patches_per_direction <= patches) {
       ++level_;
