@@ -118,7 +118,7 @@ class BoundaryCheck {
   static constexpr double same_point = 1e-9;
   /// Points whose support is decided by less than this, or whose place by less, are passed over.
   static constexpr double undecided = 1e-6;
-  static constexpr double supports = 1e-11;
+  static constexpr double supports = 1e-12;
 
   static void raise(double& largest, double value) {
     largest = std::isnan(value) ? std::numeric_limits<double>::infinity()

@@ -11,8 +11,8 @@ namespace {
 constexpr double small_tangent = 0.05;
 
 /// Share of the largest singular value below which one is taken for zero in steps of least length:
-/// what is off by less than a ten thousandth there misses residuals by a ten thousandth of it, and
-/// rounding does not move contacts by more than that.
+/// a start that is off by less than a ten thousandth there misses residuals by less than a ten
+/// thousandth of it, and rounding does not move contacts by more than about as little.
 constexpr double least_singular = 1e-9;
 
 constexpr int max_unknowns = 2 + 2 * CommonSupport::capacity;

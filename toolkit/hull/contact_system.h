@@ -59,14 +59,17 @@ class ContactSystem {
   /// False if it does not converge, `s` is of no use then.
   template <class Equation>
   bool solve(CommonSupport& s, Equation equation) const {
-    return iterate(s, equation, Steps::full);
+    return iterate(s, equation, Steps::full, noise_step);
   }
-  /// The same by steps of least length, which leave alone what the system does not tell to within
-  /// rounding: of contacts so near to each other that it is nearly singular, from a start that is
-  /// near the solution. What is found supports to within rounding as well.
+  /// The same of contacts so near to each other that the system is nearly singular, from a start
+  /// near the solution: rounding may move them by more, and if need be steps of least length leave
+  /// alone what the system does not tell. What is found supports to within rounding as well.
   template <class Equation>
   bool settle(CommonSupport& s, Equation equation) const {
-    return iterate(s, equation, Steps::least);
+    const CommonSupport start = s;
+    if (iterate(s, equation, Steps::full, merging_noise_step)) return true;
+    s = start;
+    return iterate(s, equation, Steps::least, merging_noise_step);
   }
   /// The same of three contacts.
   bool solve(CommonSupport& s) const;
@@ -87,8 +90,9 @@ class ContactSystem {
   static constexpr int step_limit = 20;
   static constexpr double step_bound = 0.7;
   static constexpr double converged_step = 1e-11;
-  /// Steps below this that do not get shorter are the rounding of contacts that nearly merge.
-  static constexpr double noise_step = 1e-6;
+  /// Steps below these that do not get shorter are rounding; of contacts that nearly merge.
+  static constexpr double noise_step = 1e-7;
+  static constexpr double merging_noise_step = 1e-6;
   static constexpr double residual_limit = 1e-13;
   /// A turn of n per length below which its sense is not trusted.
   static constexpr double least_turn = 1e-6;
@@ -96,16 +100,17 @@ class ContactSystem {
   enum class Steps { full, least };
 
   template <class Equation>
-  bool iterate(CommonSupport& s, const Equation& equation, Steps steps) const {
+  bool iterate(CommonSupport& s, const Equation& equation, Steps steps, double noise_limit) const {
     double last = infinity;
     for (int k = 0; k < step_limit; ++k) {
       const LinearEquation extra = equation(s);
       const std::optional<double> length = step(s, &extra, steps);
       if (!length) return false;
       if (*length < converged_step) return residual(s) < residual_limit;
-      const bool noise = *length<noise_step&& * length> 0.5 * last;
+      const double now = *length;
+      const bool noise = now < noise_limit && now > 0.5 * last;
       if (noise && residual(s) < residual_limit) return true;
-      last = *length;
+      last = now;
     }
     return false;
   }

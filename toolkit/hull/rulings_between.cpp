@@ -14,7 +14,7 @@ constexpr double correction_share = 0.15;
 /// Rulings are no shorter than this share of both their neighbours.
 constexpr double least_length = 0.1;
 /// What rounding may move contacts by that nearly merge.
-constexpr double rounded = 1e-7;
+constexpr double rounded = 1e-6;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
