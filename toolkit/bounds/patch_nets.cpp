@@ -51,7 +51,7 @@ bool is_constant_along(const NormalNet& net, Direction direction) {
 PatchNets::PatchNets(const SceneElement& element) : element_(&element) {
   const BezierPatch patch = patch_of(element);
   NormalNet net = normal_net(patch);
-  developable_ = element.developable || is_constant_along(net, Direction::u) ||
+  developable_ = element.ruled_obliquely || is_constant_along(net, Direction::u) ||
                  is_constant_along(net, Direction::v);
   normal_shape_ = net.shape;
   root_ = {patch.points, std::move(net.vectors)};

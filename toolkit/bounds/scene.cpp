@@ -223,8 +223,11 @@ ScenePart make_part(const Part& part, double scale, int threads) {
       for (dvec4& p : found.patches[k].points) p = moved(p, result.center, scale);
       const auto [kind, index] = found.elements[k];
       built[k] = make_element(kind, index, found.patches[k]);
-      built[k]->developable =
-          kind == SourceKind::face && part.patches()[std::size_t(index)].ruled_obliquely;
+      if (kind != SourceKind::face) continue;
+      const Patch& patch = part.patches()[std::size_t(index)];
+      built[k]->ruled_u = patch.ruled_u;
+      built[k]->ruled_v = patch.ruled_v;
+      built[k]->ruled_obliquely = patch.ruled_obliquely;
     }
   });
   result.element_of_patch.assign(part.patches().size(), -1);

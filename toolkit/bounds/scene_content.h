@@ -63,7 +63,10 @@ struct SceneElement {
   double reach;  ///< largest |x| + |y| + |z| of the control points
   SceneNet net;
   CoonsBvh bvh;
-  bool developable = false;  ///< Patch::ruled_obliquely
+  /// A patch's lines along u, along v, or others that end on its border are straight (Patch).
+  bool ruled_u = false;
+  bool ruled_v = false;
+  bool ruled_obliquely = false;
 };
 
 /// A cell of an element's CBVH at which searches start: flat enough that its net bounds it well.

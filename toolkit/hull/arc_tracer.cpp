@@ -143,7 +143,7 @@ class Trace {
   bool crosses();
   bool merge();
   bool ends_merged();
-  bool is_followed(const Ruling& from, const Ruling& to);
+  bool is_followed(Ruling from, Ruling to);
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
   Pace exchange(const Event& event);
@@ -803,7 +803,17 @@ bool Trace::ends_merged() {
 }
 
 /// Whether the rulings between two of them are found, in the same elements, and support the model.
-bool Trace::is_followed(const Ruling& from, const Ruling& to) {
+bool Trace::is_followed(Ruling from, Ruling to) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    // A parameter along a collapsed side is that of where the curve goes on, or comes from.
+    Contact& first = from.contact[i];
+    Contact& last = to.contact[i];
+    if (collapsed_side(geometry_, first)) {
+      first = expressed_in(geometry_, first, last).value_or(first);
+    } else if (collapsed_side(geometry_, last)) {
+      last = expressed_in(geometry_, last, first).value_or(last);
+    }
+  }
   const RulingsBetween between(system_, from, to);
   if (between.empty()) return true;
   // As lengths: about a pole parameters are less exact.
@@ -918,7 +928,15 @@ std::optional<Trace::Pace> Trace::near_merging() {
 
 /// A contact surpasses the two at `next`: ends the arc in the plane of the three.
 Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
-  const std::optional<CommonSupport> plane = common_plane(system_, query_, next, winner);
+  std::optional<CommonSupport> plane = common_plane(system_, query_, next, winner);
+  if (plane) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      // In a pole, from where the curve comes.
+      Contact& c = plane->contact[i];
+      if (pole_side(geometry_, c)) c = in_element(geometry_, c, at_.contact[i]).value_or(c);
+    }
+    plane->evaluate(geometry_);
+  }
   const double there = plane ? length_to(*plane) : 0;
   if (!plane || there < -plane_slack || there > length_to(next) + plane_slack) {
     return shorter("no common plane with a contact that surpasses two");

@@ -456,6 +456,16 @@ std::optional<Side> pole_side(const ContactGeometry& geometry, const Contact& c)
   return std::nullopt;
 }
 
+std::optional<Side> collapsed_side(const ContactGeometry& geometry, const Contact& c) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const double t = along_v(side) ? c.u : c.v;
+    const Border& border = geometry.patch(c).borders[std::size_t(side)];
+    if (t == (at_upper_end(side) ? 1 : 0) && border.kind == BorderKind::collapsed) return side;
+  }
+  return std::nullopt;
+}
+
 double pole_turn(const ContactGeometry& geometry, const Contact& pole) {
   const std::optional<Side> side = pole_side(geometry, pole);
   if (!side) return 0;
@@ -542,19 +552,25 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
 
 Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
   const ContactJet j = geometry.jet(c);
+  // Along a pole all parameters are its point, and the one that is there tells where from.
+  const std::optional<Side> pole = pole_side(geometry, c);
   const auto snap = [&](double& t, const dvec3& dx) {
     const double nearest = std::round(std::clamp(t, 0.0, 1.0));
     if (std::abs(t - nearest) * glm::length(dx) <= distance) t = nearest;
   };
-  if (j.dimension == 2) snap(c.v, j.dx[1]);
-  if (j.dimension >= 1) snap(c.u, j.dx[0]);
+  if (j.dimension == 2 && !(pole && along_v(*pole))) snap(c.v, j.dx[1]);
+  if (j.dimension >= 1 && !(pole && !along_v(*pole))) snap(c.u, j.dx[0]);
   return geometry.canonical(c);
 }
 
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other) {
   if (c.instance != other.instance) return std::nullopt;
-  if (same_element(c, other)) return c;
+  if (same_element(c, other)) {
+    // On a collapsed side, at the parameter of the other one along it.
+    const std::optional<Side> side = collapsed_side(geometry, c);
+    return side ? on_side(c.instance, c.element, *side, along_v(*side) ? other.v : other.u) : c;
+  }
   const auto found = [&](const std::optional<Contact>& next) {
     return next && same_element(*next, other) ? next : std::nullopt;
   };

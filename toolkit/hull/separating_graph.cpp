@@ -65,6 +65,8 @@ constexpr double same_plane = 1e-7;
 constexpr double nearly_same_plane = 1e-5;
 /// How far contacts move at most where the direction turns by so much, in the scene's frame.
 constexpr double moved_contact = 8;
+/// Seeds this near to a facet's normal are where its curves begin.
+constexpr double at_facet = 1e-8;
 /// Or, far from the origin, below so many times the root of what coordinates are rounded to.
 constexpr double root_turn = 10;
 /// The circle about a pole's normal on which curves are sought.
@@ -130,6 +132,7 @@ class GraphTracer {
                     double slack = 0) const;
   bool lies_in_facet(const CommonSupport& s) const;
   static bool is_beside(const FacetNode& node, const CommonSupport& seed, double off);
+  bool is_at_facet(const CommonSupport& seed) const;
   bool is_facet(const CommonSupport& seed);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
   int node_at(const TracedArc& traced);
@@ -606,8 +609,8 @@ void GraphTracer::connect(int arc, int end, int node) {
     connect_crossing(arc, end, node);
     return;
   }
-  const std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(arc)].pieces;
-  const Ruling& r = end == 0 ? pieces.front().rulings.front() : pieces.back().rulings.back();
+  std::vector<ArcPiece>& pieces = graph_.arcs[std::size_t(arc)].pieces;
+  Ruling& r = end == 0 ? pieces.front().rulings.front() : pieces.back().rulings.back();
   const int side = side_of(node, r.point[end == 0 ? 0 : 1], r.point[end == 0 ? 1 : 0]);
   if (side < 0 && meets_corner(own, r)) {
     const int corner = add_corner(own, r, end);
@@ -620,6 +623,8 @@ void GraphTracer::connect(int arc, int end, int node) {
   } else {
     own.slots[std::size_t(side)] = {arc, end};
     graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
+    // As far as rounding goes: all that meet in the facet have its plane.
+    r.n = own.n;
   }
 }
 
@@ -706,6 +711,15 @@ bool GraphTracer::is_beside(const FacetNode& node, const CommonSupport& seed, do
   return std::all_of(seed.jet.begin(), seed.jet.begin() + seed.count, [&](const ContactJet& j) {
     return std::any_of(node.points.begin(), node.points.end(),
                        [&](const dvec3& p) { return glm::distance(p, j.x) < reach; });
+  });
+}
+
+/// Whether the seed is, to within what poles leave open, two contacts of a facet: the curve through
+/// it leaves the facet.
+bool GraphTracer::is_at_facet(const CommonSupport& seed) const {
+  return std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const FacetNode& node) {
+    const double off = glm::distance(node.n, seed.n);
+    return !node.is_crossing() && off < at_facet && is_beside(node, seed, off);
   });
 }
 
@@ -845,7 +859,7 @@ void GraphTracer::part_cells(const std::vector<CulledCell>& cells) {
     if (given_up()) break;
     if (is_crossed(change)) continue;
     const std::optional<CommonSupport> seed = separating_seed(system_, query_, change);
-    if (seed && !is_traced(*seed) && !lies_in_facet(*seed)) trace(*seed);
+    if (seed && !is_traced(*seed) && !lies_in_facet(*seed) && !is_at_facet(*seed)) trace(*seed);
   }
 }
 
