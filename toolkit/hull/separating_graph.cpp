@@ -65,6 +65,8 @@ constexpr double same_plane = 1e-7;
 constexpr double nearly_same_plane = 1e-5;
 /// How far contacts move at most where the direction turns by so much, in the scene's frame.
 constexpr double moved_contact = 8;
+/// Contacts of curves and their facets that are nearer are the same.
+constexpr double rounded_contact = 1e-9;
 /// Seeds this near to a facet's normal are where its curves begin.
 constexpr double at_facet = 1e-8;
 /// Or, far from the origin, below so many times the root of what coordinates are rounded to.
@@ -125,6 +127,7 @@ class GraphTracer {
   int side_of(int node, const dvec3& first, const dvec3& second) const;
   bool is_taken(int node, const std::vector<ArcPiece>& pieces) const;
   bool is_end_known(const std::vector<ArcPiece>& pieces) const;
+  void settle_in(const FacetNode& node, std::size_t side, int end, Ruling& r) const;
   void connect(int arc, int end, int node);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool ties_with(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
@@ -345,6 +348,13 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
         for (const bool swapped : {false, true}) {
           const dvec3& x0 = x[swapped ? 1 : 0];
           const dvec3& x1 = x[swapped ? 0 : 1];
+          const auto is_seed = [&](const Ruling& r) {
+            return glm::distance(r.n, seed.n) < same_curve &&
+                   glm::distance(r.point[0], x0) < same_curve &&
+                   glm::distance(r.point[1], x1) < same_curve;
+          };
+          // At a pole no ruling between others may be found.
+          if (is_seed(from) || is_seed(to)) return true;
           const dvec3 dn = to.n - from.n;
           const dvec3 d0 = to.point[0] - from.point[0];
           const dvec3 d1 = to.point[1] - from.point[1];
@@ -358,11 +368,7 @@ bool GraphTracer::is_traced(const CommonSupport& seed) const {
           const double off = glm::dot(en, en) + glm::dot(e0, e0) + glm::dot(e1, e1);
           if (off - s * s * square > 0.25 * square + same_curve * same_curve) continue;
           const std::optional<Ruling> there = ruling_between(system_, from, to, s);
-          if (there && glm::distance(there->n, seed.n) < same_curve &&
-              glm::distance(there->point[0], x0) < same_curve &&
-              glm::distance(there->point[1], x1) < same_curve) {
-            return true;
-          }
+          if (there && is_seed(*there)) return true;
         }
       }
     }
@@ -601,6 +607,21 @@ bool GraphTracer::is_taken(int node, const std::vector<ArcPiece>& pieces) const 
   return side >= 0 && graph_.nodes[std::size_t(node)].slots[std::size_t(side)].arc >= 0;
 }
 
+/// Gives the ruling, with which an arc ends or begins on a side of the node, the node's own normal
+/// and contacts: they differ by rounding.
+void GraphTracer::settle_in(const FacetNode& node, std::size_t side, int end, Ruling& r) const {
+  r.n = node.n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool first = (i == 0) == (end == 0);
+    const std::size_t corner = first ? side : (side + 1) % node.points.size();
+    if (glm::distance(node.points[corner], r.point[i]) > rounded_contact) continue;
+    const std::optional<Contact> c = expressed_in(geometry_, node.contacts[corner], r.contact[i]);
+    if (!c) continue;
+    r.contact[i] = *c;
+    r.point[i] = node.points[corner];
+  }
+}
+
 /// Plugs an arc's end into the side of the node that it crosses.
 void GraphTracer::connect(int arc, int end, int node) {
   if (node == free_end) return;
@@ -623,8 +644,7 @@ void GraphTracer::connect(int arc, int end, int node) {
   } else {
     own.slots[std::size_t(side)] = {arc, end};
     graph_.arcs[std::size_t(arc)].facet[std::size_t(end)] = node;
-    // As far as rounding goes: all that meet in the facet have its plane.
-    r.n = own.n;
+    settle_in(own, std::size_t(side), end, r);
   }
 }
 
