@@ -113,7 +113,8 @@ TEST(PreciseSweep, FreeEndsOfShallowValleys) {
     const ContactGeometry geometry(scene);
     SupportQuery query(scene);
     const GaussMap map(scene, {.threads = 1, .progress = {}});
-    for (const FreeEnd& end : free_ends(geometry, query, cull(scene, map, {.threads = 1, .progress = {}}).cells)) {
+    for (const FreeEnd& end :
+         free_ends(geometry, query, cull(scene, map, {.threads = 1, .progress = {}}).cells)) {
       EXPECT_TRUE(is_reached(*hull.boundary, geometry.point(end.contact), end.n)) << seed;
     }
   }
