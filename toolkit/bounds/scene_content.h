@@ -63,7 +63,8 @@ struct SceneElement {
   double reach;  ///< largest |x| + |y| + |z| of the control points
   SceneNet net;
   CoonsBvh bvh;
-  /// A patch's lines along u, along v, or others that end on its border are straight (Patch).
+  /// A patch's lines along u, along v, or others that end on its border are straight (Patch); both
+  /// of a plane one.
   bool ruled_u = false;
   bool ruled_v = false;
   bool ruled_obliquely = false;

@@ -312,14 +312,13 @@ SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int e
 }
 
 /// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
-/// Inside of a straight line on a patch nothing is higher than the higher one of its ends.
+/// Inside of a straight line on a patch nothing is higher than the higher one of its ends; those of
+/// a plane patch are no parameter lines.
 void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
   const bool inside_u = is_inside(cell.u, cell.size_u);
   const bool inside_v = is_inside(cell.v, cell.size_v);
-  if ((e.ruled_u && inside_u) || (e.ruled_v && inside_v) ||
-      (e.ruled_obliquely && inside_u && inside_v)) {
-    return;
-  }
+  const bool oblique = e.ruled_obliquely || (e.ruled_u && e.ruled_v);
+  if (oblique ? inside_u && inside_v : (e.ruled_u && inside_u) || (e.ruled_v && inside_v)) return;
   const int size = e.shape.size();
   const double* b = nets_.data() + cell.slot;
   double highest = -infinity;

@@ -143,7 +143,7 @@ class Trace {
   bool crosses();
   bool merge();
   bool ends_merged();
-  bool is_followed(Ruling from, Ruling to);
+  bool is_followed(Ruling from, const Ruling& to);
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
   Pace exchange(const Event& event);
@@ -803,16 +803,11 @@ bool Trace::ends_merged() {
 }
 
 /// Whether the rulings between two of them are found, in the same elements, and support the model.
-bool Trace::is_followed(Ruling from, Ruling to) {
+bool Trace::is_followed(Ruling from, const Ruling& to) {
   for (std::size_t i = 0; i < 2; ++i) {
-    // A parameter along a collapsed side is that of where the curve goes on, or comes from.
-    Contact& first = from.contact[i];
-    Contact& last = to.contact[i];
-    if (collapsed_side(geometry_, first)) {
-      first = expressed_in(geometry_, first, last).value_or(first);
-    } else if (collapsed_side(geometry_, last)) {
-      last = expressed_in(geometry_, last, first).value_or(last);
-    }
+    // A parameter along a collapsed side becomes that of where the curve goes on (push_on).
+    Contact& c = from.contact[i];
+    if (collapsed_side(geometry_, c)) c = expressed_in(geometry_, c, to.contact[i]).value_or(c);
   }
   const RulingsBetween between(system_, from, to);
   if (between.empty()) return true;
