@@ -883,13 +883,9 @@ void Trace::push_on() {
   std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
   for (std::size_t i = 0; i < 2 && rulings.size() == 1; ++i) {
     Contact& c = rulings.front().contact[i];
-    if (c.kind != SourceKind::face) continue;
-    for (const Side side : all_sides) {
-      const Border& border = geometry_.patch(c).borders[std::size_t(side)];
-      const double across = along_v(side) ? c.u : c.v;
-      if (border.kind != BorderKind::collapsed || across != (at_upper_end(side) ? 1 : 0)) continue;
-      (along_v(side) ? c.v : c.u) = along_v(side) ? at_.contact[i].v : at_.contact[i].u;
-    }
+    const std::optional<Side> side = collapsed_side(geometry_, c);
+    if (!side) continue;
+    (along_v(*side) ? c.v : c.u) = along_v(*side) ? at_.contact[i].v : at_.contact[i].u;
   }
   push(at_);
 }
@@ -1052,6 +1048,23 @@ void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& plac
   }
 }
 
+/// The contact, where on a collapsed side, at the parameter along it from which the curve comes.
+void turn_to(const ContactGeometry& geometry, Contact& c, const Contact& beside) {
+  const std::optional<Side> side = collapsed_side(geometry, c);
+  if (side) (along_v(*side) ? c.v : c.u) = along_v(*side) ? beside.v : beside.u;
+}
+
+void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+  for (ArcPiece& piece : pieces) {
+    std::vector<Ruling>& rulings = piece.rulings;
+    if (rulings.size() < 2) continue;
+    for (std::size_t i = 0; i < 2; ++i) {
+      turn_to(geometry, rulings.front().contact[i], rulings[1].contact[i]);
+      turn_to(geometry, rulings.back().contact[i], rulings[rulings.size() - 2].contact[i]);
+    }
+  }
+}
+
 }  // namespace
 
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
@@ -1080,6 +1093,7 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
     }
     pieces.erase(pieces.begin() + std::ptrdiff_t(k));
   }
+  turn_ends(geometry, pieces);
 }
 
 TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,

@@ -461,7 +461,8 @@ std::optional<Side> collapsed_side(const ContactGeometry& geometry, const Contac
   for (const Side side : all_sides) {
     const double t = along_v(side) ? c.u : c.v;
     const Border& border = geometry.patch(c).borders[std::size_t(side)];
-    if (t == (at_upper_end(side) ? 1 : 0) && border.kind == BorderKind::collapsed) return side;
+    const bool there = (at_upper_end(side) ? 1 - t : t) < pole_parameter;
+    if (there && border.kind == BorderKind::collapsed) return side;
   }
   return std::nullopt;
 }
@@ -569,7 +570,9 @@ std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Conta
   if (same_element(c, other)) {
     // On a collapsed side, at the parameter of the other one along it.
     const std::optional<Side> side = collapsed_side(geometry, c);
-    return side ? on_side(c.instance, c.element, *side, along_v(*side) ? other.v : other.u) : c;
+    Contact own = c;
+    if (side) (along_v(*side) ? own.v : own.u) = along_v(*side) ? other.v : other.u;
+    return own;
   }
   const auto found = [&](const std::optional<Contact>& next) {
     return next && same_element(*next, other) ? next : std::nullopt;

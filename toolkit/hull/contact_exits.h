@@ -40,7 +40,7 @@ std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
 /// A side collapsed to a point at which the surface is smooth.
 bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side);
 
-/// The collapsed side, be it a pole, a tip or a corner, on which a contact lies exactly.
+/// The collapsed side, be it a pole, a tip or a corner, on which a contact lies, up to rounding.
 std::optional<Side> collapsed_side(const ContactGeometry& geometry, const Contact& c);
 
 /// The side at whose pole the contact lies, if it does; parameters fail there.
