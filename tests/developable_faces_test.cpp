@@ -350,21 +350,36 @@ std::vector<SolidCase> solid_cases() {
   return all;
 }
 
-/// Disabled: where a cone or frustum is cut along its rulings, tracing takes minutes and gives up.
-TEST(DevelopableFaces, DISABLED_OfSolidsAreThoseOfTheirRuledOnes) {
+void expect_as_ruled(const SolidCase& each) {
+  for (const bool turned : {false, true}) {
+    SCOPED_TRACE(each.name + (turned ? ", turned" : ""));
+    const dmat3 turn = turned ? skew_rotation() : dmat3(1.0);
+    const Scene scene = make_scene(mapped(each.oblique, turn));
+    const Hull hull = boundary_of(scene);
+    expect_complete(*hull.boundary);
+    const Hull ruled = boundary_of(make_scene(mapped(each.ruled, turn)));
+    EXPECT_EQ(face_counts(*hull.boundary), face_counts(*ruled.boundary));
+    const BoundaryMeasures measures = measures_of(scene, hull);
+    EXPECT_NEAR(measures.volume, each.volume, 1e-9 * each.volume);
+    EXPECT_NEAR(measures.area, each.area, 1e-9 * each.area);
+  }
+}
+
+/// A cone's or frustum's lateral face cut in two across its rulings, obliquely.
+bool is_cut_cone(const SolidCase& each) {
+  return each.name == "solid cone, cut along u" || each.name == "frustum, cut along u";
+}
+
+TEST(DevelopableFaces, OfSolidsAreThoseOfTheirRuledOnes) {
   for (const SolidCase& each : solid_cases()) {
-    for (const bool turned : {false, true}) {
-      SCOPED_TRACE(each.name + (turned ? ", turned" : ""));
-      const dmat3 turn = turned ? skew_rotation() : dmat3(1.0);
-      const Scene scene = make_scene(mapped(each.oblique, turn));
-      const Hull hull = boundary_of(scene);
-      expect_complete(*hull.boundary);
-      const Hull ruled = boundary_of(make_scene(mapped(each.ruled, turn)));
-      EXPECT_EQ(face_counts(*hull.boundary), face_counts(*ruled.boundary));
-      const BoundaryMeasures measures = measures_of(scene, hull);
-      EXPECT_NEAR(measures.volume, each.volume, 1e-9 * each.volume);
-      EXPECT_NEAR(measures.area, each.area, 1e-9 * each.area);
-    }
+    if (!is_cut_cone(each)) expect_as_ruled(each);
+  }
+}
+
+/// Disabled: tracing them takes minutes and gives up.
+TEST(DevelopableFaces, DISABLED_OfCutConesAreThoseOfTheirRuledOnes) {
+  for (const SolidCase& each : solid_cases()) {
+    if (is_cut_cone(each)) expect_as_ruled(each);
   }
 }
 
