@@ -167,7 +167,7 @@ void check_node(const GaussMap& map, int part, std::int32_t index, const BezierP
       const bool plus = uu < 0 && det > small;
       found.wrong_sign +=
           (plus && !b.signs.plus) || (minus && !b.signs.minus) || (b.definite && det < -small);
-      if (node.first_child >= 0 || map.developable(part, 0)) continue;
+      if (node.first_child >= 0 || map.ruled(part, 0)) continue;
       for (const bool opposite : {false, true}) {
         if (!(opposite ? minus : plus)) continue;
         const dvec3 direction(opposite ? -n : n);
@@ -323,18 +323,18 @@ TEST(GaussMap, SeesSaddlesAndDefiniteSurfaces) {
   EXPECT_GE(definite * 2, long(map.nodes(0).size()));
 }
 
-TEST(GaussMap, DevelopablePatchesAreNotRefined) {
+TEST(GaussMap, RuledPatchesAreNotRefined) {
   for (const Shape& shape :
        {cylinder(1, 2), cone(1, 2), frustum(2, 1, 1), box(1, 2, 3), disc(1, 0)}) {
     const Scene scene = make_scene(shape);
     const GaussMap map(scene);
     EXPECT_EQ(map.nodes(0).size(), std::size_t(map.root_count(0)));
-    for (int k = 0; k < map.root_count(0); ++k) EXPECT_TRUE(map.developable(0, k));
+    for (int k = 0; k < map.root_count(0); ++k) EXPECT_TRUE(map.ruled(0, k));
   }
   for (const Shape& shape : {sphere(), torus(2, 0.5), saddle(), paraboloid()}) {
     const Scene scene = make_scene(shape);
     const GaussMap map(scene);
-    for (int k = 0; k < map.root_count(0); ++k) EXPECT_FALSE(map.developable(0, k));
+    for (int k = 0; k < map.root_count(0); ++k) EXPECT_FALSE(map.ruled(0, k));
   }
 }
 
@@ -350,8 +350,8 @@ TEST(GaussMap, DegeneratePatches) {
   for (const BezierPatch& patch : {point, line, fold}) {
     const Scene scene = make_scene(of_patch(patch) + of_patch(random_patch(random, 2, 2, 1)));
     const GaussMap map(scene);
-    EXPECT_TRUE(map.developable(0, 0));
-    EXPECT_FALSE(map.developable(0, 1));
+    EXPECT_TRUE(map.ruled(0, 0));
+    EXPECT_FALSE(map.ruled(0, 1));
   }
   const Scene curves = make_scene(oloid());
   const GaussMap none(curves);

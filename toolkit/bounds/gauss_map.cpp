@@ -29,11 +29,11 @@ class TreeBuilder {
   TreeBuilder(const SceneElement& element, int index, int levels)
       : nets_(element), index_(index), levels_(levels), quarters_(std::size_t(levels)) {
     nodes_.push_back({index_, {}, -1, nets_.bounds(nets_.root(), 0)});
-    if (nets_.developable()) return;
+    if (nets_.ruled()) return;
     fill(0, nets_.root());
   }
 
-  bool developable() const { return nets_.developable(); }
+  bool ruled() const { return nets_.ruled(); }
   std::vector<GaussNode>& nodes() { return nodes_; }
 
  private:
@@ -81,16 +81,16 @@ GaussMap::PartMap GaussMap::make_part(const ScenePart& part, const GaussMapOptio
   PartMap map;
   map.root_count = int(patches.size());
   std::vector<std::vector<GaussNode>> trees(patches.size());
-  std::vector<char> developable(patches.size());
+  std::vector<char> ruled(patches.size());
   parallel_for(patches.size(), 4, options.threads, [&](std::size_t begin, std::size_t end) {
     options.progress.check();
     for (std::size_t k = begin; k < end; ++k) {
       TreeBuilder builder(part.elements[std::size_t(patches[k])], patches[k], options.levels);
       trees[k] = std::move(builder.nodes());
-      developable[k] = builder.developable();
+      ruled[k] = builder.ruled();
     }
   });
-  map.developable.assign(developable.begin(), developable.end());
+  map.ruled.assign(ruled.begin(), ruled.end());
   std::size_t count = 0;
   for (const auto& tree : trees) count += tree.size();
   map.nodes.reserve(count);
@@ -119,7 +119,7 @@ void GaussMap::sort_into_cells(PartMap& map, int levels) {
   for (std::size_t k = 0; k < map.nodes.size(); ++k) {
     const GaussNode& node = map.nodes[k];
     if (node.first_child >= 0) continue;
-    if (k < std::size_t(map.root_count) && map.developable[k]) continue;
+    if (k < std::size_t(map.root_count) && map.ruled[k]) continue;
     for (const bool opposite : {false, true}) {
       if (!(opposite ? node.bounds.signs.minus : node.bounds.signs.plus)) continue;
       cells.clear();
@@ -160,7 +160,7 @@ std::size_t GaussMap::memory() const {
   std::size_t bytes = sizeof(*this);
   for (const PartMap& map : maps_) {
     bytes += map.nodes.size() * sizeof(GaussNode) + map.entries.size() * sizeof(Entry) +
-             map.first.size() * sizeof(std::uint32_t) + map.developable.size() / 8;
+             map.first.size() * sizeof(std::uint32_t) + map.ruled.size() / 8;
   }
   return bytes;
 }

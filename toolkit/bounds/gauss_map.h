@@ -35,7 +35,7 @@ struct GaussNode {
 /// All is in the parts' own frames, so that instances share it and rigid motions leave it as it is.
 /// Surfaces need not be oriented: a cell counts for its normals and for their opposites. Cells of
 /// one sign of curvature count for one, saddles for none. Curves and points have no normals of
-/// their own, nor does a patch where it is developable (PatchNets): they are not here.
+/// their own, nor do ruled patches (PatchNets): they are not here.
 ///
 /// Leaves are at the level asked for, or higher where nothing below could differ: no sign is left,
 /// or the pyramid is so narrow that it lies within few cells of the sphere.
@@ -49,9 +49,9 @@ class GaussMap {
   /// The nodes of a part. The roots come first, one for each patch of a face.
   std::span<const GaussNode> nodes(int part) const { return maps_[std::size_t(part)].nodes; }
   int root_count(int part) const { return maps_[std::size_t(part)].root_count; }
-  /// The patches are developable (PatchNets): such roots have no children.
-  bool developable(int part, int root) const {
-    return maps_[std::size_t(part)].developable[std::size_t(root)];
+  /// Such roots have no children (PatchNets).
+  bool ruled(int part, int root) const {
+    return maps_[std::size_t(part)].ruled[std::size_t(root)];
   }
 
   /// A leaf and a sign with which it may touch a plane.
@@ -73,7 +73,7 @@ class GaussMap {
   struct PartMap {
     std::vector<GaussNode> nodes;
     int root_count = 0;
-    std::vector<bool> developable;
+    std::vector<bool> ruled;
     std::vector<Entry> entries;        // by cells of the finest level, in their order
     std::vector<std::uint32_t> first;  // of each cell's entries, and the end
   };

@@ -18,47 +18,18 @@ BezierPatch patch_of(const SceneElement& element) {
   return patch;
 }
 
-/// All vectors along v (or u) have one direction, for every u (or v): then the normal is constant
-/// along these lines, and the second fundamental form has rank one.
-bool is_constant_along(const NormalNet& net, Direction direction) {
-  const bool along_v = direction == Direction::v;
-  const int lines = along_v ? net.shape.p : net.shape.q;
-  const int last = along_v ? net.shape.q : net.shape.p;
-  const double rounding = net.rounding_bound;
-  for (int i = 0; i <= lines; ++i) {
-    const auto at = [&](int k) -> const dvec3& {
-      return net
-          .vectors[std::size_t(along_v ? i * (net.shape.q + 1) + k : k * (net.shape.q + 1) + i)];
-    };
-    int longest = 0;
-    for (int k = 1; k <= last; ++k) {
-      if (glm::length(at(k)) > glm::length(at(longest))) longest = k;
-    }
-    const dvec3& a = at(longest);
-    for (int k = 0; k <= last; ++k) {
-      const dvec3& b = at(k);
-      // Either vector may be off by the rounding, and the product rounds by a few units more.
-      const double error = 2 * rounding * (glm::length(a) + glm::length(b)) +
-                           8 * rounding_unit * glm::length(a) * glm::length(b);
-      if (glm::length(glm::cross(a, b)) > error + rounding * rounding) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 PatchNets::PatchNets(const SceneElement& element) : element_(&element) {
   const BezierPatch patch = patch_of(element);
   NormalNet net = normal_net(patch);
-  developable_ = element.ruled_obliquely || is_constant_along(net, Direction::u) ||
-                 is_constant_along(net, Direction::v);
   normal_shape_ = net.shape;
   root_ = {patch.points, std::move(net.vectors)};
   for (const dvec3& n : root_.normals) normal_size_ = std::max(normal_size_, glm::length(n));
   double size = 0;
   for (const dvec4& p : root_.points) size = std::max(size, glm::length(p));
   normal_rounding_ = net.rounding_bound;
+  ruled_ = element.ruled() || normal_size_ <= normal_rounding_;
   // Means of two are rounded once, at most degree times a level and direction; 40 levels as for
   // support values.
   point_rounding_ = 40 * (element.shape.p + element.shape.q) * rounding_unit * size;

@@ -24,10 +24,10 @@ class PatchNets {
   NetShape shape() const { return element_->shape; }
   bool rational() const { return element_->rational; }
   const CellNets& root() const { return root_; }
-  /// The patch is a piece of a developable surface (a plane, a cylinder, a cone) within rounding,
-  /// or a curve or a point. No point inside is extreme: it touches a supporting plane only together
-  /// with the ends of a ruling.
-  bool developable() const { return developable_; }
+  /// The patch is made of straight segments that end on its border (Patch), or is a curve or a
+  /// point. No point inside is extreme: it touches a supporting plane only together with the ends
+  /// of a ruling.
+  bool ruled() const { return ruled_; }
 
   /// The patch's control points over a rectangle of its unit square.
   std::vector<dvec4> points(const Interval& u, const Interval& v) const;
@@ -47,7 +47,7 @@ class PatchNets {
   double normal_rounding_ = 0;
   double normal_size_ = 0;
   double point_rounding_ = 0;
-  bool developable_ = false;
+  bool ruled_ = false;
 };
 
 }  // namespace taut

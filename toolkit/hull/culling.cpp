@@ -142,7 +142,7 @@ class PatchCulling {
         nets_(element_),
         tools_(tools) {
     result_.levels.resize(std::size_t(levels) + 1);
-    if (map.developable(placed_.part, root)) {
+    if (map.ruled(placed_.part, root)) {
       ++at(0).visited;
       ++at(0).ruled;
       finish({}, CellState::ruled, {false, false});

@@ -20,7 +20,7 @@ struct CullingOptions {
 enum class CellState {
   off,    ///< proven: none touches it
   on,     ///< proven: at every point of it one does, and nowhere else
-  ruled,  ///< its patch is developable (PatchNets): no point inside is extreme
+  ruled,  ///< its patch is ruled (PatchNets): no point inside is extreme
   mixed,  ///< neither is proven
 };
 

@@ -6,6 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/surface/crests.h"
+#include "taut/surface/flatness.h"
 #include "taut/surface/nearest_parameter.h"
 #include "taut/surface/point_grid.h"
 #include "taut/surface/side_joins.h"
@@ -182,6 +183,8 @@ std::vector<Cut> RowSplitter::find_junctions() const {
   std::vector<Cut> result;
   for (const int side : open) {
     const BezierCurve& host = sides_[to_size(side)].curve;
+    // No point inside of a straight side is extreme.
+    if (is_straight(host)) continue;
     Box box;
     for (const dvec4& p : host.points) box.include(euclidean(p));
     const dvec3 lower = box.lower - dvec3(tolerance_);
@@ -349,8 +352,14 @@ void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const B
 
 void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
   // A cut may end inside of a side that met none before.
+  std::vector<Face> cut_faces = faces;
+  std::vector<Patch> cut_patches = patches;
   for (int round = 0; round < round_limit; ++round) {
-    if (!RowSplitter(faces, patches, box).split_at_junctions()) return;
+    if (RowSplitter(cut_faces, cut_patches, box).split_at_junctions()) continue;
+    if (round == 0) return;
+    faces = std::move(cut_faces);
+    patches = std::move(cut_patches);
+    return;
   }
 }
 

@@ -21,7 +21,8 @@ void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const B
 
 /// Splits patches, rows as above, where sides of others end inside of theirs and run along them, so
 /// that whole sides meet; but for sides that are straight, along which no point is extreme. Sides
-/// that run along each other at different parameters are left as they are.
+/// that run along each other at different parameters are left as they are. Cuts that always meet
+/// further sides, as around a closed face, are not made at all.
 /// @pre as above
 void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
 
