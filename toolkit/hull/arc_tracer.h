@@ -7,7 +7,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/progress.h"
 #include "taut/hull/contact_system.h"
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/supporting_poles.h"
 
 namespace taut {
 
@@ -16,12 +16,6 @@ namespace taut {
 /// rounding moves them by about 1e-8 yet. What the hull bridges over a shorter distance deviates
 /// from the surface by less than the fourth power of it.
 inline constexpr double merge_distance = 4e-3;
-
-/// A direction that is known to have three contacts or more, some of them at poles.
-struct Landmark {
-  dvec3 n = dvec3(0.0);
-  FacetContacts facet;
-};
 
 /// One way along a separating curve.
 struct TracedArc {

@@ -131,6 +131,15 @@ void LinearEquation::add_point(const CommonSupport& s, int i, const dvec3& g) {
   parameter[std::size_t(i)] += dvec2(glm::dot(j.dx[0], g), glm::dot(j.dx[1], g));
 }
 
+LinearEquation distance_equation(const CommonSupport& s, double length) {
+  LinearEquation e;
+  const dvec3 d = s.d() / length;
+  e.residual = 0.5 * (glm::dot(s.d(), d) - length);
+  e.add_point(s, 0, d);
+  e.add_point(s, 1, -d);
+  return e;
+}
+
 std::optional<double> ContactSystem::step(CommonSupport& s, const LinearEquation* extra,
                                           Steps steps) const {
   ++iterations_;

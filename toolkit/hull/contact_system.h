@@ -37,6 +37,9 @@ struct LinearEquation {
   void add_point(const CommonSupport& s, int i, const dvec3& g);
 };
 
+/// Keeps two contacts at this distance.
+LinearEquation distance_equation(const CommonSupport& s, double length);
+
 /// Rates of change along a separating curve of two contacts, of unit length in (n, x_0, x_1).
 struct CurveTangent {
   dvec3 n = dvec3(0.0);

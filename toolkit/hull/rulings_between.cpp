@@ -170,14 +170,7 @@ bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
 bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
   const double length = r * length_;
   const MovingRuling start = m;
-  const auto equation = [&](const CommonSupport& at) {
-    LinearEquation e;
-    const dvec3 d = at.d() / length;
-    e.residual = 0.5 * (glm::dot(at.d(), d) - length);
-    e.add_point(at, 0, d);
-    e.add_point(at, 1, -d);
-    return e;
-  };
+  const auto equation = [&](const CommonSupport& at) { return distance_equation(at, length); };
   if (system_.solve(m.at, equation) && is_near(start, m)) return true;
   m = start;
   return system_.settle(m.at, equation) && is_near(start, m);

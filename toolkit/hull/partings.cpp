@@ -1,0 +1,78 @@
+#include "taut/hull/partings.h"
+
+#include <cmath>
+
+#include "taut/hull/contact_exits.h"
+
+namespace taut {
+namespace {
+
+/// Share of its motion by which a contact may miss the first order of it.
+constexpr double first_order = 0.2;
+constexpr int newton_limit = 60;
+/// Values of two contacts that differ by so little are equal.
+constexpr double parting_tie = 1e-15;
+
+}  // namespace
+
+Sighting seen(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
+              const Contact& hint) {
+  const Support s = query(n, hint);
+  const Contact c = at_rest(geometry, s.contact, n);
+  return {n, c, geometry.point(c)};
+}
+
+bool is_near(const ContactGeometry& geometry, const Sighting& from, const Sighting& to) {
+  const ContactJet j = geometry.jet(from.contact);
+  const std::optional<dvec2> rate = parameter_rate(j, from.n, to.n - from.n);
+  if (!rate) return false;
+  const dvec3 motion = rate->x * j.dx[0] + rate->y * j.dx[1];
+  return glm::distance(to.x - from.x, motion) < first_order * glm::distance(to.x, from.x);
+}
+
+bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighting& b) {
+  if (glm::distance(a.x, b.x) < same_branch) return true;
+  const auto leads = [&](const Sighting& from, const Sighting& to) {
+    if (is_near(geometry, from, to)) return true;
+    const std::optional<Contact> c = climbed(geometry, from.contact, to.n);
+    return c && glm::distance(geometry.point(*c), to.x) < same_branch;
+  };
+  return leads(a, b) && leads(b, a);
+}
+
+/// Newton's method on the difference of the two values, the slope of which is the contacts'
+/// difference, within the bracket that their signs make.
+std::optional<CommonSupport> parting(const ContactGeometry& geometry, const Sighting& a,
+                                     const Sighting& b) {
+  CommonSupport s;
+  s.add(geometry, a.contact);
+  s.add(geometry, b.contact);
+  double lower = 0;
+  double upper = 1;
+  double t = 0.5;
+  for (int k = 0; k < newton_limit; ++k) {
+    const dvec3 mixed = (1 - t) * a.n + t * b.n;
+    s.n = glm::normalize(mixed);
+    // From where they were seen, lest they stay with a branch that an earlier step led to.
+    const std::optional<Contact> of_a = climbed(geometry, a.contact, s.n);
+    const std::optional<Contact> of_b = climbed(geometry, b.contact, s.n);
+    if (!of_a || !of_b) return std::nullopt;
+    s.contact[0] = *of_a;
+    s.contact[1] = *of_b;
+    s.evaluate(geometry);
+    if (glm::length(s.d()) < same_branch) return std::nullopt;
+    const double value = glm::dot(s.d(), s.n);
+    if (std::abs(value) < parting_tie) return s;
+    (value > 0 ? lower : upper) = t;
+    const double slope = glm::dot(s.d(), b.n - a.n) / glm::length(mixed);
+    const double next = t - value / slope;
+    t = next > lower && next < upper ? next : 0.5 * (lower + upper);
+    if (upper - lower < parting_tie) {
+      if (std::abs(value) < geometry.tie()) return s;
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace taut

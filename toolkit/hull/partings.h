@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/contact_system.h"
+
+namespace taut {
+
+/// Contacts within this distance, in the scene's frame, are of one branch of the support function.
+inline constexpr double same_branch = 1e-6;
+
+/// A direction and its support contact.
+struct Sighting {
+  dvec3 n;
+  Contact contact;
+  dvec3 x;
+};
+
+Sighting seen(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
+              const Contact& hint);
+
+/// Whether the contact's motion is, to first order, that to the other: then they are joined without
+/// a climb.
+bool is_near(const ContactGeometry& geometry, const Sighting& from, const Sighting& to);
+
+/// Whether climbs lead from the one contact to the other and back: no separating curve that the
+/// great arc between them crosses is known by them.
+bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighting& b);
+
+/// The direction on the great arc between the two at which their contacts' branches tie, whether
+/// they support there or not. None if they do not, or a branch ends before.
+std::optional<CommonSupport> parting(const ContactGeometry& geometry, const Sighting& a,
+                                     const Sighting& b);
+
+}  // namespace taut
