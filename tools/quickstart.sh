@@ -14,7 +14,7 @@ say "build taut"
 cmake --build --preset release --target taut
 
 mkdir -p out
-command=(build/release/bin/taut hull data/teapot.bpt -o out/teapot.ply --method sampled)
+command=(build/release/bin/taut hull data/teapot.bpt -o out/teapot.ply)
 say "${command[*]}"
 "${command[@]}"
 
