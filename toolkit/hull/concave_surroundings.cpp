@@ -12,11 +12,12 @@
 namespace taut {
 namespace {
 
-/// Cells on either side of the cell that need not stay below it; half as many more are to be
-/// concave.
-constexpr std::array<int, 2> widths = {3, 1};
-/// Rectangles after which the surroundings are given up: nine are a cell's at a corner of four.
-constexpr std::size_t rectangle_limit = 16;
+/// Cells on either side of the cell that need not stay below it, tried one after the other; half as
+/// many more are to be concave.
+constexpr std::array widths = {4, 2, 1};
+/// Rectangles after which the surroundings are given up: two rings of patches about one are 25.
+constexpr std::size_t rectangle_limit = 32;
+constexpr std::size_t step_limit = 2 * rectangle_limit;
 /// Distance that is kept clear of the outline, in the cell's sizes, far more than rounding.
 constexpr double clearance = 1e-6;
 /// Parts of a rectangle, in each direction, the control points of which bound where it is.
@@ -28,16 +29,22 @@ bool disjoint(const Interval& a, const Interval& b) {
   return a.upper <= b.lower || b.upper <= a.lower;
 }
 
-bool goes_on(const Border& border) {
-  return border.kind == BorderKind::smooth ||
-         (border.kind == BorderKind::collapsed && border.vertex < 0);
+bool contains(const Interval& a, const Interval& b) {
+  return a.lower <= b.lower && a.upper >= b.upper;
 }
 
-/// The cell's interval with so many of its lengths on either side, within [0, 1].
+Interval united(const Interval& a, const Interval& b) {
+  return {std::min(a.lower, b.lower), std::max(a.upper, b.upper)};
+}
+
+/// The interval with so many of its lengths on either side.
 Interval widened(const Interval& t, int lengths) {
   const double length = t.upper - t.lower;
-  return {std::max(0.0, t.lower - lengths * length), std::min(1.0, t.upper + lengths * length)};
+  return {t.lower - lengths * length, t.upper + lengths * length};
 }
+
+/// What of it is in [0, 1].
+Interval clipped(const Interval& t) { return {std::max(0.0, t.lower), std::min(1.0, t.upper)}; }
 
 /// The points of a net's side, without their weights.
 std::vector<dvec3> side_points(NetShape shape, const std::vector<dvec4>& net, Side side) {
@@ -88,29 +95,37 @@ bool are_apart(const std::vector<dvec2>& curve, const std::vector<dvec2>& points
 
 }  // namespace
 
-/// A rectangle of a patch of the cell's part.
+/// A rectangle of a patch of the cell's part, or one that reaches beyond the patch.
 struct ConcaveSurroundings::Rectangle {
   int patch = -1;
   Interval u, v;
 
-  bool operator==(const Rectangle& other) const {
-    return patch == other.patch && u.lower == other.u.lower && u.upper == other.u.upper &&
-           v.lower == other.v.lower && v.upper == other.v.upper;
+  bool contains(const Rectangle& other) const {
+    return patch == other.patch && taut::contains(u, other.u) && taut::contains(v, other.v);
   }
   bool overlaps(const Rectangle& other) const {
     return patch == other.patch && !disjoint(u, other.u) && !disjoint(v, other.v);
   }
+  Rectangle on_patch() const { return {patch, clipped(u), clipped(v)}; }
   const Interval& across(Side side) const { return along_v(side) ? u : v; }
   const Interval& along(Side side) const { return along_v(side) ? v : u; }
   /// Its side lies on that of the patch.
   bool reaches(Side side) const {
     return at_upper_end(side) ? across(side).upper == 1 : across(side).lower == 0;
   }
-  /// What continues it beyond a side of its patch, as deep in the neighbour's parameter.
+  /// How far it reaches beyond a side of its patch.
+  double excess(Side side) const {
+    return at_upper_end(side) ? across(side).upper - 1 : -across(side).lower;
+  }
+  /// Where it runs along a side, in the parameter of the patch beyond.
+  Interval along_beyond(Side side, const Border& border) const {
+    const Interval& t = along(side);
+    return border.reversed ? Interval{1 - t.upper, 1 - t.lower} : t;
+  }
+  /// What reaches beyond a side, in the parameters of the patch there.
   Rectangle beyond(Side side, const Border& border) const {
-    Interval next_along = along(side);
-    if (border.reversed) next_along = {1 - next_along.upper, 1 - next_along.lower};
-    const double depth = across(side).upper - across(side).lower;
+    const Interval next_along = along_beyond(side, border);
+    const double depth = excess(side);
     const Interval next_across =
         at_upper_end(border.neighbor_side) ? Interval{1 - depth, 1.0} : Interval{0.0, depth};
     return along_v(border.neighbor_side) ? Rectangle{border.neighbor, next_across, next_along}
@@ -245,7 +260,7 @@ class ConcaveSurroundings::Neighborhood {
       : content_(of.scene_.content()),
         instance_(instance),
         part_(content_.instances[std::size_t(instance)].part),
-        surfaces_(of.surfaces_[std::size_t(part_)]),
+        surfaces_(of.surfaces_),
         own_{patch, cell.u(), cell.v()},
         level_(cell.level),
         axis_(axis) {
@@ -270,23 +285,39 @@ class ConcaveSurroundings::Neighborhood {
   bool is_sound() const { return flat_; }
 
   /// The rectangles within so many lengths of the cell, those of its longer side where the other
-  /// one is shorter; none if they are too many or overlap.
+  /// one is shorter, over smooth joins too; none if they are too many. They do not overlap.
   std::vector<Rectangle> within(int lengths) const {
-    std::vector<Rectangle> result = {
-        {own_.patch, widened(own_.u, lengths * stretch_u_), widened(own_.v, lengths * stretch_v_)}};
-    for (std::size_t k = 0; k < result.size(); ++k) {
+    std::vector<Rectangle> wide = {around_poles({own_.patch, widened(own_.u, lengths * stretch_u_),
+                                                 widened(own_.v, lengths * stretch_v_)})};
+    std::vector<std::size_t> waiting = {0};
+    for (std::size_t step = 0; !waiting.empty(); ++step) {
+      const Rectangle r = wide[waiting.back()];
+      waiting.pop_back();
+      if (r.patch < 0) continue;
       for (const Side side : all_sides) {
-        const Rectangle r = result[k];
         const Border& border = patches()[std::size_t(r.patch)].borders[std::size_t(side)];
-        if (!r.reaches(side) || border.kind != BorderKind::smooth) continue;
-        const Rectangle next = r.beyond(side, border);
-        if (std::find(result.begin(), result.end(), next) != result.end()) continue;
-        const bool overlaps = std::any_of(result.begin(), result.end(),
-                                          [&](const Rectangle& s) { return s.overlaps(next); });
-        if (overlaps || result.size() == rectangle_limit) return {};
-        result.push_back(next);
+        if (border.kind != BorderKind::smooth || !(r.excess(side) > 0)) continue;
+        Rectangle next = around_poles(r.beyond(side, border));
+        const bool known = std::any_of(
+            wide.begin(), wide.end(), [&](const Rectangle& other) { return other.contains(next); });
+        if (known) continue;
+        // What has come to the patch another way is one with it.
+        for (std::size_t k = 0; k < wide.size(); ++k) {
+          if (!wide[k].overlaps(next)) continue;
+          next.u = united(next.u, wide[k].u);
+          next.v = united(next.v, wide[k].v);
+          wide[k].patch = -1;
+        }
+        if (step == step_limit) return {};
+        waiting.push_back(wide.size());
+        wide.push_back(next);
       }
     }
+    std::vector<Rectangle> result;
+    for (const Rectangle& r : wide) {
+      if (r.patch >= 0) result.push_back(r.on_patch());
+    }
+    if (result.size() > rectangle_limit) result.clear();
     return result;
   }
 
@@ -331,7 +362,7 @@ class ConcaveSurroundings::Neighborhood {
     return std::all_of(outer.begin(), outer.end(), [&](const Rectangle& whole) {
       const std::vector<Rectangle> pieces = whole.divided();
       return std::all_of(pieces.begin(), pieces.end(), [&](const Rectangle& r) {
-        return is_outline_apart(whole, r, map, inside);
+        return is_outline_apart(outer, whole, r, map, inside);
       });
     });
   }
@@ -340,13 +371,36 @@ class ConcaveSurroundings::Neighborhood {
   const std::vector<Patch>& patches() const {
     return content_.model.parts()[std::size_t(part_)].patches();
   }
+  /// What reaches a pole goes all around it.
+  Rectangle around_poles(Rectangle r) const {
+    for (const Side side : all_sides) {
+      const Border& border = patches()[std::size_t(r.patch)].borders[std::size_t(side)];
+      if (border.kind != BorderKind::collapsed || border.vertex >= 0 || r.excess(side) < 0)
+        continue;
+      Interval& along = along_v(side) ? r.v : r.u;
+      along = united(along, {-1, 2});
+    }
+    return r;
+  }
+  /// The side of the rectangle lies on that of its patch, and others of the rectangles beyond it.
+  bool goes_on(const std::vector<Rectangle>& rectangles, const Rectangle& r, Side side) const {
+    if (!r.reaches(side)) return false;
+    const Border& border = patches()[std::size_t(r.patch)].borders[std::size_t(side)];
+    if (border.kind == BorderKind::collapsed) return border.vertex < 0;
+    if (border.kind != BorderKind::smooth) return false;
+    const Interval along = r.along_beyond(side, border);
+    return std::any_of(rectangles.begin(), rectangles.end(), [&](const Rectangle& other) {
+      return other.patch == border.neighbor && other.reaches(border.neighbor_side) &&
+             contains(other.along(border.neighbor_side), along);
+    });
+  }
   /// The sides of a part of a rectangle that nothing is joined to do not meet the points' hull.
-  bool is_outline_apart(const Rectangle& whole, const Rectangle& r, const PlaneMap& map,
+  bool is_outline_apart(const std::vector<Rectangle>& rectangles, const Rectangle& whole,
+                        const Rectangle& r, const PlaneMap& map,
                         const std::vector<dvec2>& inside) const {
     const std::vector<dvec4> net = surface(r.patch).points(r);
     return std::all_of(all_sides.begin(), all_sides.end(), [&](const Side side) {
-      const Border& border = patches()[std::size_t(r.patch)].borders[std::size_t(side)];
-      if (!whole.has_side(r, side) || (r.reaches(side) && goes_on(border))) return true;
+      if (!whole.has_side(r, side) || goes_on(rectangles, r, side)) return true;
       std::vector<dvec2> outline;
       for (const dvec3& p : side_points(surface(r.patch).shape(), net, side)) {
         outline.push_back(map(p));
@@ -356,7 +410,7 @@ class ConcaveSurroundings::Neighborhood {
   }
 
   Surface& surface(int patch) const {
-    std::unique_ptr<Surface>& held = surfaces_[std::size_t(patch)];
+    std::unique_ptr<Surface>& held = surfaces_[{part_, patch}];
     if (!held) {
       const int element = content_.element({instance_, SourceKind::face, patch, 0, 0});
       held = std::make_unique<Surface>(
@@ -369,7 +423,7 @@ class ConcaveSurroundings::Neighborhood {
   const Scene::Content& content_;
   int instance_;
   int part_;
-  std::vector<std::unique_ptr<Surface>>& surfaces_;
+  std::map<std::pair<int, int>, std::unique_ptr<Surface>>& surfaces_;
   Rectangle own_;
   int level_;
   dvec3 axis_;
@@ -379,12 +433,7 @@ class ConcaveSurroundings::Neighborhood {
   bool flat_ = false;
 };
 
-ConcaveSurroundings::ConcaveSurroundings(const Scene& scene)
-    : scene_(scene), reach_(scene), surfaces_(scene.model().parts().size()) {
-  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    surfaces_[k].resize(scene.model().parts()[k].patches().size());
-  }
-}
+ConcaveSurroundings::ConcaveSurroundings(const Scene& scene) : scene_(scene), reach_(scene) {}
 
 ConcaveSurroundings::~ConcaveSurroundings() = default;
 
@@ -397,15 +446,15 @@ bool ConcaveSurroundings::surely_on(int instance, int patch, const PatchCell& ce
   std::array<dvec3, 4> corners = pyramid.corners;
   for (dvec3& n : corners) n = sign * (rotated ? glm::transpose(glm::inverse(rotation)) * n : n);
   for (const int width : widths) {
+    const std::vector<Rectangle> outer = around.within(width + (width + 1) / 2);
+    if (outer.empty() || !around.are_concave(outer)) continue;
     const std::vector<Rectangle> inner = around.within(width);
-    if (inner.empty()) continue;
     // What is nearer is no easier to be above of.
     if (!reach_.surely_below(around.points(inner), corners, around.regions(inner),
                              cell.level + 1)) {
       return false;
     }
-    const std::vector<Rectangle> outer = around.within(width + (width + 1) / 2);
-    if (!outer.empty() && around.are_concave(outer) && around.surround(outer, inner)) return true;
+    if (around.surround(outer, inner)) return true;
   }
   return false;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "taut/bounds/patch_cell.h"
@@ -41,7 +43,7 @@ class ConcaveSurroundings {
 
   const Scene& scene_;
   ReachTest reach_;
-  std::vector<std::vector<std::unique_ptr<Surface>>> surfaces_;  // per part and patch
+  std::map<std::pair<int, int>, std::unique_ptr<Surface>> surfaces_;  // by part and patch
 };
 
 }  // namespace taut

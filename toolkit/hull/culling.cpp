@@ -18,6 +18,10 @@ namespace {
 
 constexpr int level_limit = 20;
 
+/// The finer the patches, the less is to be gained by their cells: those left are refined later.
+constexpr int default_levels = 3;
+constexpr long cells_in_all = 16384;
+
 /// The sphere is sampled at one direction for some patches, between 96 and 6144 in all: the more
 /// patches there are, the more of them lie under the samples and need no queries of their own.
 constexpr std::size_t patches_per_direction = 8;
@@ -118,11 +122,11 @@ struct PatchResult {
 
 /// Scratch memory of a task.
 struct Tools {
-  explicit Tools(const Scene& scene) : query(scene), reach(scene) {}
+  explicit Tools(const Scene& scene) : query(scene), reach(scene), surroundings(scene) {}
   SupportQuery query;
   ReachTest reach;
-  std::unique_ptr<ConcaveSurroundings> surroundings;  // where cells are refined
-  std::vector<std::array<CellNets, 4>> quarters;      // per level
+  ConcaveSurroundings surroundings;
+  std::vector<std::array<CellNets, 4>> quarters;  // per level
 };
 
 /// Culls the cells of one patch of one instance, depth first.
@@ -162,6 +166,7 @@ class PatchCulling {
         element_(content_.parts[std::size_t(placed_.part)].elements[std::size_t(
             content_.element({instance, SourceKind::face, patch, 0, 0}))]),
         finest_(0),
+        refines_(true),
         nets_(element_),
         tools_(tools) {}
 
@@ -172,7 +177,8 @@ class PatchCulling {
     const NormalBounds bounds = nets_.bounds(nets, place.level);
     finest_ = place.level + 1;
     result_.levels.resize(std::size_t(finest_) + 1);
-    if (bounds.pyramid && surely_on_with_others(*bounds.pyramid, place, cell.signs)) {
+    if (bounds.pyramid && cell.signs.plus != cell.signs.minus &&
+        surely_on_with_others(*bounds.pyramid, place, cell.signs.plus ? 1 : -1)) {
       finish(place, CellState::on, cell.signs);
     } else {
       refine(place, -1, nets, cell.signs, {});
@@ -211,7 +217,7 @@ class PatchCulling {
     }
     if (bounds.pyramid) {
       const NormalPyramid& pyramid = *bounds.pyramid;
-      const bool may_be_on = bounds.definite && left.plus != left.minus && !touches_another(cell);
+      const bool may_be_on = bounds.definite && left.plus != left.minus;
       const double sign = left.plus ? 1 : -1;
       Beacon& beacon = beacons[left.plus ? 0 : 1];
       // Where the parent's support point is here, the proof needs no query.
@@ -238,7 +244,8 @@ class PatchCulling {
     }
     ++count.kept;
     if (cell.level == finest_) {
-      const bool on = bounds.pyramid && surely_on_with_others(*bounds.pyramid, cell, left);
+      const bool on = refines_ && bounds.pyramid && left.plus != left.minus &&
+                      surely_on_with_others(*bounds.pyramid, cell, left.plus ? 1 : -1);
       finish(cell, on ? CellState::on : CellState::mixed, left);
       return;
     }
@@ -367,6 +374,10 @@ class PatchCulling {
 
   bool surely_on(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
                  const PatchCell& cell, double sign) {
+    if (touches_another(cell)) {
+      // The finest are tried later, those that no curve crosses.
+      return cell.level < finest_ && surely_on_with_others(pyramid, cell, sign);
+    }
     std::array<dvec3, 4> corners = pyramid.corners;
     for (dvec3& n : corners) n *= sign;
     const auto is_concave = [&](const std::vector<dvec4>& net) {
@@ -387,11 +398,8 @@ class PatchCulling {
                                      cell.level + 1);
   }
 
-  bool surely_on_with_others(const NormalPyramid& pyramid, const PatchCell& cell,
-                             const ContactSigns& signs) {
-    return tools_.surroundings && signs.plus != signs.minus &&
-           tools_.surroundings->surely_on(instance_, element_.index, cell, pyramid,
-                                          signs.plus ? 1 : -1);
+  bool surely_on_with_others(const NormalPyramid& pyramid, const PatchCell& cell, double sign) {
+    return tools_.surroundings.surely_on(instance_, element_.index, cell, pyramid, sign);
   }
 
   /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
@@ -426,6 +434,7 @@ class PatchCulling {
   std::span<const GaussNode> nodes_ = {};
   const SceneElement& element_;
   int finest_;
+  bool refines_ = false;
   PatchNets nets_;
   Tools& tools_;
   PatchResult result_;
@@ -471,9 +480,7 @@ void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
 
 struct CellRefinement::Content {
   explicit Content(const Scene& of)
-      : scene(of), spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}), tools(of) {
-    tools.surroundings = std::make_unique<ConcaveSurroundings>(of);
-  }
+      : scene(of), spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}), tools(of) {}
   const Scene& scene;
   SpreadSamples spread;
   Tools tools;
@@ -495,6 +502,12 @@ std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& c
     result.insert(result.end(), found.cells.begin(), found.cells.end());
   }
   return result;
+}
+
+int culling_levels(long patches) {
+  int levels = default_levels;
+  while (levels > 0 && patches * (1L << (2 * levels)) > cells_in_all) --levels;
+  return levels;
 }
 
 long Culling::visited() const {

@@ -16,6 +16,9 @@ struct CullingOptions {
   Progress progress;
 };
 
+/// The finest level at which so many patches have no more than 16384 cells in all; at most 3.
+int culling_levels(long patches);
+
 /// What is known of a cell of a patch as the place where supporting planes touch the model.
 enum class CellState {
   off,    ///< proven: none touches it

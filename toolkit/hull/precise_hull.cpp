@@ -34,7 +34,10 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
                             HullStatistics& statistics, const std::vector<Sample>& more) {
   Lap lap;
   options.progress.update("cull", 0);
-  Culling culling = cull(scene, map, {.threads = options.threads, .progress = options.progress});
+  Culling culling = cull(scene, map,
+                         {.levels = culling_levels(scene.model().patch_count()),
+                          .threads = options.threads,
+                          .progress = options.progress});
   const auto finest = double(culling.levels.empty() ? 0 : culling.levels.size() - 1);
   statistics.cells = std::lround(scene.model().patch_count() * std::exp2(2 * finest));
   statistics.cells_kept = std::lround(double(statistics.cells) * (1 - culling.removed_share()));
@@ -67,7 +70,9 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   statistics.support_queries = query.queries();
   statistics.newton_iterations = query.newton_iterations();
   Lap lap;
-  const GaussMap map(scene, {.threads = options.threads, .progress = options.progress});
+  const GaussMap map(scene, {.levels = culling_levels(scene.model().patch_count()),
+                             .threads = options.threads,
+                             .progress = options.progress});
   statistics.seconds_gauss_map = lap.seconds();
   const ContactGeometry geometry(scene);
   std::vector<Sample> found;
