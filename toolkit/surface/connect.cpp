@@ -2,10 +2,10 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "taut/core/disjoint_sets.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/crests.h"
@@ -22,28 +22,6 @@ namespace {
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 int to_int(std::size_t n) { return static_cast<int>(n); }
-
-/// Disjoint sets of the numbers below a count; a set is known by its lowest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int find(int a) {
-    while (parent_[to_size(a)] != a) {
-      a = parent_[to_size(a)] = parent_[to_size(parent_[to_size(a)])];
-    }
-    return a;
-  }
-  void unite(int a, int b) {
-    a = find(a);
-    b = find(b);
-    parent_[to_size(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Unit vectors differ by at most the angle whose chord is given.
 bool same_direction(const dvec3& a, const dvec3& b, double chord) {
