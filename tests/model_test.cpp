@@ -1058,16 +1058,8 @@ std::vector<BezierPatch> read_bpt(std::istream& in) {
 }
 
 dvec3 side_normal(const BezierPatch& patch, Side side, double t) {
-  switch (side) {
-    case Side::u0:
-      return unit_normal(patch, 0, t);
-    case Side::u1:
-      return unit_normal(patch, 1, t);
-    case Side::v0:
-      return unit_normal(patch, t, 0);
-    default:
-      return unit_normal(patch, t, 1);
-  }
+  const dvec2 at = on_side(side, t);
+  return unit_normal(patch, at.x, at.y);
 }
 
 /// Largest angle between the tangent planes along all joins of two sides.
