@@ -12,11 +12,14 @@
 #include <numbers>
 #include <random>
 
+#include "error_checks.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
+
+using taut_test::expect_invalid;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -512,16 +515,6 @@ void expect_seams(const Part& part, std::size_t pieces, int vertices) {
   for (const Edge& e : part.edges()) edge_pieces += to_size(e.piece_count);
   EXPECT_EQ(part.pieces().size() - edge_pieces, pieces);
   EXPECT_EQ(part.seam_vertex_count(), vertices);
-}
-
-template <class F>
-void expect_invalid(const F& f, const std::string& part_of_message) {
-  try {
-    f();
-    ADD_FAILURE() << "no error: " << part_of_message;
-  } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find(part_of_message), std::string::npos) << error.what();
-  }
 }
 
 // ---- How sides meet
