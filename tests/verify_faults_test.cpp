@@ -101,11 +101,14 @@ HullDocument::Face& patch_of(HullDocument& hull) {
 /// Makes the first patch's regions the whole of their Bezier patches.
 void fill_regions(HullDocument& hull) {
   for (auto& region : patch_of(hull).regions) {
-    const auto& [u, v] = hull.sources[0].patches[std::size_t(region.patch)].domain;
+    const auto& domain = hull.sources[0].patches[std::size_t(region.patch)].domain;
+    const Interval& u = domain[0];
+    const Interval& v = domain[1];
     region.loops = {
         {{u.lower, v.lower}, {u.upper, v.lower}, {u.upper, v.upper}, {u.lower, v.upper}}};
   }
 }
+
 HullDocument::Face& facet_of(HullDocument& hull) {
   return hull.faces[first_of(hull, FaceKind::facet)];
 }
