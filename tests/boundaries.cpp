@@ -15,6 +15,24 @@ namespace taut_test {
 
 using namespace taut;  // NOLINT: its own
 
+TrimStretch on_border(Side side, double from, double to) {
+  TrimStretch stretch;
+  stretch.side = side;
+  stretch.from = from;
+  stretch.to = to;
+  return stretch;
+}
+
+std::vector<TrimStretch> whole_outline() {
+  return {on_border(Side::v0, 0, 1), on_border(Side::u1, 0, 1), on_border(Side::v1, 1, 0),
+          on_border(Side::u0, 1, 0)};
+}
+
+int outward_sign(const ContactGeometry& geometry, int patch, const dvec3& inside) {
+  const ContactJet j = geometry.jet({0, SourceKind::face, patch, 0.5, 0.5});
+  return glm::dot(glm::cross(j.dx[0], j.dx[1]), j.x - inside) > 0 ? 1 : -1;
+}
+
 KnownBoundary tetrahedron_boundary(const dvec3& shift) {
   const dvec3 corner = dvec3(5, 6, 7) + shift;
   KnownBoundary known{make_scene({{},
@@ -75,14 +93,6 @@ Ruling ruling_at(const ContactSystem& system, const dmat3& rotation, int quarter
   }
   s.evaluate(system.geometry());
   return s.ruling();
-}
-
-TrimStretch on_border(Side side, double from, double to) {
-  TrimStretch stretch;
-  stretch.side = side;
-  stretch.from = from;
-  stretch.to = to;
-  return stretch;
 }
 
 TrimStretch on_arc(int piece, int contact) {
@@ -219,11 +229,6 @@ HullCurve circle_curve(const KnownBoundary& known, const ContactGeometry& geomet
   return curve;
 }
 
-std::vector<TrimStretch> whole_outline() {
-  return {on_border(Side::v0, 0, 1), on_border(Side::u1, 0, 1), on_border(Side::v1, 1, 0),
-          on_border(Side::u0, 1, 0)};
-}
-
 /// Patches of a part, whole: those that `belongs` says of the point in their middle. `curve_of`
 /// names the curve along a border's piece. `inside` is a point of the model inside.
 template <class CurveOf, class Belongs>
@@ -234,11 +239,10 @@ HullFace whole_surface(const KnownBoundary& known, const ContactGeometry& geomet
   face.source = 0;
   const std::vector<Patch>& patches = known.scene.model().parts()[0].patches();
   for (int p = 0; p < int(patches.size()); ++p) {
-    const ContactJet j = geometry.jet({0, SourceKind::face, p, 0.5, 0.5});
-    if (!belongs(known.scene.frame().to_model(j.x))) continue;
-    const dvec3 outward = j.x - known.scene.frame().to_frame(inside);
+    const dvec3 middle = geometry.point({0, SourceKind::face, p, 0.5, 0.5});
+    if (!belongs(known.scene.frame().to_model(middle))) continue;
     PatchRegion own = region(p, whole_outline());
-    own.sign = glm::dot(glm::cross(j.dx[0], j.dx[1]), outward) > 0 ? 1 : -1;
+    own.sign = outward_sign(geometry, p, known.scene.frame().to_frame(inside));
     for (TrimStretch& stretch : own.loops[0]) {
       const Border& border = patches[std::size_t(p)].borders[std::size_t(stretch.side)];
       if (border.piece >= 0) stretch.curve = curve_of(border.piece);

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "taut/bounds/scene.h"
+#include "taut/hull/contact_geometry.h"
 #include "taut/hull/hull_boundary.h"
 
 namespace taut_test {
@@ -10,6 +13,16 @@ struct KnownBoundary {
   taut::Scene scene;
   taut::HullBoundary boundary;
 };
+
+/// A stretch of a patch's border.
+taut::TrimStretch on_border(taut::Side side, double from, double to);
+
+/// Of a whole patch: its four sides, counter-clockwise in (u, v).
+std::vector<taut::TrimStretch> whole_outline();
+
+/// The sign that turns Su x Sv of a patch of the only instance outward, for a point inside, in the
+/// scene's frame.
+int outward_sign(const taut::ContactGeometry& geometry, int patch, const taut::dvec3& inside);
 
 /// Four free points about (5, 6, 7) and `shift`: 4 facets, 6 rulings.
 KnownBoundary tetrahedron_boundary(const taut::dvec3& shift = taut::dvec3(0.0));

@@ -54,31 +54,16 @@ struct Stage {
   }
   /// 1 if the outward normal is along Su x Sv, for a point inside.
   int sign(int patch, const dvec3& inside) const {
-    const ContactJet j = geometry.jet(on_patch(patch, 0.5, 0.5));
-    const dvec3 outward = j.x - scene.frame().to_frame(inside);
-    return glm::dot(glm::cross(j.dx[0], j.dx[1]), outward) > 0 ? 1 : -1;
+    return outward_sign(geometry, patch, scene.frame().to_frame(inside));
   }
 };
-
-/// Counter-clockwise around [0, 1]^2.
-std::vector<TrimStretch> whole_patch() {
-  const auto border = [](Side side, double from, double to) {
-    TrimStretch s;
-    s.side = side;
-    s.from = from;
-    s.to = to;
-    return s;
-  };
-  return {border(Side::v0, 0, 1), border(Side::u1, 0, 1), border(Side::v1, 1, 0),
-          border(Side::u0, 1, 0)};
-}
 
 /// All patches, whole.
 HullFace whole_surface(const Stage& stage, const dvec3& inside) {
   HullFace face;
   face.kind = FaceKind::patch;
   for (int k = 0; k < int(stage.part().patches().size()); ++k) {
-    face.regions.push_back({0, k, stage.sign(k, inside), {whole_patch()}});
+    face.regions.push_back({0, k, stage.sign(k, inside), {whole_outline()}});
   }
   return face;
 }
@@ -296,7 +281,7 @@ struct TwoSpheres {
                              k % 2 == 0 ? 1 : -1);
           const double side = glm::dot(glm::normalize(middle), axis) - c;
           if ((side > 0) != (which == 1)) continue;
-          region.loops.push_back(whole_patch());
+          region.loops.push_back(whole_outline());
         }
         while (!traces.empty()) {
           std::vector<TrimStretch> loop;
@@ -421,15 +406,8 @@ struct DentedEllipsoid {
     result.arcs.push_back(arc);
     HullFace face;
     face.kind = FaceKind::patch;
-    const auto border = [](Side side, double from, double to) {
-      TrimStretch s;
-      s.side = side;
-      s.from = from;
-      s.to = to;
-      return s;
-    };
     for (int k = 0; k < 8; ++k) {
-      PatchRegion region{0, k, stage.sign(k, dvec3(0.0)), {whole_patch()}};
+      PatchRegion region{0, k, stage.sign(k, dvec3(0.0)), {whole_outline()}};
       if (k < 4) {
         const bool second = k >= 2;
         const bool lower = k % 2 == 1;
@@ -442,17 +420,17 @@ struct DentedEllipsoid {
         const double v = lower ? 1 - middle_v : middle_v;
         auto& loop = region.loops[0];
         if (k == 0) {
-          loop = {border(Side::v0, 0, 1), border(Side::u1, 0, v), along, border(Side::v1, u, 0),
-                  border(Side::u0, 1, 0)};
+          loop = {on_border(Side::v0, 0, 1), on_border(Side::u1, 0, v), along,
+                  on_border(Side::v1, u, 0), on_border(Side::u0, 1, 0)};
         } else if (k == 1) {
-          loop = {border(Side::v0, 0, u), along, border(Side::u1, v, 1), border(Side::v1, 1, 0),
-                  border(Side::u0, 1, 0)};
+          loop = {on_border(Side::v0, 0, u), along, on_border(Side::u1, v, 1),
+                  on_border(Side::v1, 1, 0), on_border(Side::u0, 1, 0)};
         } else if (k == 2) {
-          loop = {border(Side::v0, 0, 1), border(Side::u1, 0, 1), border(Side::v1, 1, u), along,
-                  border(Side::u0, v, 0)};
+          loop = {on_border(Side::v0, 0, 1), on_border(Side::u1, 0, 1), on_border(Side::v1, 1, u),
+                  along, on_border(Side::u0, v, 0)};
         } else {
-          loop = {border(Side::v0, u, 1), border(Side::u1, 0, 1), border(Side::v1, 1, 0),
-                  border(Side::u0, 1, v), along};
+          loop = {on_border(Side::v0, u, 1), on_border(Side::u1, 0, 1), on_border(Side::v1, 1, 0),
+                  on_border(Side::u0, 1, v), along};
         }
       }
       face.regions.push_back(region);

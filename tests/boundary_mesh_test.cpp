@@ -19,24 +19,6 @@ using namespace taut_test;  // NOLINT: models and checks
 
 constexpr double pi = std::numbers::pi;
 
-/// Of a whole patch: its four sides, counter-clockwise.
-std::vector<TrimStretch> whole_outline() {
-  const auto side = [](Side s, double from, double to) {
-    TrimStretch stretch;
-    stretch.side = s;
-    stretch.from = from;
-    stretch.to = to;
-    return stretch;
-  };
-  return {side(Side::v0, 0, 1), side(Side::u1, 0, 1), side(Side::v1, 1, 0), side(Side::u0, 1, 0)};
-}
-
-/// The sign that turns Su x Sv of a patch about a centre outward.
-int outward_sign(const ContactGeometry& geometry, int patch, const dvec3& center) {
-  const ContactJet j = geometry.jet({0, SourceKind::face, patch, 0.5, 0.5});
-  return glm::dot(glm::cross(j.dx[0], j.dx[1]), j.x - center) > 0 ? 1 : -1;
-}
-
 /// A closed convex surface, of these patches, which is the hull.
 std::shared_ptr<HullBoundary> whole_surface(const ContactGeometry& geometry, const dvec3& center,
                                             int patches) {

@@ -7,27 +7,15 @@
 #include <vector>
 
 #include "models.h"
+#include "traced_scene.h"
 
 namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-struct Tracked {
-  Scene scene;
-  ContactGeometry geometry;
-  SupportQuery query;
-  SeparatingGraph graph;
-  std::vector<Unresolved> unresolved;
-  std::vector<TrimRegion> regions;
-
-  explicit Tracked(const Shape& shape) : scene(make_scene(shape)), geometry(scene), query(scene) {
-    const GaussMap map(scene, {.threads = 1, .progress = {}});
-    const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
-    graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
-    unresolved = graph.unresolved;
-    regions = trim_regions(geometry, query, graph, culling.cells, unresolved);
-  }
+struct Tracked : TracedScene {
+  using TracedScene::TracedScene;
 
   /// Tracks of arcs name a contact on the edge that passes the stretch the way they say.
   void expect_names_contacts(const CreaseTracks::Stretch& s) const {

@@ -199,20 +199,24 @@ TEST(Cull, KeepsTheContactsOfAllShapes) {
   }
 }
 
+/// In random places; of degrees up to 4, about half of them rational.
+Shape random_patches(Random& random, int count, int least_degree) {
+  Shape shape;
+  for (int i = 0; i < count; ++i) {
+    const double weights = pick(random, 0, 1) == 0 ? 1 : log_uniform(random, 1.01, 10);
+    const BezierPatch patch =
+        random_patch(random, pick(random, least_degree, 4), pick(random, least_degree, 4), weights);
+    shape = shape + shifted(of_patch(patch), random_point(random));
+  }
+  return shape;
+}
+
 TEST(Cull, KeepsTheContactsOfRandomPatches) {
   Random random(8);
   long decided = 0;
   long on = 0;
   for (int k = 0; k < 60; ++k) {
-    Shape shape;
-    for (int i = 0; i < 3; ++i) {
-      const double weights = pick(random, 0, 1) == 0 ? 1 : log_uniform(random, 1.01, 10);
-      shape =
-          shape +
-          shifted(of_patch(random_patch(random, pick(random, 1, 4), pick(random, 1, 4), weights)),
-                  random_point(random));
-    }
-    const Scene scene = make_scene(shape);
+    const Scene scene = make_scene(random_patches(random, 3, 1));
     const Culling culling = culled(scene, 4);
     expect_consistent(scene, culling, std::to_string(k));
     const Verdict truth = check(scene, culling, 500);
@@ -402,15 +406,7 @@ TEST(CellRefinement, ProvesMoreAndNothingWrong) {
 TEST(CellRefinement, OfRandomPatches) {
   Random random(9);
   for (int k = 0; k < 30; ++k) {
-    Shape shape;
-    for (int i = 0; i < 2; ++i) {
-      const double weights = pick(random, 0, 1) == 0 ? 1 : log_uniform(random, 1.01, 10);
-      shape =
-          shape +
-          shifted(of_patch(random_patch(random, pick(random, 2, 4), pick(random, 2, 4), weights)),
-                  random_point(random));
-    }
-    const Scene scene = make_scene(split(shape, 0.4, 0.7));
+    const Scene scene = make_scene(split(random_patches(random, 2, 2), 0.4, 0.7));
     Culling decided;
     CellRefinement refinement(scene);
     std::vector<CulledCell> cells = culled(scene, 2).cells;

@@ -122,6 +122,17 @@ inline rvec3 source_point(const Model& model, int id, double u, double v) {
   return glm::mat<3, 3, real>(instance.pose.rotation) * x + rvec3(instance.pose.translation);
 }
 
+/// Of a strictly convex polytope.
+inline void expect_strict_polytope(const MeshFacts& facts) {
+  EXPECT_TRUE(facts.closed_manifold);
+  EXPECT_EQ(facts.euler, 2);
+  EXPECT_TRUE(facts.planar);
+  EXPECT_TRUE(facts.edges_convex);
+  EXPECT_TRUE(facts.strictly);
+  EXPECT_TRUE(facts.no_zero_area);
+  EXPECT_TRUE(facts.all_points_used);
+}
+
 /// Closed forms of a hull; negative where unknown.
 struct Known {
   double volume = -1;
@@ -139,13 +150,7 @@ inline void expect_certified(const taut::Scene& scene, const taut::Hull& hull, d
   EXPECT_GT(hull.statistics.support_queries, 0);
   const taut::PolygonMesh mesh = taut::polygons(hull.mesh);
   const MeshFacts facts = mesh_facts(mesh);
-  EXPECT_TRUE(facts.closed_manifold);
-  EXPECT_EQ(facts.euler, 2);
-  EXPECT_TRUE(facts.planar);
-  EXPECT_TRUE(facts.edges_convex);
-  EXPECT_TRUE(facts.strictly);
-  EXPECT_TRUE(facts.no_zero_area);
-  EXPECT_TRUE(facts.all_points_used);
+  expect_strict_polytope(facts);
   if (!facts.is_convex_polytope()) return;
 
   double size = 0;

@@ -12,11 +12,14 @@
 #include <numbers>
 #include <random>
 
+#include "error_checks.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
+
+using taut_test::expect_invalid;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -512,16 +515,6 @@ void expect_seams(const Part& part, std::size_t pieces, int vertices) {
   for (const Edge& e : part.edges()) edge_pieces += to_size(e.piece_count);
   EXPECT_EQ(part.pieces().size() - edge_pieces, pieces);
   EXPECT_EQ(part.seam_vertex_count(), vertices);
-}
-
-template <class F>
-void expect_invalid(const F& f, const std::string& part_of_message) {
-  try {
-    f();
-    ADD_FAILURE() << "no error: " << part_of_message;
-  } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find(part_of_message), std::string::npos) << error.what();
-  }
 }
 
 // ---- How sides meet
@@ -1058,16 +1051,8 @@ std::vector<BezierPatch> read_bpt(std::istream& in) {
 }
 
 dvec3 side_normal(const BezierPatch& patch, Side side, double t) {
-  switch (side) {
-    case Side::u0:
-      return unit_normal(patch, 0, t);
-    case Side::u1:
-      return unit_normal(patch, 1, t);
-    case Side::v0:
-      return unit_normal(patch, t, 0);
-    default:
-      return unit_normal(patch, t, 1);
-  }
+  const dvec2 at = on_side(side, t);
+  return unit_normal(patch, at.x, at.y);
 }
 
 /// Largest angle between the tangent planes along all joins of two sides.

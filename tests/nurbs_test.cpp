@@ -7,11 +7,14 @@
 #include <numbers>
 #include <random>
 
+#include "error_checks.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
+
+using taut_test::expect_invalid;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -199,16 +202,6 @@ NurbsCurve circle() {
     curve.points.push_back(homogeneous(dvec3(corners[i], 0), i % 2 == 0 ? 1 : w));
   }
   return curve;
-}
-
-template <class F>
-void expect_invalid(const F& f, const std::string& part_of_message) {
-  try {
-    f();
-    ADD_FAILURE() << "no error: " << part_of_message;
-  } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find(part_of_message), std::string::npos) << error.what();
-  }
 }
 
 TEST(Nurbs, ClampedCurve) {

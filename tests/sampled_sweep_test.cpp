@@ -48,14 +48,7 @@ TEST(SampledSweep, CertifiedDistancesOfTheTeapotHold) {
     EXPECT_GT(mesh.points.size(), vertices);  // or one mesh serves all
     vertices = mesh.points.size();
 
-    const MeshFacts facts = mesh_facts(mesh);
-    EXPECT_TRUE(facts.closed_manifold);
-    EXPECT_EQ(facts.euler, 2);
-    EXPECT_TRUE(facts.planar);
-    EXPECT_TRUE(facts.edges_convex);
-    EXPECT_TRUE(facts.strictly);
-    EXPECT_TRUE(facts.no_zero_area);
-    EXPECT_TRUE(facts.all_points_used);
+    expect_strict_polytope(mesh_facts(mesh));
 
     MeshSupport support(mesh, center);
     real most = 0;

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
+
+#include "error_checks.h"
 
 namespace taut_test {
 
@@ -35,6 +38,16 @@ class TemporaryFolder : public testing::Test {
     return path(name);
   }
 
+  /// What behind a file's path the message of the `Error` says that the call throws.
+  template <class Error, class Call>
+  std::string message_behind(const std::string& name, const Call& call) const {
+    const std::string what = message_of<Error>(call);
+    const std::string file = path(name).string();
+    EXPECT_TRUE(what.starts_with(file)) << what;
+    EXPECT_EQ(what.find('\n'), what.npos) << what;
+    return what.substr(std::min(file.size(), what.size()));
+  }
+
   std::size_t file_count() const {
     std::size_t count = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_)) ++count;
@@ -47,21 +60,6 @@ class TemporaryFolder : public testing::Test {
 inline std::string content(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-/// The message of the `Error` that the call throws; a failure if it throws none or another.
-template <class Error, class Call>
-std::string message_of(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  } catch (const std::exception& error) {
-    ADD_FAILURE() << "another error: " << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return "";
 }
 
 }  // namespace taut_test

@@ -7,29 +7,15 @@
 
 #include "models.h"
 #include "taut/hull/contact_exits.h"
+#include "traced_scene.h"
 
 namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-/// A scene with its separating curves and the regions that they trim.
-struct Trimmed {
-  Scene scene;
-  ContactGeometry geometry;
-  SupportQuery query;
-  SeparatingGraph graph;
-  std::vector<Unresolved> unresolved;
-  std::vector<TrimRegion> regions;
-
-  Trimmed(const Trimmed&) = delete;
-  explicit Trimmed(const Shape& shape) : scene(make_scene(shape)), geometry(scene), query(scene) {
-    const GaussMap map(scene, {.threads = 1, .progress = {}});
-    const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
-    graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
-    unresolved = graph.unresolved;
-    regions = trim_regions(geometry, query, graph, culling.cells, unresolved);
-  }
+struct Trimmed : TracedScene {
+  using TracedScene::TracedScene;
 
   Contact at(const TrimRegion& r, const dvec2& uv) const {
     return {r.instance, SourceKind::face, r.patch, uv.x, uv.y};

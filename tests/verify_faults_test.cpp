@@ -97,6 +97,18 @@ HullDocument::Face& scroll_of(HullDocument& hull) {
 HullDocument::Face& patch_of(HullDocument& hull) {
   return hull.faces[first_of(hull, FaceKind::patch)];
 }
+
+/// Makes the first patch's regions the whole of their Bezier patches.
+void fill_regions(HullDocument& hull) {
+  for (auto& region : patch_of(hull).regions) {
+    const auto& domain = hull.sources[0].patches[std::size_t(region.patch)].domain;
+    const Interval& u = domain[0];
+    const Interval& v = domain[1];
+    region.loops = {
+        {{u.lower, v.lower}, {u.upper, v.lower}, {u.upper, v.upper}, {u.lower, v.upper}}};
+  }
+}
+
 HullDocument::Face& facet_of(HullDocument& hull) {
   return hull.faces[first_of(hull, FaceKind::facet)];
 }
@@ -313,47 +325,32 @@ TEST(VerifyFaults, InATetrahedronAreFound) {
 
 /// Faults of scrolls with ends, of patches with free ends and of edges.
 TEST(VerifyFaults, InCurvedHullsAreFound) {
-  expect_found(
-      sound_hull(dented_ellipsoid()),
-      {{"a dent's patch is filled", "regions",
-        [](auto& h) {
-          for (auto& region : patch_of(h).regions) {
-            const auto& domain = h.sources[0].patches[std::size_t(region.patch)].domain;
-            const Interval& u = domain[0];
-            const Interval& v = domain[1];
-            region.loops = {
-                {{u.lower, v.lower}, {u.upper, v.lower}, {u.upper, v.upper}, {u.lower, v.upper}}};
-          }
-        }},
-       {"the same, without a loop, scroll and curves", "patch_outside",
-        [](auto& h) {
-          remove_face(h, int(first_of(h, FaceKind::scroll)));
-          h.curves.clear();
-          patch_of(h).loops.clear();
-          for (auto& region : patch_of(h).regions) {
-            const auto& domain = h.sources[0].patches[std::size_t(region.patch)].domain;
-            const Interval& u = domain[0];
-            const Interval& v = domain[1];
-            region.loops = {
-                {{u.lower, v.lower}, {u.upper, v.lower}, {u.upper, v.upper}, {u.lower, v.upper}}};
-          }
-        }},
-       {"a patch is split", "euler",
-        [](auto& h) {
-          HullDocument::Face half = patch_of(h);
-          half.loops.clear();
-          half.regions.resize(3);
-          patch_of(h).regions.erase(patch_of(h).regions.begin(), patch_of(h).regions.begin() + 3);
-          h.faces.push_back(half);
-        }},
-       {"a patch is split along a join", "kinds", [](auto& h) {
-          h.faces.push_back(patch_of(h));
-          const int first = int(first_of(h, FaceKind::patch));
-          h.curves.push_back({HullCurveKind::join,
-                              {first, int(h.faces.size()) - 1},
-                              -1,
-                              {h.curves[0].points[0], h.curves[0].points[1]}});
-        }}});
+  expect_found(sound_hull(dented_ellipsoid()),
+               {{"a dent's patch is filled", "regions", [](auto& h) { fill_regions(h); }},
+                {"the same, without a loop, scroll and curves", "patch_outside",
+                 [](auto& h) {
+                   remove_face(h, int(first_of(h, FaceKind::scroll)));
+                   h.curves.clear();
+                   patch_of(h).loops.clear();
+                   fill_regions(h);
+                 }},
+                {"a patch is split", "euler",
+                 [](auto& h) {
+                   HullDocument::Face half = patch_of(h);
+                   half.loops.clear();
+                   half.regions.resize(3);
+                   patch_of(h).regions.erase(patch_of(h).regions.begin(),
+                                             patch_of(h).regions.begin() + 3);
+                   h.faces.push_back(half);
+                 }},
+                {"a patch is split along a join", "kinds", [](auto& h) {
+                   h.faces.push_back(patch_of(h));
+                   const int first = int(first_of(h, FaceKind::patch));
+                   h.curves.push_back({HullCurveKind::join,
+                                       {first, int(h.faces.size()) - 1},
+                                       -1,
+                                       {h.curves[0].points[0], h.curves[0].points[1]}});
+                 }}});
   expect_found(sound_hull(oloid()),
                {{"an edge is called a ruling", "kinds",
                  [](auto& h) {

@@ -1,6 +1,5 @@
 #include "taut/bounds/gauss_map.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 

@@ -1,7 +1,6 @@
 #include "taut/bounds/normal_net.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "taut/bounds/scaled_net.h"
 #include "taut/core/tolerances.h"

@@ -1,7 +1,6 @@
 #include "taut/bounds/patch_nets.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "taut/bounds/second_form.h"
 #include "taut/bounds/vector_net.h"

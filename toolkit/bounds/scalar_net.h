@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "taut/core/tolerances.h"
+#include "taut/surface/bernstein.h"
 
 namespace taut {
 
@@ -164,22 +165,11 @@ class ScalarNet {
   /// differences of the bases of degrees n - 1 and n - 2, which the recurrence passes through.
   template <int N>
   static void basis(int n, double t, double (&b)[3][N]) {
-    const double s = 1 - t;
-    if constexpr (N == 4) {  // cubics are the common case; the recurrence costs twice as much
-      b[0][0] = s * s * s;
-      b[0][1] = 3 * s * s * t;
-      b[0][2] = 3 * s * t * t;
-      b[0][3] = t * t * t;
-      b[1][0] = -3 * s * s;
-      b[1][1] = 3 * s * (s - 2 * t);
-      b[1][2] = 3 * t * (2 * s - t);
-      b[1][3] = 3 * t * t;
-      b[2][0] = 6 * s;
-      b[2][1] = 6 * t - 12 * s;
-      b[2][2] = 6 * s - 12 * t;
-      b[2][3] = 6 * t;
+    if constexpr (N == 4) {
+      cubic_bernstein(t, b);
       return;
     }
+    const double s = 1 - t;
     double w[N + 2];  // w[i] holds B_i^r
     w[0] = 1;
     for (int r = 1; r <= n - 2; ++r) raise(w, r, s, t);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,14 @@ struct BoxTree {
 /// coordinate; weights of polynomial nets are one.
 struct SceneNet {
   std::vector<double> x, y, z, w;
+
+  std::size_t value_count(bool rational) const { return x.size() * (rational ? 2 : 1); }
+  /// The control points' values in a direction and, of a rational net, behind them their weights.
+  void values(const dvec3& n, bool rational, double* b) const {
+    const std::size_t size = x.size();
+    for (std::size_t k = 0; k < size; ++k) b[k] = x[k] * n.x + y[k] * n.y + z[k] * n.z;
+    if (rational) std::copy(w.begin(), w.end(), b + size);
+  }
 };
 
 /// What queries run over, points apart: a patch of a face or a piece of a free curve (degrees

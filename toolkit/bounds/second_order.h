@@ -45,6 +45,21 @@ inline SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature
   return {jet.g + along_u + along_v, along_u, along_v};
 }
 
+/// A cell is split where its curvature exceeds the other direction's by more than this.
+inline constexpr double compactness = 16;
+
+/// Whether a cell of that size on which the bound fails is split along u: where the bound loses
+/// most, but cells are kept compact, in the measure of their curvature, since bounds of second
+/// derivatives loosen with both sizes.
+inline bool splits_along_u(const NetCurvature& c, const SecondOrderBound& b, double size_u,
+                           double size_v) {
+  const double uu = std::max(std::abs(c.uu_min), std::abs(c.uu_max)) + c.uv_abs;
+  const double vv = std::max(std::abs(c.vv_min), std::abs(c.vv_max)) + c.uv_abs;
+  if (uu > compactness * vv || vv > compactness * uu) return uu > vv;
+  if (b.along_u != b.along_v) return b.along_u > b.along_v;
+  return size_u >= size_v;
+}
+
 /// Newton's step for the maximum of g over the unit square, with coordinates that press against a
 /// side kept there. Where g is not concave in both free directions, they are stepped along one
 /// after the other, to an end where g is convex. Returns the gain that the second-order model

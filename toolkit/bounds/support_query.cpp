@@ -1,17 +1,16 @@
 #include "taut/bounds/support_query.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "taut/bounds/scene_content.h"
+#include "taut/bounds/search_stack.h"
 #include "taut/bounds/second_order.h"
+#include "taut/bounds/support_polish.h"
 #include "taut/core/error.h"
-#include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
@@ -26,29 +25,9 @@ constexpr int cell_limit = 400'000;
 /// limit, what it has left is as low as can be.
 constexpr int patience = 2'000;
 
-/// A cell is split where its curvature exceeds the other direction's by more than this.
-constexpr double compactness = 16;
-
 /// A bound, in the scene's frame, that even the vanishing of all slopes leaves so high is not worth
 /// the evaluation that would complete it.
 constexpr double hopeless_bound = 0.01;
-
-/// Newton steps within one cell; convergence is quadratic, more would mean a bad start.
-constexpr int newton_limit = 12;
-
-/// Parameter step after which a further one is below rounding: Newton's method squares the error.
-constexpr double newton_step_end = 1e-9;
-
-/// A value that is the same, up to rounding, at this share of a parameter's range from an end and
-/// at the end itself is constant between.
-constexpr double flat_length = 1e-3;
-
-/// A second derivative whose determinant is this share of its diagonal's product has no direction
-/// in which the value stays constant.
-constexpr double curved = 1e-6;
-
-/// A rise of the best value, in the scene's frame, that is more than rounding.
-constexpr double gain_worth_taking = 16 * rounding_unit;
 
 }  // namespace
 
@@ -125,14 +104,7 @@ class SupportQuery::Search {
 
   void push(double bound, Kind kind, int instance, int index) {
     if (!(bound > threshold())) return;
-    stack_.push_back({bound, kind, instance, index});
-    if (best_first_) std::push_heap(stack_.begin(), stack_.end());
-  }
-  /// Brings the highest of the entries from `first` on to the top of the stack.
-  void highest_last(std::size_t first) {
-    if (best_first_ || stack_.size() < first + 2) return;
-    const auto begin = stack_.begin() + std::ptrdiff_t(first);
-    std::iter_swap(std::max_element(begin, stack_.end()), stack_.end() - 1);
+    stack_.push({bound, kind, instance, index});
   }
   const BoxTree& tree_of(const Entry& entry) const {
     if (entry.kind == Kind::instance_node) return scene_.tree;
@@ -150,7 +122,10 @@ class SupportQuery::Search {
   NetCell net_cell(int instance, int element, const CoonsCell& place, const SceneNet& net,
                    const SceneElement& e);
   void improve(const NetCell& cell, double u, double v, double h);
+  void open_net(const Entry& entry);
 
+  template <class Net>
+  static dvec2 largest_coefficient(const Net& net, const SceneElement& e, const double* N);
   template <class Net>
   bool settle(const Net& net, const SceneElement& e, const NetCell& cell, bool& split_u);
   /// Rounding of a second-order bound, as a share of the weight. The coefficients at hand are those
@@ -168,13 +143,8 @@ class SupportQuery::Search {
   }
   template <class Net>
   void split(const Net& net, const SceneElement& e, NetCell cell, bool along_u);
-  template <class Net>
-  void polish(const Net& net, const SceneElement& e, const NetCell& cell);
-  template <class Net>
-  void seek_extreme_point(const Net& net, const SceneElement& e, const NetCell& cell);
-  void seek_end_of_ruling();
-  void open_net(const Entry& entry);
-  void polish_from(const Contact& contact);
+  void polish(const Contact& contact);
+  void polish_from(const Contact& hint);
   void finish();
 
   const Scene::Content& scene_;
@@ -187,16 +157,16 @@ class SupportQuery::Search {
   double best_h_ = -infinity;
   Contact best_;
   int best_element_ = -1;
-  bool best_first_ = false;
   double proof_rounding_ = 0;  ///< of the second-order bounds that the answer rests on
   bool converged_ = false;     ///< Newton's method has ended at the best contact
   bool curved_ = false;        ///< the value is strictly concave there
 
-  std::vector<Entry> stack_;
+  SearchStack<Entry> stack_;
   std::vector<NetCell> net_cells_;
   std::vector<CoonsEntry> coons_cells_;
   std::vector<double> nets_;
   std::vector<double> g_;
+  SupportPolish polish_;
 };
 
 void SupportQuery::Search::open_node(const Entry& entry) {
@@ -228,7 +198,7 @@ void SupportQuery::Search::open_node(const Entry& entry) {
       }
     }
   }
-  highest_last(size);
+  stack_.highest_last(size);
 }
 
 void SupportQuery::Search::open_points(const BoxTree& tree, const BoxTree::Node& leaf,
@@ -298,14 +268,8 @@ SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int e
                                                              const SceneNet& net,
                                                              const SceneElement& e) {
   const std::size_t slot = nets_.size();
-  const std::size_t size = net.x.size();
-  nets_.resize(slot + size * (e.rational ? 2 : 1));
-  const dvec3 n = local(instance).n;
-  double* b = nets_.data() + slot;
-  for (std::size_t k = 0; k < size; ++k) {
-    b[k] = net.x[k] * n.x + net.y[k] * n.y + net.z[k] * n.z;
-  }
-  if (e.rational) std::copy(net.w.begin(), net.w.end(), b + size);
+  nets_.resize(slot + net.value_count(e.rational));
+  net.values(local(instance).n, e.rational, nets_.data() + slot);
   const Interval u = place.u();
   const Interval v = place.v();
   return {instance, element, u.lower, v.lower, u.upper - u.lower, v.upper - v.lower, slot};
@@ -341,6 +305,20 @@ void SupportQuery::Search::improve(const NetCell& cell, double u, double v, doub
   converged_ = false;
 }
 
+/// The parameters at which it stands.
+template <class Net>
+dvec2 SupportQuery::Search::largest_coefficient(const Net& net, const SceneElement& e,
+                                                const double* N) {
+  const double* W = N + net.size();
+  int top = 0;
+  for (int k = 1; k < net.size(); ++k) {
+    if (e.rational ? N[k] * W[top] > N[top] * W[k] : N[k] > N[top]) top = k;
+  }
+  const int row = top / (net.q() + 1);
+  const int column = top % (net.q() + 1);
+  return {net.p() > 0 ? double(row) / net.p() : 0, net.q() > 0 ? double(column) / net.q() : 0};
+}
+
 /// Seeks the cell's maximum by Newton's method, raising the best value on the way. True if the
 /// second-order bound then proves that the cell holds nothing higher.
 template <class Net>
@@ -357,33 +335,14 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
   const double best_v = (best_.v - cell.v) / cell.size_v;
   const bool inside = same && best_u >= 0 && best_u <= 1 && best_v >= 0 && best_v <= 1;
   const auto choose_split = [&](const NetCurvature& c, const SecondOrderBound& b) {
-    // Where the bound loses most, but keep cells compact, in the measure of their curvature: bounds
-    // of second derivatives loosen with both sizes.
-    const double uu = std::max(std::abs(c.uu_min), std::abs(c.uu_max)) + c.uv_abs;
-    const double vv = std::max(std::abs(c.vv_min), std::abs(c.vv_max)) + c.uv_abs;
-    if (uu > compactness * vv || vv > compactness * uu) {
-      split_u = uu > vv;
-    } else if (b.along_u != b.along_v) {
-      split_u = b.along_u > b.along_v;
-    } else {
-      split_u = cell.size_u >= cell.size_v;
-    }
+    split_u = splits_along_u(c, b, cell.size_u, cell.size_v);
   };
 
   // Start at the best contact if it is on this element, else at the largest coefficient.
-  double u = std::clamp(best_u, 0.0, 1.0);
-  double v = std::clamp(best_v, 0.0, 1.0);
-  if (!same) {
-    int top = 0;
-    for (int k = 1; k < size; ++k) {
-      if (e.rational ? N[k] * W[top] > N[top] * W[k] : N[k] > N[top]) top = k;
-    }
-    const int row = top / (net.q() + 1);
-    const int column = top % (net.q() + 1);
-    u = net.p() > 0 ? double(row) / net.p() : 0;
-    v = net.q() > 0 ? double(column) / net.q() : 0;
-  }
-
+  const dvec2 start = same ? dvec2(std::clamp(best_u, 0.0, 1.0), std::clamp(best_v, 0.0, 1.0))
+                           : largest_coefficient(net, e, N);
+  double u = start.x;
+  double v = start.y;
   double h = best_h_ - offset;
   if (best_h_ == -infinity) {
     h = e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
@@ -409,7 +368,7 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
     choose_split(curvature, b);
     if (b.bound > hopeless_bound) return false;
   }
-  for (int step = 0; step < newton_limit; ++step) {
+  for (int step = 0; step < newton_step_limit; ++step) {
     NetJet jet = net.jet(g, u, v);
     if (!e.rational) jet.g -= h;
     if (jet.g > gain_worth_taking * weight.upper) {
@@ -468,7 +427,7 @@ void SupportQuery::Search::split(const Net& net, const SceneElement& e, NetCell 
   const std::size_t entries = stack_.size();
   push_net(cell, e);
   push_net(upper, e);
-  highest_last(entries);
+  stack_.highest_last(entries);
 }
 
 void SupportQuery::Search::open_net(const Entry& entry) {
@@ -480,114 +439,43 @@ void SupportQuery::Search::open_net(const Entry& entry) {
   });
 }
 
-/// Newton's method on the whole element, whose net has lost nothing to subdivision.
-template <class Net>
-void SupportQuery::Search::polish(const Net& net, const SceneElement& e, const NetCell& cell) {
-  const std::size_t size = std::size_t(net.size());
-  const double* N = nets_.data() + cell.slot;
-  const double* W = N + size;
-  const auto value = [&](double u, double v) {
-    return e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
-  };
-  double u = best_.u;
-  double v = best_.v;
-  double h = e.rational ? value(u, v) : -infinity;
-  Contact before = best_;
-  double h_before = -infinity;
-  converged_ = false;
-  for (int step = 0; step < newton_limit && !converged_; ++step) {
-    const double* g = N;
-    if (e.rational) {
-      g_.resize(size);
-      for (std::size_t k = 0; k < size; ++k) g_[k] = N[k] - h * W[k];
-      g = g_.data();
-    }
-    const NetJet jet = net.jet(g, u, v);
-    if (!e.rational) h = jet.g;
-    if (h < h_before - gain_worth_taking) break;  // the step overshot
-    h_before = h;
-    before.u = u;
-    before.v = v;
-    ++newton_iterations;
-    newton_step(jet, u, v);
-    converged_ = std::abs(u - before.u) + std::abs(v - before.v) < newton_step_end;
-    curved_ = jet.guu < 0 && jet.guu * jet.gvv - jet.guv * jet.guv > curved * jet.guu * jet.gvv;
-    if (e.rational) h = value(u, v);
-  }
-  // A converged step changes h in second order only; else the last point that was evaluated counts.
-  const bool converged = converged_;
-  if (!converged) {
-    u = before.u;
-    v = before.v;
-  }
-  improve(cell, u, v, h_before + local(cell.instance).offset);
-  converged_ = converged;
-}
-
-void SupportQuery::Search::polish_from(const Contact& contact) {
-  if (contact.kind == SourceKind::vertex) {
-    const LocalDirection& d = local(contact.instance);
-    take_point(contact.instance, contact.element,
-               glm::dot(scene_.local_point(contact), d.n) + d.offset);
-    return;
-  }
-  best_ = contact;
+/// Takes the maximum next to a contact on an element for the best one.
+void SupportQuery::Search::polish(const Contact& contact) {
   const int index = scene_.element(contact);
   const SceneElement& e = element(contact.instance, index);
-  const NetCell cell = net_cell(contact.instance, index, e.bvh.root(), e.net, e);
-  with_scalar_net(e.shape, [&](const auto& net) { polish(net, e, cell); });
+  const LocalDirection& d = local(contact.instance);
+  polish_.take(e, d.n);
+  const PolishedSupport p = polish_.polish({contact.u, contact.v});
+  newton_iterations += p.steps;
+  best_h_ = p.h + d.offset;
+  best_ = {contact.instance, e.kind, e.index, p.uv.x, p.uv.y};
+  best_element_ = index;
+  converged_ = p.converged;
+  curved_ = p.curved;
 }
 
-/// Where the value does not change along a parameter line (the ruling of a cylinder, a plane that
-/// faces the direction) or any other ruling, goes to the line's end: points between are not
-/// extreme, and tell nothing.
-template <class Net>
-void SupportQuery::Search::seek_extreme_point(const Net& net, const SceneElement& e,
-                                              const NetCell& cell) {
-  const double* N = nets_.data() + cell.slot;
-  const double* W = N + net.size();
-  const double h = best_h_ - local(cell.instance).offset;
-  const auto is_flat = [&](double u, double v) {
-    const double value = e.rational ? net.value(N, u, v) / net.value(W, u, v) : net.value(N, u, v);
-    return value >= h - gain_worth_taking;
-  };
-  const auto is_far = [](double x) { return x > flat_length && x < 1 - flat_length; };
-  for (const double end : {0.0, 1.0}) {
-    if (net.p() > 0 && is_far(best_.u) && is_flat(end, best_.v)) best_.u = end;
-    if (net.q() > 0 && is_far(best_.v) && is_flat(best_.u, end)) best_.v = end;
-  }
-  if (best_.kind == SourceKind::face) seek_end_of_ruling();
-}
-
-/// As far as patches go on smoothly.
-void SupportQuery::Search::seek_end_of_ruling() {
-  const int index = scene_.instances[std::size_t(best_.instance)].part;
-  const Part& part = scene_.model.parts()[std::size_t(index)];
-  const PatchPoint at{best_.element, {best_.u, best_.v}};
-  const std::optional<dvec3> along = ruling_direction(part.patches()[std::size_t(at.patch)], at.uv);
-  if (!along) return;
-  std::array<std::vector<PatchPoint>, 2> paths;
-  for (const std::size_t k : {0u, 1u}) {
-    paths[k] = ruling_path(part, at, k == 0 ? *along : -*along);
-    if (paths[k].empty()) return;  // it is the end
-  }
-  for (const std::vector<PatchPoint>& path : paths) {
-    const PatchPoint& end = path.back();
-    const Contact there{best_.instance, best_.kind, end.patch, end.uv.x, end.uv.y};
-    if (glm::dot(scene_.frame_point(there), n_) < best_h_ - support_slack) continue;
-    best_ = there;
-    return;
+void SupportQuery::Search::polish_from(const Contact& hint) {
+  if (hint.kind == SourceKind::vertex) {
+    const LocalDirection& d = local(hint.instance);
+    take_point(hint.instance, hint.element, glm::dot(scene_.local_point(hint), d.n) + d.offset);
+  } else {
+    polish(hint);
   }
 }
 
+/// Where the best value does not change along a line, goes to the line's end.
 void SupportQuery::Search::finish() {
-  const int index = scene_.element(best_);
-  const SceneElement& e = element(best_.instance, index);
-  const NetCell cell = net_cell(best_.instance, index, e.bvh.root(), e.net, e);
-  with_scalar_net(e.shape, [&](const auto& net) {
-    if (!converged_) polish(net, e, cell);
-    seek_extreme_point(net, e, cell);
-  });
+  const LocalDirection& d = local(best_.instance);
+  if (converged_) {
+    polish_.take(element(best_.instance, scene_.element(best_)), d.n);
+  } else {
+    polish(best_);
+  }
+  const dvec2 uv = polish_.end_of_flat({best_.u, best_.v}, best_h_ - d.offset);
+  best_.u = uv.x;
+  best_.v = uv.y;
+  if (best_.kind != SourceKind::face) return;
+  if (const auto end = end_of_ruling(scene_, best_, n_, best_h_)) best_ = *end;
 }
 
 Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
@@ -597,7 +485,6 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   best_h_ = -infinity;
   best_element_ = -1;
   converged_ = false;
-  best_first_ = false;
   proof_rounding_ = 0;
   stack_.clear();
   net_cells_.clear();
@@ -605,15 +492,10 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   nets_.clear();
   if (hint.instance >= 0 && scene_.can_support(hint)) polish_from(hint);
 
-  stack_.push_back({infinity, Kind::instance_node, -1, 0});
+  stack_.push({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
-    if (count == patience) {
-      best_first_ = true;
-      std::make_heap(stack_.begin(), stack_.end());
-    }
-    if (best_first_) std::pop_heap(stack_.begin(), stack_.end());
-    const Entry entry = stack_.back();
-    stack_.pop_back();
+    if (count == patience) stack_.turn_best_first();
+    const Entry entry = stack_.pop();
     if (!(entry.bound > threshold())) continue;
     switch (entry.kind) {
       case Kind::net_cell:
@@ -629,9 +511,8 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
         open_node(entry);
     }
   }
-  double left = -infinity;  // what the limit left open
-  for (const Entry& entry : stack_) left = std::max(left, entry.bound);
-  const double proven = std::max(best_h_ + support_slack, left);
+  // The limit may have left some open.
+  const double proven = std::max(best_h_ + support_slack, stack_.highest());
   assert(best_.instance >= 0);  // the direction is finite
   if (!converged_ || !curved_) finish();
   return {best_h_, std::max(proven, best_h_) + rounding_ + proof_rounding_, best_,

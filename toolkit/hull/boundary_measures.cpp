@@ -5,6 +5,8 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_system.h"
+#include "taut/hull/green_regions.h"
+#include "taut/hull/interior_point.h"
 #include "taut/hull/quadrature.h"
 #include "taut/hull/rulings_between.h"
 
@@ -70,31 +72,12 @@ Sample tolerances(const Sample& magnitude) {
   return result;
 }
 
-/// A region with what its integrals need.
-struct Region {
-  const PatchRegion* region = nullptr;
-  /// The parameter that inner integrals run along, 0: u, 1: v, and where they begin.
-  int inner = 0;
-  double base = 0;
-  dvec3 origin = dvec3(0.0);
-
-  Contact contact(double u, double v) const {
-    return {region->instance, SourceKind::face, region->patch, u, v};
-  }
-};
-
-/// A stretch of a region's outline along a piece of an arc.
-struct Trace {
-  int region = -1;
-  int contact = 0;
-  double direction = 1;
-};
-
-/// Integrands over a patch per du dv, times w.
-void add_patch(const ContactJet& j, const Region& region, double w, Sample& sum) {
-  const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
+/// Integrands over a patch per du dv, about the origin; the outward normal is along sign * (Su x
+/// Sv).
+void add_patch(const ContactJet& j, const dvec3& origin, int sign, Sample& sum) {
+  const dvec3 N = double(sign) * glm::cross(j.dx[0], j.dx[1]);
   const double length = glm::length(N);
-  add_element(sum, j.x - region.origin, N, length, w);
+  add_element(sum, j.x - origin, N, length, 1);
   if (length == 0) return;
   // H dA with H = (E n - 2 F m + G l) / (2 |N|^2), l = -Suu . N / |N| and so on: positive where the
   // surface is convex (do Carmo 1976, section 3-3).
@@ -102,27 +85,23 @@ void add_patch(const ContactJet& j, const Region& region, double w, Sample& sum)
   const double F = glm::dot(j.dx[0], j.dx[1]);
   const double G = glm::dot(j.dx[1], j.dx[1]);
   const double form = E * glm::dot(j.dyy, N) - 2 * F * glm::dot(j.dxy, N) + G * glm::dot(j.dxx, N);
-  sum[curvature] -= w * form / (2 * length * length);
-}
-
-dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
-/// The contact at a share of the way along a stretch of an edge.
-Contact contact_on(const EdgeStretch& side, double s) {
-  return {side.instance, SourceKind::edge, side.piece, Interval{side.from, side.to}.at(s), 0};
+  sum[curvature] -= form / (2 * length * length);
 }
 
 /// The integrals over a whole boundary, in the scene's frame.
 class Summation {
  public:
   Summation(const ContactGeometry& geometry, const HullBoundary& boundary)
-      : geometry_(geometry), system_(geometry), boundary_(boundary) {
-    origin_ = interior_point();
-    find_uses();
+      : geometry_(geometry),
+        system_(geometry),
+        boundary_(boundary),
+        origin_(interior_point(geometry, boundary)),
+        regions_(geometry, boundary) {
+    find_scrolls();
     for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
       for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) add_piece(a, p);
     }
-    for (const Region& region : regions_) {
+    for (const GreenRegion& region : regions_.all()) {
       for (const std::vector<TrimStretch>& loop : region.region->loops) {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc < 0) add_border(region, stretch);
@@ -138,147 +117,46 @@ class Summation {
   const Sums& sums() const { return sums_; }
 
  private:
-  dvec3 interior_point() const;
-  void find_uses();
-  int inner_parameter(const PatchRegion& region) const;
-  bool is_collapsed(const PatchRegion& region, Side side) const;
-  double base(const PatchRegion& region, int inner) const;
-
+  void find_scrolls();
   void add_piece(std::size_t arc, std::size_t piece);
-  bool bounds_normals(const Region& region, const TrimStretch& stretch) const;
-  void add_border(const Region& region, const TrimStretch& stretch);
+  bool bounds_normals(const GreenRegion& region, const TrimStretch& stretch) const;
+  void add_border(const GreenRegion& region, const TrimStretch& stretch);
   void add_facet(const HullFace& face);
   void add_polygon(const HullFace& face);
   void add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side);
 
   void add_scroll(const MovingRuling& m, Sample& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
-  void add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
+  void add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate, double weight,
                 Sample& sum);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
   const HullBoundary& boundary_;
-  dvec3 origin_ = dvec3(0.0);
-  std::vector<Region> regions_;
-  /// Per arc and piece.
-  std::vector<std::vector<bool>> in_scroll_;
-  std::vector<std::vector<std::vector<Trace>>> traces_;
+  dvec3 origin_;
+  GreenRegions regions_;
+  std::vector<std::vector<bool>> in_scroll_;  // per arc and piece
   Sums sums_;
 };
 
-/// The mean of points on the boundary that span the hull, so a point inside.
-dvec3 Summation::interior_point() const {
-  dvec3 sum(0.0);
-  double count = 0;
-  const auto add = [&](const dvec3& x) {
-    sum += x;
-    ++count;
-  };
-  for (const SeparatingArc& arc : boundary_.arcs) {
-    for (const ArcPiece& piece : arc.pieces) {
-      for (const Ruling& ruling : piece.rulings) {
-        for (const dvec3& x : ruling.point) add(x);
-      }
-    }
-  }
-  for (const HullFace& face : boundary_.faces) {
-    for (const dvec3& x : face.points) add(x);
-    // A disc's one contact spans nothing.
-    for (const EdgeStretch& side : face.sides) {
-      if (side.piece < 0) continue;
-      for (const double s : {0.25, 0.5, 0.75}) add(geometry_.point(contact_on(side, s)));
-    }
-    for (const PatchRegion& region : face.regions) {
-      for (const std::vector<TrimStretch>& loop : region.loops) {
-        for (const TrimStretch& stretch : loop) {
-          if (stretch.arc >= 0) continue;
-          for (const double s : {0.0, 0.25, 0.5, 0.75}) {
-            const dvec2 p = on_side(stretch.side, (1 - s) * stretch.from + s * stretch.to);
-            add(geometry_.point({region.instance, SourceKind::face, region.patch, p.x, p.y}));
-          }
-        }
-      }
-    }
-  }
-  return count > 0 ? sum / count : sum;
-}
-
-bool Summation::is_collapsed(const PatchRegion& region, Side side) const {
-  const Contact c = {region.instance, SourceKind::face, region.patch, 0, 0};
-  return geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
-}
-
-/// The parameter that runs along more collapsed sides. It is ill-defined next to them, and its rate
-/// along traces that end there, but integrals along it vanish with the distance; across it, they
-/// would multiply its noise.
-int Summation::inner_parameter(const PatchRegion& region) const {
-  const auto collapsed = [&](Side side) { return is_collapsed(region, side) ? 1 : 0; };
-  const int along_u = collapsed(Side::v0) + collapsed(Side::v1);
-  const int along_v = collapsed(Side::u0) + collapsed(Side::u1);
-  return along_v > along_u ? 1 : 0;
-}
-
-/// A place for inner integrals to begin that keeps them short along traces, or makes them vanish
-/// along a border; on a collapsed side, as there the outer parameter is ill-defined. Any is right:
-/// what differs depends on the outer parameter alone, and its integral around a loop is zero.
-double Summation::base(const PatchRegion& region, int inner) const {
-  const Side lower_side = inner == 0 ? Side::u0 : Side::v0;
-  const Side upper_side = inner == 0 ? Side::u1 : Side::v1;
-  if (is_collapsed(region, lower_side)) return 0;
-  if (is_collapsed(region, upper_side)) return 1;
-  bool lower = false, upper = false;
-  Interval range{1, 0};
-  for (const std::vector<TrimStretch>& loop : region.loops) {
-    for (const TrimStretch& stretch : loop) {
-      if (stretch.arc < 0) {
-        lower |= stretch.side == lower_side;
-        upper |= stretch.side == upper_side;
-        continue;
-      }
-      const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
-      for (const Ruling& ruling : arc.pieces[std::size_t(stretch.piece)].rulings) {
-        const double at = parameters(ruling.contact[std::size_t(stretch.contact)])[inner];
-        range.lower = std::min(range.lower, at);
-        range.upper = std::max(range.upper, at);
-      }
-    }
-  }
-  if (range.lower <= range.upper) return 0.5 * range.lower + 0.5 * range.upper;
-  return upper && !lower ? 1 : 0;
-}
-
-void Summation::find_uses() {
+void Summation::find_scrolls() {
+  in_scroll_.reserve(boundary_.arcs.size());
   for (const SeparatingArc& arc : boundary_.arcs) {
     in_scroll_.emplace_back(arc.pieces.size(), false);
-    traces_.emplace_back(arc.pieces.size());
   }
   for (const HullFace& face : boundary_.faces) {
-    if (face.kind == FaceKind::scroll) {
-      std::vector<bool>& used = in_scroll_[std::size_t(face.scroll.arc)];
-      for (int k = 0; k < face.scroll.count; ++k) {
-        used[std::size_t(face.scroll.first + k) % used.size()] = true;
-      }
-    }
-    for (const PatchRegion& region : face.regions) {
-      const int number = int(regions_.size());
-      const int inner = inner_parameter(region);
-      regions_.push_back({&region, inner, base(region, inner), origin_});
-      for (const std::vector<TrimStretch>& loop : region.loops) {
-        for (const TrimStretch& stretch : loop) {
-          if (stretch.arc < 0) continue;
-          traces_[std::size_t(stretch.arc)][std::size_t(stretch.piece)].push_back(
-              {number, stretch.contact, stretch.reversed ? -1.0 : 1.0});
-        }
-      }
+    if (face.kind != FaceKind::scroll) continue;
+    std::vector<bool>& used = in_scroll_[std::size_t(face.scroll.arc)];
+    for (int k = 0; k < face.scroll.count; ++k) {
+      used[std::size_t(face.scroll.first + k) % used.size()] = true;
     }
   }
 }
 
 /// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
 /// of f from the base to u along u, or that of -G du, G the same along v.
-void Summation::add_line(const Region& region, const dvec2& p, const dvec2& rate, double weight,
-                         Sample& sum) {
+void Summation::add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate,
+                         double weight, Sample& sum) {
   const int inner = region.inner;
   const double end = p[inner];
   const double across = inner == 0 ? rate.y : -rate.x;
@@ -286,7 +164,7 @@ void Summation::add_line(const Region& region, const dvec2& p, const dvec2& rate
   Sums line;
   const auto f = [&](double at, double, Sample& sample) {
     const Contact c = inner == 0 ? region.contact(at, p.y) : region.contact(p.x, at);
-    add_patch(geometry_.jet(c), region, 1, sample);
+    add_patch(geometry_.jet(c), origin_, region.region->sign, sample);
   };
   if (std::abs(end - region.base) < 0.25) {
     integrate<8>(f, tolerances, region.base, end, line);
@@ -352,7 +230,7 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
     return;
   }
   const bool scroll = in_scroll_[arc][piece];
-  const std::vector<Trace>& traces = traces_[arc][piece];
+  const std::vector<ArcTrace>& traces = regions_.traces(arc, piece);
   for (std::size_t k = 1; k < rulings.size(); ++k) {
     const RulingsBetween between(system_, rulings[k - 1], rulings[k]);
     if (between.empty()) continue;
@@ -366,10 +244,10 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
         const double half = crease(m.at.jet[i].x, m.at.jet[i].dx[0], m.at.n);
         sample[curvature] += (i == 0 ? -1 : 1) * half * m.dp[i].x;
       }
-      for (const Trace& trace : traces) {
+      for (const ArcTrace& trace : traces) {
         const auto i = std::size_t(trace.contact);
         const Contact& c = m.at.contact[i];
-        add_line(regions_[std::size_t(trace.region)], parameters(c), trace.direction * m.dp[i],
+        add_line(regions_.all()[std::size_t(trace.region)], {c.u, c.v}, trace.direction * m.dp[i],
                  weight, sample);
       }
     };
@@ -379,7 +257,7 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
 
 /// Whether the stretch runs along an edge, or along a seam at which another face ends: contacts
 /// there are the edge's, and so the other face's share is that of an edge.
-bool Summation::bounds_normals(const Region& region, const TrimStretch& stretch) const {
+bool Summation::bounds_normals(const GreenRegion& region, const TrimStretch& stretch) const {
   if (stretch.curve < 0) return false;
   const HullCurveKind kind = boundary_.curves[std::size_t(stretch.curve)].kind;
   if (kind != HullCurveKind::bitangent) return kind == HullCurveKind::edge;
@@ -391,7 +269,7 @@ bool Summation::bounds_normals(const Region& region, const TrimStretch& stretch)
 /// Along a stretch of a patch's border, and where that is an edge, its crease: the normals of the
 /// edge lie beyond the patch's own n, away from the patch. With the patch to the left of the
 /// direction T of travel seen from outside (positive sign), they have larger phi: its lower end.
-void Summation::add_border(const Region& region, const TrimStretch& stretch) {
+void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch) {
   const bool of_v = along_v(stretch.side);
   const bool edge = bounds_normals(region, stretch);
   const bool of_line = of_v == (region.inner == 0);

@@ -1,7 +1,6 @@
 #include "taut/hull/coarse_hull.h"
 
 #include <algorithm>
-#include <span>
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/affine_span.h"

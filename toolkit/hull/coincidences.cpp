@@ -1,7 +1,6 @@
 #include "taut/hull/coincidences.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 

@@ -1,7 +1,6 @@
 #include "taut/hull/contact_faces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/core/tolerances.h"
-#include "taut/hull/facet_contacts.h"
-
 namespace taut {
 namespace {
 

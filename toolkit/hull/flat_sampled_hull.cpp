@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "taut/core/error.h"
-#include "taut/core/tolerances.h"
 #include "taut/hull/certificate.h"
 #include "taut/hull/outline.h"
 #include "taut/hull/sampled_start.h"

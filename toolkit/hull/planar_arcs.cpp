@@ -17,8 +17,6 @@ constexpr double largest_turn = 1.5;
 /// Parts about a cusp shrink with the square of their parameters' interval.
 constexpr int deepest_cut = 40;
 
-double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
 dvec2 euclidean(const dvec3& p) { return dvec2(p) / p.z; }
 
 std::vector<dvec2> euclidean(const std::vector<dvec3>& points) {
@@ -234,7 +232,7 @@ ArcPoint PlanarArcs::support(const dvec2& n, int preferred) const {
   if (preferred >= 0) {
     const int element = element_of_arc_[std::size_t(preferred)];
     own = element_support(elements_[std::size_t(element)], n, highest);
-    highest = glm::dot(own.x, n) + support_slack;
+    highest = glm::dot(own.x, n) + planar_slack;
   }
   ArcPoint best = own;
   for (const int k : active_) {

@@ -1,11 +1,24 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "taut/core/geometry.h"
 
 namespace taut {
+
+/// Twice the area of the triangle that two vectors span, positive where b is to the left of a.
+inline double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// The unit vector at an angle.
+inline dvec2 direction_at(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+/// The unit normal of a side that leads from a to b, outward where it does so counter-clockwise.
+inline dvec2 outward(const dvec2& a, const dvec2& b) {
+  const dvec2 d = b - a;
+  return dvec2(d.y, -d.x) / glm::length(d);
+}
 
 /// Point and derivatives of a rational Bezier curve of the plane, (w x, w y, w), at t in [0, 1].
 struct PlanarJet {
@@ -53,7 +66,7 @@ class PlanarArcs {
   /// Of the arcs from one number to another, in either order. @pre of one curve
   ArcPoint support(int first, int last, const dvec2& n) const;
   /// The farthest point of all. Another one, of the curve or point to which the arc `preferred`
-  /// belongs (-1: none), where it is as far to within support_slack.
+  /// belongs (-1: none), where it is as far to within planar_slack.
   ArcPoint support(const dvec2& n, int preferred) const;
 
   /// Forgets, for the support of all, what lies inside of a convex polygon, counter-clockwise.
@@ -83,6 +96,6 @@ class PlanarArcs {
 };
 
 /// Heights that differ by less are taken for equal, with coordinates of size about one.
-inline constexpr double support_slack = 1e-13;
+inline constexpr double planar_slack = 1e-13;
 
 }  // namespace taut

@@ -3,7 +3,6 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <string>
 #include <tuple>
 
 #include "taut/core/stopwatch.h"

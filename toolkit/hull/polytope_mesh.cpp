@@ -1,7 +1,6 @@
 #include "taut/hull/polytope_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
@@ -219,27 +218,8 @@ void number_hull_faces(HullMesh& mesh, int count) {
   }
 }
 
-}  // namespace
-
-HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons polygons,
-                   std::vector<int>& point_of) {
-  std::vector<int> vertex_of(hull.points().size(), -1);
-  std::vector<dvec3> vertices;
-  for (std::vector<int>& loop : polygons.loops) {
-    for (int& p : loop) {
-      int& vertex = vertex_of[std::size_t(p)];
-      if (vertex < 0) {
-        vertex = int(point_of.size());
-        point_of.push_back(p);
-        vertices.push_back(hull.point(p) / scale);  // exactly the coordinates that were scaled
-      }
-      p = vertex;
-    }
-  }
-  return make_hull_mesh(vertices, polygons.loops);
-}
-
-HullMesh polytope_mesh(const Scene& scene, const SampledPolytope& polytope,
+/// With the origins.
+HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
                        const KnownLabels& known) {
   const PointHull::Polygons polygons = polytope.hull.merged_polygons();
   std::vector<int> point_of;  // per mesh vertex
@@ -263,13 +243,33 @@ HullMesh polytope_mesh(const Scene& scene, const SampledPolytope& polytope,
   return mesh;
 }
 
+}  // namespace
+
+HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons polygons,
+                   std::vector<int>& point_of) {
+  std::vector<int> vertex_of(hull.points().size(), -1);
+  std::vector<dvec3> vertices;
+  for (std::vector<int>& loop : polygons.loops) {
+    for (int& p : loop) {
+      int& vertex = vertex_of[std::size_t(p)];
+      if (vertex < 0) {
+        vertex = int(point_of.size());
+        point_of.push_back(p);
+        vertices.push_back(hull.point(p) / scale);  // exactly the coordinates that were scaled
+      }
+      p = vertex;
+    }
+  }
+  return make_hull_mesh(vertices, polygons.loops);
+}
+
 Hull polytope_hull(const Scene& scene, const HullOptions& options, const SampledPolytope& polytope,
                    const KnownLabels& known) {
   const Stopwatch time;
   options.progress.update("mesh", 0);
   Hull hull;
   hull.kind = HullKind::solid;
-  hull.mesh = polytope_mesh(scene, polytope, known);
+  hull.mesh = labelled_mesh(scene, polytope, known);
   hull.distance_bound = polytope.distance_bound;
   hull.statistics = polytope.statistics;
   hull.statistics.seconds_mesh = time.seconds();

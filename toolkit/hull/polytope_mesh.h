@@ -30,8 +30,8 @@ struct KnownLabels {
   int count = 0;
 };
 
-/// The mesh of a polytope whose vertices are samples of a scene, with the origin of every vertex
-/// and face.
+/// The solid hull that a polytope is whose vertices are samples of a scene, with its mesh and the
+/// origin of every vertex and face.
 ///
 /// Coplanar facets become polygons, vertices that are not extreme go. Kinds of faces that are not
 /// known are read off the samples: a face whose plane supports the model (its gap is not above
@@ -39,10 +39,6 @@ struct KnownLabels {
 /// middle as the polytope is to the hull, sought from either end, and bridges a gap otherwise; a
 /// face with no bridging edge is part of a patch, with all its edges bridging it stands for a
 /// facet, else it lies on a scroll. At a coarse tolerance that is a guess; it never moves a vertex.
-HullMesh polytope_mesh(const Scene& scene, const SampledPolytope& polytope,
-                       const KnownLabels& known = {});
-
-/// The solid hull that the polytope is, with this mesh of it.
 /// @throws HullNotConverged if the polytope has failed
 Hull polytope_hull(const Scene& scene, const HullOptions& options, const SampledPolytope& polytope,
                    const KnownLabels& known = {});

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
-#include "taut/hull/facet_contacts.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {

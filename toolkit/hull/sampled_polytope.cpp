@@ -7,7 +7,6 @@
 
 #include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
-#include "taut/core/tolerances.h"
 #include "taut/hull/certificate.h"
 #include "taut/hull/sampled_start.h"
 

@@ -5,10 +5,8 @@
 #include <set>
 #include <tuple>
 
-#include "taut/core/tolerances.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
-#include "taut/hull/facet_contacts.h"
 
 namespace taut {
 namespace {

@@ -6,7 +6,6 @@
 #include <set>
 #include <tuple>
 
-#include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
 
 namespace taut {

@@ -1,7 +1,6 @@
 #include "taut/hull/verify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <random>

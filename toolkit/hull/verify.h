@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
 #include "taut/surface/polygon_mesh.h"

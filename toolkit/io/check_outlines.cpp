@@ -1,7 +1,6 @@
 #include "taut/io/check_outlines.h"
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <set>
 

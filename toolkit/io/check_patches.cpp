@@ -1,6 +1,5 @@
 #include "taut/io/check_patches.h"
 
-#include <cmath>
 #include <random>
 
 #include "taut/bounds/support_query.h"

@@ -1,7 +1,6 @@
 #include "taut/io/region_outlines.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace taut {

@@ -5,6 +5,7 @@
 
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/bernstein.h"
 
 namespace taut {
 namespace {
@@ -19,27 +20,16 @@ struct Basis {
 /// k-th derivatives come from the k-fold differences of the basis of degree p - k, which the
 /// recurrence passes through on its way.
 void bernstein(int p, double t, int order, Basis& basis) {
-  const double s = 1 - t;
-  if (p == 3) {  // the common case; the recurrence costs several times as much
+  if (p == 3) {
     auto& b = basis.value;
-    b[0][0] = s * s * s;
-    b[0][1] = 3 * s * s * t;
-    b[0][2] = 3 * s * t * t;
-    b[0][3] = t * t * t;
-    b[1][0] = -3 * s * s;
-    b[1][1] = 3 * s * (s - 2 * t);
-    b[1][2] = 3 * t * (2 * s - t);
-    b[1][3] = 3 * t * t;
-    b[2][0] = 6 * s;
-    b[2][1] = 6 * t - 12 * s;
-    b[2][2] = 6 * s - 12 * t;
-    b[2][3] = 6 * t;
+    cubic_bernstein(t, b);
     b[3][0] = -6;
     b[3][1] = 18;
     b[3][2] = -18;
     b[3][3] = 6;
     return;
   }
+  const double s = 1 - t;
   double b[max_degree + 1];
   b[0] = 1;
   const auto store = [&](int degree) {

@@ -1,19 +1,15 @@
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <numbers>
-#include <numeric>
-#include <optional>
 #include <utility>
 
+#include "taut/core/disjoint_sets.h"
 #include "taut/core/error.h"
-#include "taut/core/tolerances.h"
-#include "taut/surface/crests.h"
 #include "taut/surface/flatness.h"
+#include "taut/surface/join_smoothness.h"
 #include "taut/surface/model.h"
 #include "taut/surface/point_grid.h"
 #include "taut/surface/repeated_patches.h"
-#include "taut/surface/rulings.h"
 #include "taut/surface/side_joins.h"
 #include "taut/surface/split_crests.h"
 
@@ -22,33 +18,6 @@ namespace {
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 int to_int(std::size_t n) { return static_cast<int>(n); }
-
-/// Disjoint sets of the numbers below a count; a set is known by its lowest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int find(int a) {
-    while (parent_[to_size(a)] != a) {
-      a = parent_[to_size(a)] = parent_[to_size(parent_[to_size(a)])];
-    }
-    return a;
-  }
-  void unite(int a, int b) {
-    a = find(a);
-    b = find(b);
-    parent_[to_size(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-/// Unit vectors differ by at most the angle whose chord is given.
-bool same_direction(const dvec3& a, const dvec3& b, double chord) {
-  return glm::length(a - b) <= chord;
-}
 
 /// Unit direction in which the curve leaves its start, or zero if it stays within the tolerance.
 /// Points nearer than that are passed over: what they tell is rounding, or nothing if they
@@ -59,20 +28,6 @@ dvec3 start_direction(const BezierCurve& curve, double tolerance) {
     if (!same_point(euclidean(p), start, tolerance)) return unit(euclidean(p) - start);
   }
   return dvec3(0.0);
-}
-
-/// Normal of the patch at parameter t of a side.
-dvec3 side_normal(const BezierPatch& patch, Side side, double t) {
-  switch (side) {
-    case Side::u0:
-      return unit_normal(patch, 0, t);
-    case Side::u1:
-      return unit_normal(patch, 1, t);
-    case Side::v0:
-      return unit_normal(patch, t, 0);
-    default:
-      return unit_normal(patch, t, 1);
-  }
 }
 
 /// The corners (as in Patch::corner_vertex) from which and to which a side runs.
@@ -88,9 +43,6 @@ std::array<int, 2> side_corners(Side side) {
       return {1, 3};
   }
 }
-
-/// Su x Sv is (direction into the patch) x (direction of the side), or minus it.
-bool normal_is_inward_cross_along(Side side) { return side == Side::u0 || side == Side::v1; }
 
 /// A piece of an edge before edges are put together; arcs' ends are numbered 2 * arc + end.
 struct Arc {
@@ -114,14 +66,15 @@ class Connector {
         vertices_(vertices),
         box_(box),
         tolerance_(join_tolerance(box)),
-        chord_(2 * std::sin(smooth_angle / 2)),
         free_piece_count_(to_int(pieces.size())),
+        sides_(side_curves(patches, tolerance_)),
+        smoothness_(patches, sides_, tolerance_, smooth_angle),
         points_(4 * patches.size() + 2 * pieces.size()) {}
 
   void run() {
-    sides_ = side_curves(patches_, tolerance_);
     joins_ = match_sides(patches_, sides_, box_, tolerance_);
-    classify_joins();
+    smooth_.reserve(joins_.size());
+    for (const Join& join : joins_) smooth_.push_back(smoothness_.is_smooth(join));
     identify_points();
     find_arcs();
     place_vertices();
@@ -135,11 +88,6 @@ class Connector {
   int seam_vertex_count() const { return seam_vertex_count_; }
 
  private:
-  void classify_joins();
-  bool is_smooth(const Use& a, const Use& b) const;
-  bool is_seam(const Join& join) const;
-  bool rulings_go_on(const Join& join) const;
-  bool is_pole(int side) const;
   dvec3 point_at(int number) const;
   void identify_points();
   void find_arcs();
@@ -169,96 +117,16 @@ class Connector {
   std::vector<dvec3>& vertices_;
   const Box box_;
   const double tolerance_;
-  const double chord_;  // of the smooth angle
   const int free_piece_count_;
-  std::vector<SideCurve> sides_;
+  const std::vector<SideCurve> sides_;
+  const JoinSmoothness smoothness_;
   std::vector<Join> joins_;
   std::vector<bool> smooth_;  // per join
-  std::vector<dvec3> corner_points_;
   DisjointSets points_;
   std::vector<int> vertex_of_;  // by point set
   int seam_vertex_count_ = 0;
   std::vector<Arc> arcs_;  // the free pieces first, in their order
 };
-
-void Connector::classify_joins() {
-  corner_points_ = corner_points(patches_);
-  smooth_.reserve(joins_.size());
-  for (const Join& join : joins_) {
-    smooth_.push_back(join.size() == 2 && is_smooth(join[0], join[1]));
-  }
-}
-
-/// Where a ruled patch ends, rulings end, unless those of another go straight on; on both sides of
-/// a crest support points are few, on it many. Across other smooth joins support points move on
-/// from one patch to the next.
-/// @pre the join is smooth
-bool Connector::is_seam(const Join& join) const {
-  const bool straight = is_straight(sides_[to_size(join[0].side)].curve);
-  const bool ruled[2] = {patch_of(join[0].side).ruled(), patch_of(join[1].side).ruled()};
-  if (ruled[0] != ruled[1]) return true;
-  if (ruled[0]) return !straight && !rulings_go_on(join);
-  return !straight && std::all_of(join.begin(), join.end(), [&](const Use& use) {
-    const Side side = all_sides[to_size(use.side % 4)];
-    const BezierPatch& patch = patch_of(use.side).bezier;
-    const Direction direction = along_v(side) ? Direction::u : Direction::v;
-    const double s = at_upper_end(side) ? 1 : 0;
-    return is_crest(patch, direction, s) &&
-           may_support(patch, direction, s, corner_points_, tolerance_);
-  });
-}
-
-/// Rulings of the one patch that end on the join are continued by those of the other.
-bool Connector::rulings_go_on(const Join& join) const {
-  const int m = 4 * sides_[to_size(join[0].side)].curve.degree();
-  for (int k = 0; k <= m; ++k) {
-    const double t = sample_parameter(k, m);
-    std::array<std::optional<dvec3>, 2> e;
-    for (const std::size_t i : {0u, 1u}) {
-      const Use& use = join[i];
-      const dvec2 uv = on_side(all_sides[to_size(use.side % 4)], use.reversed ? 1 - t : t);
-      e[i] = ruling_direction(patch_of(use.side), uv);
-    }
-    if (!e[0] || !e[1]) return false;
-    if (glm::length(glm::cross(*e[0], *e[1])) > same_ruling_angle) return false;
-  }
-  return true;
-}
-
-/// G1 along a border x(t) is det(X, X', A, B) = 0 with homogeneous X and cross derivatives A, B: a
-/// polynomial of degree at most 4 d - 2, which 4 d - 1 parameters determine.
-bool Connector::is_smooth(const Use& a, const Use& b) const {
-  const Side side_a = all_sides[to_size(a.side % 4)];
-  const Side side_b = all_sides[to_size(b.side % 4)];
-  const bool reversed = a.reversed != b.reversed;
-  // Where b continues a, the directions into the two patches are opposite; where it folds back onto
-  // a, they are the same. So the sign between the two normals is known.
-  const bool opposite =
-      (normal_is_inward_cross_along(side_a) == normal_is_inward_cross_along(side_b)) != reversed;
-  const int m =
-      4 * std::max(sides_[to_size(a.side)].curve.degree(), sides_[to_size(b.side)].curve.degree()) -
-      2;
-  for (int k = 0; k <= m; ++k) {
-    const double t = sample_parameter(k, m);
-    const dvec3 na = side_normal(patch_of(a.side).bezier, side_a, t);
-    const dvec3 nb = side_normal(patch_of(b.side).bezier, side_b, reversed ? 1 - t : t);
-    if (na == dvec3(0.0) || !same_direction(na, opposite ? -nb : nb, chord_)) return false;
-  }
-  return true;
-}
-
-/// The normals' limits agree along a collapsed side, as at the pole of a sphere.
-bool Connector::is_pole(int side) const {
-  const BezierPatch& patch = patch_of(side).bezier;
-  const Side s = all_sides[to_size(side % 4)];
-  const int m = 4 * sides_[to_size(side)].curve.degree() - 2;
-  const dvec3 first = side_normal(patch, s, 0);
-  if (first == dvec3(0.0)) return false;
-  for (int k = 1; k <= m; ++k) {
-    if (!same_direction(side_normal(patch, s, sample_parameter(k, m)), first, chord_)) return false;
-  }
-  return true;
-}
 
 std::array<int, 2> Connector::side_points(int side) const {
   const std::array<int, 2> corners = side_corners(all_sides[to_size(side % 4)]);
@@ -323,7 +191,7 @@ void Connector::find_arcs() {
   for (int j = 0; j < to_int(joins_.size()); ++j) {
     const Join& join = joins_[to_size(j)];
     const bool smooth = smooth_[to_size(j)];
-    if (smooth && !is_seam(join)) continue;
+    if (smooth && !smoothness_.is_seam(join)) continue;
     const int side = join.front().side;
     add_arc(j, sides_[to_size(side)].curve, side_points(side));
     arcs_.back().seam = smooth;
@@ -347,7 +215,7 @@ std::vector<std::pair<int, int>> Connector::sorted_ends() const {
 void Connector::place_vertices() {
   std::vector<bool> has_vertex(4 * patches_.size() + 2 * to_size(free_piece_count_));
   for (int side = 0; side < to_int(sides_.size()); ++side) {
-    if (sides_[to_size(side)].collapsed && !is_pole(side)) {
+    if (sides_[to_size(side)].collapsed && !smoothness_.is_pole(side)) {
       has_vertex[to_size(points_.find(side_points(side)[0]))] = true;
     }
   }
@@ -390,7 +258,7 @@ void Connector::add_vertices(const std::vector<bool>& has_vertex) {
 bool Connector::goes_straight_on(int end_a, int end_b) const {
   const dvec3 a = arcs_[to_size(end_a / 2)].direction[to_size(end_a % 2)];
   const dvec3 b = arcs_[to_size(end_b / 2)].direction[to_size(end_b % 2)];
-  return a != dvec3(0.0) && same_direction(a, -b, chord_);
+  return a != dvec3(0.0) && smoothness_.same_direction(a, -b);
 }
 
 /// The sides of faces that meet in a border arc, the same for all arcs of one edge.

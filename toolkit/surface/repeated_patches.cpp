@@ -57,6 +57,12 @@ bool find_mapping(const Patch& first, Patch& patch, double tolerance) {
   return false;
 }
 
+/// Of a place in a patch that repeats another one: its (u, v) there.
+dvec2 place_in_repeated(const Patch& patch, dvec2 uv) {
+  if (patch.swapped) std::swap(uv.x, uv.y);
+  return {patch.reversed_u ? 1 - uv.x : uv.x, patch.reversed_v ? 1 - uv.y : uv.y};
+}
+
 }  // namespace
 
 void find_repeated_patches(std::vector<Patch>& patches, const Box& box) {
@@ -73,11 +79,6 @@ void find_repeated_patches(std::vector<Patch>& patches, const Box& box) {
     });
     if (patch.repeats < 0) places.insert(place, static_cast<int>(i));
   }
-}
-
-dvec2 place_in_repeated(const Patch& patch, dvec2 uv) {
-  if (patch.swapped) std::swap(uv.x, uv.y);
-  return {patch.reversed_u ? 1 - uv.x : uv.x, patch.reversed_v ? 1 - uv.y : uv.y};
 }
 
 RepeatedSide side_in_repeated(const Patch& patch, Side side) {

@@ -12,9 +12,6 @@ namespace taut {
 /// @pre the box contains the patches
 void find_repeated_patches(std::vector<Patch>& patches, const Box& box);
 
-/// The place of `repeated` in the patch it repeats: its (u, v) there.
-dvec2 place_in_repeated(const Patch& patch, dvec2 uv);
-
 /// The side of the patch it repeats on which a side lies, and whether it runs the other way there.
 struct RepeatedSide {
   Side side = Side::u0;

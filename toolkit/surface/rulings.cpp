@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/core/tolerances.h"
-
 namespace taut {
 namespace {
 

@@ -43,6 +43,13 @@ dvec3 place_of(const BezierCurve& curve) {
   return point(curve, 0.5) + 0.5 * glm::abs(chord);
 }
 
+/// Whether all control points coincide within the tolerance.
+bool is_collapsed(const BezierCurve& curve, double tolerance) {
+  const dvec3 start = euclidean(curve.points.front());
+  return std::all_of(curve.points.begin(), curve.points.end(),
+                     [&](const dvec4& p) { return same_point(euclidean(p), start, tolerance); });
+}
+
 }  // namespace
 
 double join_tolerance(const Box& box) {
@@ -50,12 +57,6 @@ double join_tolerance(const Box& box) {
 }
 
 double sample_parameter(int k, int m) { return 0.5 - 0.5 * std::cos(std::numbers::pi * k / m); }
-
-bool is_collapsed(const BezierCurve& curve, double tolerance) {
-  const dvec3 start = euclidean(curve.points.front());
-  return std::all_of(curve.points.begin(), curve.points.end(),
-                     [&](const dvec4& p) { return same_point(euclidean(p), start, tolerance); });
-}
 
 std::vector<SideCurve> side_curves(const std::vector<Patch>& patches, double tolerance) {
   std::vector<SideCurve> sides;

@@ -12,7 +12,7 @@ double join_tolerance(const Box& box);
 /// One side of a patch; sides are numbered 4 * patch + side.
 struct SideCurve {
   BezierCurve curve;
-  bool collapsed = false;
+  bool collapsed = false;  ///< all control points coincide within the tolerance
 };
 
 /// A side that takes part in a join.
@@ -23,9 +23,6 @@ struct Use {
 
 /// A curve in which sides meet, or a single one ends; uses are in ascending order of the sides.
 using Join = std::vector<Use>;
-
-/// Whether all control points coincide within the tolerance.
-bool is_collapsed(const BezierCurve& curve, double tolerance);
 
 /// The sides of all patches, by number.
 std::vector<SideCurve> side_curves(const std::vector<Patch>& patches, double tolerance);

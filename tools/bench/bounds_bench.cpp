@@ -10,22 +10,11 @@
 #include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/culling.h"
-#include "taut/io/read_model.h"
+#include "teapot.h"
 
 namespace {
 
 using namespace taut;
-
-Model teapot() {
-  Model model;
-  read_model(TAUT_SOURCE_DIR "/data/teapot.bpt", model);
-  return model;
-}
-
-const Scene& teapot_scene() {
-  static const Scene scene(teapot(), {.threads = 1, .progress = {}});
-  return scene;
-}
 
 std::vector<dvec3> random_directions(std::size_t count, unsigned seed) {
   std::mt19937_64 random(seed);

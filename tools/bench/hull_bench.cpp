@@ -21,7 +21,7 @@
 #include "taut/hull/culling.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/precise_hull.h"
-#include "taut/io/read_model.h"
+#include "teapot.h"
 
 namespace {
 
@@ -69,17 +69,6 @@ std::vector<dvec3> tessellation_of_accuracy(const Model& model, const Scene& sce
     (measured_distance(scene, tessellate(model, middle)) > distance ? low : high) = middle;
   }
   return tessellate(model, high);
-}
-
-Model teapot() {
-  Model model;
-  read_model(TAUT_SOURCE_DIR "/data/teapot.bpt", model);
-  return model;
-}
-
-const Scene& teapot_scene() {
-  static const Scene scene(teapot(), {.threads = 1, .progress = {}});
-  return scene;
 }
 
 const GaussMap& teapot_map() {

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "taut/hull/hull_boundary.h"
+
+namespace taut {
+
+/// Adds to HullBoundary::unresolved what keeps the boundary from being closed: every curve without
+/// two faces and, where nothing else is unresolved, an Euler characteristic other than the
+/// sphere's.
+void check_closure(HullBoundary& boundary);
+
+}  // namespace taut
