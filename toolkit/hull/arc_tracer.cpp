@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_ends.h"
@@ -71,6 +72,8 @@ constexpr double about_pole = 8;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 
+dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
+
 struct Event {
   double length = 0;  ///< along the step's tangent
   int contact = 0;
@@ -137,6 +140,16 @@ class Trace {
   void close();
   std::optional<FreeEnd> exact_end(const Ruling& near);
   bool is_ahead(const FreeEnd& end, double length) const;
+  struct Approach;
+  Approach approach() const;
+  std::optional<FreeEnd> end_ahead(const Approach& a);
+  std::optional<Event> event_before(const FreeEnd& end);
+  CommonSupport near_end(const FreeEnd& end, double length) const;
+  bool end_beyond(const FreeEnd& end);
+  bool solve_event(Event& event, double length);
+  bool supports(const CommonSupport& s);
+  void put_on_border(Event& event) const;
+  void find_exits();
   bool merge_at_pole();
   bool runs_into(const dvec3& pole);
   bool is_about_pole() const;
@@ -212,14 +225,16 @@ std::optional<CommonSupport> Trace::stepped(double length) const {
   return s;
 }
 
-/// Moves a contact onto the side or end at which the exit lies, exactly.
-void put_on_border(Contact& c, const ContactExit& exit) {
-  if (exit.kind == ContactExit::Kind::side) {
-    const Side side = all_sides[std::size_t(exit.index)];
-    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
-  } else if (exit.kind == ContactExit::Kind::end) {
-    c.u = exit.index;
+/// The event's contacts in their elements, the one at its exit exactly.
+void Trace::put_on_border(Event& event) const {
+  CommonSupport& s = event.support;
+  Contact& own = s.contact[std::size_t(event.contact)];
+  own = at_exit(own, event.exit);
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.contact[i].u = std::clamp(s.contact[i].u, 0.0, 1.0);
+    s.contact[i].v = std::clamp(s.contact[i].v, 0.0, 1.0);
   }
+  s.evaluate(geometry_);
 }
 
 std::optional<Event> Trace::solved_event(const CommonSupport& next, double share, int contact,
@@ -238,13 +253,7 @@ std::optional<Event> Trace::solved_event(const CommonSupport& next, double share
   const bool solved = system_.solve(
       s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, contact, exit); });
   if (!solved) return std::nullopt;
-  // On the border exactly.
-  put_on_border(s.contact[std::size_t(contact)], exit);
-  for (std::size_t i = 0; i < 2; ++i) {
-    s.contact[i].u = std::clamp(s.contact[i].u, 0.0, 1.0);
-    s.contact[i].v = std::clamp(s.contact[i].v, 0.0, 1.0);
-  }
-  s.evaluate(geometry_);
+  put_on_border(event);
   event.length = length_to(s);
   return event;
 }
@@ -267,8 +276,7 @@ Event Trace::event_here(int contact, const ContactExit& exit) const {
   event.contact = contact;
   event.exit = exit;
   event.support = at_;
-  put_on_border(event.support.contact[std::size_t(contact)], exit);
-  event.support.evaluate(geometry_);
+  put_on_border(event);
   return event;
 }
 
@@ -718,61 +726,85 @@ bool Trace::is_ahead(const FreeEnd& end, double length) const {
   return length_along(end.n, x, x) > 0 && glm::distance(x, at_.jet[0].x) < length;
 }
 
-/// Ends the arc where the contacts merge, if they do. As functions of their distance rho, their
-/// parameters and n are smooth there. Where both run on one smooth curve or surface, n and, if they
-/// are in one element, the parameters' mean are smooth functions of its square.
-bool Trace::merge() {
-  const Ruling last = at_.ruling();
-  const double rho = glm::distance(last.point[0], last.point[1]);
-  const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / rho;
-  // f(0) = f - rho f' for a function of rho, f - rho f' / 2 for one of its square.
-  const double linear = rho / rate;
-  const double squared = 0.5 * rho / rate;
-  if (merge_at_pole()) return true;
-  const bool smooth = continues(geometry_, last.contact[0], last.contact[1]);
-  Ruling end = last;
-  end.n = last.n - (smooth ? squared : linear) * tangent_.n;
-  const bool one_element = same_element(last.contact[0], last.contact[1]);
+/// Where two contacts merge that approach each other, to first order.
+struct Trace::Approach {
+  Ruling end;
+  double length = 0;    ///< of the ruling
+  double rate = 0;      ///< of the length, along the tangent
+  bool smooth = false;  ///< they run on one smooth curve or surface
+  bool one_element = false;
+
+  /// f(0) = f - linear() f' for a function f of the length.
+  double linear() const { return length / rate; }
+};
+
+/// As functions of their distance, the contacts' parameters and n are smooth at a free end. Where
+/// both run on one smooth curve or surface, n and, if they are in one element, the parameters' mean
+/// are smooth functions of its square.
+Trace::Approach Trace::approach() const {
+  Approach a;
+  a.end = at_.ruling();
+  const std::array<Contact, 2> c = a.end.contact;
+  a.length = glm::length(at_.d());
+  a.rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / a.length;
+  a.smooth = continues(geometry_, c[0], c[1]);
+  a.one_element = same_element(c[0], c[1]);
+  // f(0) = f - length f' / 2 for a function of the square.
+  const double squared = 0.5 * a.linear();
+  a.end.n = at_.n - (a.smooth ? squared : a.linear()) * tangent_.n;
+  const dvec2 mean = 0.5 * (parameters(c[0]) + parameters(c[1])) -
+                     0.5 * squared * (tangent_.parameter[0] + tangent_.parameter[1]);
   for (std::size_t i = 0; i < 2; ++i) {
-    Contact& c = end.contact[i];
-    dvec2 at = dvec2(c.u, c.v) - linear * tangent_.parameter[i];
-    if (one_element) {
-      at = 0.5 * (dvec2(last.contact[0].u, last.contact[0].v) +
-                  dvec2(last.contact[1].u, last.contact[1].v)) -
-           0.5 * squared * (tangent_.parameter[0] + tangent_.parameter[1]);
-    }
-    c.u = std::clamp(at.x, 0.0, 1.0);
-    c.v = std::clamp(at.y, 0.0, 1.0);
+    const dvec2 own = parameters(c[i]) - a.linear() * tangent_.parameter[i];
+    const dvec2 there = a.one_element ? mean : own;
+    a.end.contact[i].u = std::clamp(there.x, 0.0, 1.0);
+    a.end.contact[i].v = std::clamp(there.y, 0.0, 1.0);
   }
-  move_together(geometry_, end.contact[0], end.contact[1]);
-  if (!smooth &&
+  move_together(geometry_, a.end.contact[0], a.end.contact[1]);
+  return a;
+}
+
+/// The free end into which the contacts run.
+std::optional<FreeEnd> Trace::end_ahead(const Approach& a) {
+  std::optional<FreeEnd> exact = exact_end(a.end);
+  if (!exact && a.smooth && !a.one_element) {
+    // Where a join makes the end, n is no smooth function of the square.
+    Ruling straight = a.end;
+    straight.n = at_.n - a.linear() * tangent_.n;
+    exact = exact_end(straight);
+  }
+  if (exact && !is_ahead(*exact, 2 * std::abs(a.linear()))) exact.reset();
+  return exact;
+}
+
+/// Ends the arc where the contacts merge, if they do.
+bool Trace::merge() {
+  if (merge_at_pole()) return true;
+  Approach a = approach();
+  Ruling& end = a.end;
+  const double rho = a.length;
+  if (!a.smooth &&
       !same_element(geometry_.canonical(end.contact[0]), geometry_.canonical(end.contact[1]))) {
     return crosses();
   }
-  std::optional<FreeEnd> exact = exact_end(end);
-  if (!exact && smooth && !one_element) {
-    // Where a join makes the end, n is no smooth function of the square.
-    Ruling straight = end;
-    straight.n = last.n - linear * tangent_.n;
-    exact = exact_end(straight);
-  }
-  if (exact && is_ahead(*exact, 2 * std::abs(linear))) {
+  if (const std::optional<FreeEnd> exact = end_ahead(a)) {
     if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
       arc_.pieces.back().rulings.push_back(*ruling);
       return true;
     }
     // A contact changes its element before.
+    if (end_beyond(*exact)) return true;
     if (rho > 2 * least_distance) return false;
   }
   // On one surface or curve they run into each other, rather than pass by.
-  if (smooth && rate > slowest_merging) return false;
+  if (a.smooth && a.rate > slowest_merging) return false;
   const std::array<ContactJet, 2> jet = {geometry_.jet(end.contact[0]),
                                          geometry_.jet(end.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > 0.25 * rho) return false;
   end.n = limit_normal(jet, end.n);
   const std::size_t anchor = jet[0].dimension <= jet[1].dimension ? 0 : 1;
   dvec3 x = jet[anchor].x;
-  const Support top = query_(end.n, last.contact[0]);
+  const Support top = query_(end.n, at_.contact[0]);
   // The nearer the contacts, the better the extrapolation; until rounding spoils it. About a free
   // end heights differ by the fourth power of distances, at a border by the third.
   const double slack = rho > least_distance ? geometry_.tie() : rho * rho * rho;
@@ -781,7 +813,7 @@ bool Trace::merge() {
   }
   // The direction is as near to the end's as the extrapolation; the contact is the direction's own.
   if (const Contact own = geometry_.canonical(top.contact);
-      one_element && same_element(own, end.contact[0])) {
+      a.one_element && same_element(own, end.contact[0])) {
     end.contact = {own, own};
     const ContactJet j = geometry_.jet(own);
     end.n = limit_normal({j, j}, end.n);
@@ -792,13 +824,165 @@ bool Trace::merge() {
   return true;
 }
 
+/// Rates of an element's parameters along a unit tangent in which it bends least. None where they
+/// fail.
+std::optional<dvec2> rate_along(const ContactGeometry& geometry, const Contact& c,
+                                const dvec3& along) {
+  if (c.kind == SourceKind::edge) {
+    const dvec3 d = geometry.jet(c).dx[0];
+    return dvec2(glm::dot(d, along) / glm::dot(d, d), 0);
+  }
+  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  if (!b) return std::nullopt;
+  return glm::dot(b->along, along) < 0 ? -b->rate : b->rate;
+}
+
+/// A point on the border of an element.
+struct BorderPoint {
+  Contact contact;
+  ContactExit exit;
+  double distance = 0;  ///< from where a line to it begins
+};
+
+/// Where the line on which contacts part from a free end, in the sense of `along`, leaves the end's
+/// element.
+std::optional<BorderPoint> border_ahead(const ContactGeometry& geometry, const FreeEnd& end,
+                                        const dvec3& along) {
+  CommonSupport s;
+  s.add(geometry, end.contact);
+  const std::optional<dvec2> rate = rate_along(geometry, end.contact, along);
+  if (!rate) return std::nullopt;
+  std::optional<BorderPoint> first;
+  for (const ContactExit& exit : exits(geometry, end.contact)) {
+    if (!leads_over_border(exit)) continue;
+    const LinearEquation margin = exit_margin(geometry, s, 0, exit);
+    const double falls = -glm::dot(margin.parameter[0], *rate);
+    if (falls <= 0 || (first && margin.residual >= first->distance * falls)) continue;
+    const double distance = margin.residual / falls;
+    Contact c = end.contact;
+    c.u = std::clamp(c.u + distance * rate->x, 0.0, 1.0);
+    c.v = std::clamp(c.v + distance * rate->y, 0.0, 1.0);
+    first = {at_exit(c, exit), exit, distance};
+  }
+  return first;
+}
+
+/// The exit of the contact's element over which the other one lies.
+std::optional<ContactExit> exit_to(const ContactGeometry& geometry, const Contact& c,
+                                   const Contact& other) {
+  for (const ContactExit& exit : exits(geometry, c)) {
+    if (!leads_over_border(exit)) continue;
+    const Contact at = at_exit(c, exit);
+    if (at.u != c.u || at.v != c.v) continue;
+    const std::optional<Contact> over = beyond(geometry, at, exit);
+    if (over && same_element(*over, other)) return exit;
+  }
+  return std::nullopt;
+}
+
+/// The next change of a contact into the element of the free end, over a smooth join. The contacts
+/// are about as far from the end as each other, and as the end from the join then.
+std::optional<Event> Trace::event_before(const FreeEnd& end) {
+  std::optional<Event> event;
+  double longest = 0;
+  for (int i = 0; i < 2; ++i) {
+    const auto k = std::size_t(i);
+    const Contact& own = at_.contact[k];
+    if (same_element(own, end.contact)) continue;
+    const dvec3 apart = at_.jet[k].x - at_.jet[1 - k].x;
+    const dvec3 along = glm::dot(apart, end.along) < 0 ? -end.along : end.along;
+    const std::optional<BorderPoint> border = border_ahead(geometry_, end, along);
+    if (!border || border->distance <= longest) continue;
+    const std::optional<Contact> over = beyond(geometry_, border->contact, border->exit);
+    if (!over || !same_element(*over, own)) return std::nullopt;
+    const std::optional<ContactExit> exit = exit_to(geometry_, *over, end.contact);
+    if (!exit) return std::nullopt;
+    event.emplace();
+    event->contact = i;
+    event->exit = *exit;
+    event->support = near_end(end, 2 * border->distance);
+    event->support.contact[k] = *over;
+    event->support.evaluate(geometry_);
+    longest = border->distance;
+  }
+  if (!event || !solve_event(*event, 2 * longest)) return std::nullopt;
+  return event;
+}
+
+/// Solves for the ruling of about this length with which a contact stands at its exit; from a start
+/// near it.
+bool Trace::solve_event(Event& event, double length) {
+  CommonSupport& s = event.support;
+  const bool solved = system_.settle(s, [&](const CommonSupport& now) {
+    return exit_margin(geometry_, now, event.contact, event.exit);
+  });
+  if (!solved) return false;
+  put_on_border(event);
+  event.length = length_to(s);
+  const double apart = glm::length(s.d());
+  return event.length > margin_slack && apart > 0.5 * length && apart < 2 * length && supports(s);
+}
+
+/// About where the contacts have approached each other to this length, before the free end.
+CommonSupport Trace::near_end(const FreeEnd& end, double length) const {
+  const double apart = glm::length(at_.d());
+  const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / apart;
+  const double share = length / apart;
+  CommonSupport s = at_;
+  s.n = glm::normalize(end.n + share * share * (at_.n - end.n));
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& c = s.contact[i];
+    const dvec2 ahead = (length - apart) / rate * tangent_.parameter[i];
+    c.u = std::clamp(c.u + ahead.x, 0.0, 1.0);
+    c.v = std::clamp(c.v + ahead.y, 0.0, 1.0);
+    if (!same_element(c, end.contact)) continue;
+    const dvec3 side = at_.jet[i].x - at_.jet[1 - i].x;
+    const std::optional<dvec2> along =
+        rate_along(geometry_, end.contact, glm::dot(side, end.along) < 0 ? -end.along : end.along);
+    if (!along) continue;
+    c.u = std::clamp(end.contact.u + 0.5 * length * along->x, 0.0, 1.0);
+    c.v = std::clamp(end.contact.v + 0.5 * length * along->y, 0.0, 1.0);
+  }
+  return s;
+}
+
+/// Goes to a free end in an element into which a contact changes over before; false if that is not
+/// found.
+bool Trace::end_beyond(const FreeEnd& end) {
+  FreeEnd near = end;
+  near.contact = snapped(geometry_, end.contact, shortest_piece);
+  std::optional<Ruling> last = ruling_at(geometry_, near, at_.ruling());
+  for (int k = 0; k < 2 && !last; ++k) {
+    const std::optional<Event> event = event_before(end);
+    if (!event || !is_followed(at_.ruling(), event->support.ruling())) return false;
+    const auto i = std::size_t(event->contact);
+    at_ = event->support;
+    push(at_);
+    const std::optional<Contact> over = expressed_in(geometry_, at_.contact[i], end.contact);
+    if (!over) return false;
+    at_.contact[i] = *over;
+    at_.evaluate(geometry_);
+    begin_piece();
+    last = ruling_at(geometry_, end, at_.ruling());
+  }
+  if (last) arc_.pieces.back().rulings.push_back(*last);
+  return last.has_value();
+}
+
 /// Ends the arc where the contacts merge, if the rulings on the way there are found.
 bool Trace::ends_merged() {
-  if (!merge()) return false;
-  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
-  if (is_followed(rulings[rulings.size() - 2], rulings.back())) return true;
-  rulings.pop_back();
+  const CommonSupport at = at_;
+  const std::size_t pieces = arc_.pieces.size();
+  const std::size_t count = arc_.pieces.back().rulings.size();
+  if (merge()) {
+    const std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
+    if (is_followed(rulings[rulings.size() - 2], rulings.back())) return true;
+  }
+  at_ = at;
+  arc_.pieces.resize(pieces);
+  arc_.pieces.back().rulings.resize(count);
   arc_.contacts.clear();
+  find_exits();
   return false;
 }
 
@@ -874,7 +1058,16 @@ void Trace::begin_piece() {
   arc_.pieces.emplace_back();
   lenient_ = false;
   push(at_);
+  find_exits();
+}
+
+void Trace::find_exits() {
   for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, at_.contact[i]);
+}
+
+/// The two contacts support the model.
+bool Trace::supports(const CommonSupport& s) {
+  return query_(s.n, s.contact[0]).h <= glm::dot(s.jet[0].x, s.n) + geometry_.tie();
 }
 
 /// Adds the contacts as a ruling. A piece that begins on a collapsed side, where the parameter

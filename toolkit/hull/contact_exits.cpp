@@ -78,22 +78,6 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
-/// The contact moved to the side or end at which the exit lies.
-Contact at_exit(Contact c, const ContactExit& exit) {
-  if (exit.kind == ContactExit::Kind::side) {
-    const Side side = all_sides[std::size_t(exit.index)];
-    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
-  } else if (exit.kind == ContactExit::Kind::end) {
-    c.u = exit.index;
-  }
-  return c;
-}
-
-/// To the same point in another element, not into what an edge or a vertex bounds.
-bool leads_over_border(const ContactExit& exit) {
-  return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
-}
-
 /// A contact whose parameter is so near to a collapsed side is at the pole.
 constexpr double pole_parameter = 1e-9;
 /// How near to a pole, as a parameter, a climb in the direction of its normal need not go on.
@@ -415,6 +399,20 @@ double exit_length(const ContactGeometry& geometry, const Contact& c, const Cont
       return glm::length(leaving(geometry, c, geometry.ends(c)[std::size_t(exit.index)]));
   }
   return 0;
+}
+
+bool leads_over_border(const ContactExit& exit) {
+  return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
+}
+
+Contact at_exit(Contact c, const ContactExit& exit) {
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    c.u = exit.index;
+  }
+  return c;
 }
 
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,

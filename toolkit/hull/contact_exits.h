@@ -32,6 +32,12 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 /// moves the margin by is a length over it.
 double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
 
+/// To the same point in another element, not into what an edge or a vertex bounds.
+bool leads_over_border(const ContactExit& exit);
+
+/// The contact moved to the side or end at which the exit lies.
+Contact at_exit(Contact c, const ContactExit& exit);
+
 /// The contact beyond the exit at which it stands: the same point in the next element. None where
 /// there is no next one that is known (the pole of a collapsed side).
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact_exits.h"
 
 namespace taut {
 namespace {
@@ -104,6 +105,8 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
   if (merged(from) == merged(to)) {
+    nearly_merges_ =
+        !is_distinct(shorter_) && continues(system.geometry(), from.contact[0], from.contact[1]);
     fit();
   } else {
     free_end_ = merged(from) ? 0 : 1;
@@ -111,13 +114,14 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   }
 }
 
-/// Between the ends, with their slopes unless these are noise (next to a pole, say).
+/// Between the ends, with their slopes unless these are noise (next to a pole or a free end, say).
 void RulingsBetween::fit() {
   double s = 0;
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
-    if (find_speed(m) && !bends(from_, to_, m)) {
+    const bool noise = nearly_merges_ && !is_distinct(glm::length(m.at.d()));
+    if (!noise && find_speed(m) && !bends(from_, to_, m)) {
       polynomial_.add(s, place(m), rate(m));
     } else {
       polynomial_.add(s, place(m));
@@ -140,7 +144,7 @@ void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
   }
   polynomial_.add(1, place(m), rate(m));
   for (const double r : {0.75, 0.5, 0.25}) {
-    if (!is_distinct(r)) break;
+    if (!is_distinct(r * length_)) break;
     MovingRuling next = moving(r, 1);
     if (!solve_length(next, r) || !find_slope(next, r)) break;
     polynomial_.add(r, place(next), rate(next));
@@ -185,8 +189,7 @@ bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
 
 /// The rounding of the system's answer, a rounding unit over the cube of the length, is less than
 /// what a quadratic misses.
-bool RulingsBetween::is_distinct(double r) const {
-  const double length = r * length_;
+bool RulingsBetween::is_distinct(double length) {
   return length * length * length >= std::sqrt(rounding_unit);
 }
 
