@@ -328,17 +328,14 @@ INSTANTIATE_TEST_SUITE_P(Flat, SplitInHalves, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(General, FarAway, general, name_of);
 INSTANTIATE_TEST_SUITE_P(Aligned, FarAway, aligned, name_of);
-// Where two lids lie in one plane but for rounding, the planes' contacts run along the rims before
-// they reach it, and the mean width is known to 1e-5 only.
-const auto flat_alone = testing::Values(cylinder_subject, filleted_subject, torus_subject,
-                                        saddle_subject, box_subject, cone_subject);
-INSTANTIATE_TEST_SUITE_P(Flat, FarAway, flat_alone, name_of);
-// Not where free ends lie so flat that rounding decides whether two contacts merge.
-INSTANTIATE_TEST_SUITE_P(General, FarAwayTurned,
-                         testing::Values(teapot_subject, oloid_subject, tori_subject,
-                                         spheres_subject),
+INSTANTIATE_TEST_SUITE_P(Flat, FarAway, flat, name_of);
+INSTANTIATE_TEST_SUITE_P(General, FarAwayTurned, general, name_of);
+INSTANTIATE_TEST_SUITE_P(Aligned, FarAwayTurned, aligned, name_of);
+INSTANTIATE_TEST_SUITE_P(Flat, FarAwayTurned,
+                         testing::Values(cylinder_subject, filleted_subject, torus_subject,
+                                         saddle_subject, box_subject, cone_subject,
+                                         beside_box_subject),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(Flat, FarAwayTurned, flat_alone, name_of);
 
 INSTANTIATE_TEST_SUITE_P(Curves, GivenTwice, testing::Values(oloid_subject), name_of);
 INSTANTIATE_TEST_SUITE_P(Surfaces, GivenTwice,

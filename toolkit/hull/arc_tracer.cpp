@@ -122,10 +122,6 @@ class Trace {
   Event event_here(int contact, const ContactExit& exit) const;
   bool precedes(const Event& a, const Event& b) const;
   double slack(int contact, const ContactExit& exit) const;
-  /// About a free end heights differ by the fourth power of distances.
-  double merging_distance() const {
-    return std::max(merge_distance, 2 * std::pow(geometry_.rounding(), 0.25));
-  }
   /// A contact that the step takes across a pole, or -1, and the side.
   std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
   bool pass_pole(int contact, Side side, double length);
@@ -387,14 +383,8 @@ std::optional<Contact> in_element(const ContactGeometry& geometry, const Contact
 /// Whether a contact may move without the direction, or its parameters fail: at a pole, and where
 /// its element is flat along some direction. The tangent does not tell how it goes on.
 bool Trace::is_singular(int contact) const {
-  const ContactJet& j = at_.jet[std::size_t(contact)];
-  if (j.dimension == 0) return false;
-  if (pole_side(geometry_, at_.contact[std::size_t(contact)])) return true;
-  const double uu = glm::dot(j.dxx, at_.n) / glm::dot(j.dx[0], j.dx[0]);
-  if (j.dimension == 1) return uu > -least_curvature;
-  const double uv = glm::dot(j.dxy, at_.n) / (glm::length(j.dx[0]) * glm::length(j.dx[1]));
-  const double vv = glm::dot(j.dyy, at_.n) / glm::dot(j.dx[1], j.dx[1]);
-  return uu * vv - uv * uv < least_curvature * std::abs(uu + vv);
+  const auto i = std::size_t(contact);
+  return pole_side(geometry_, at_.contact[i]) || is_flat(at_.jet[i], at_.n, least_curvature);
 }
 
 /// The first step away from a common support of which contacts are singular, in a piece of its own.
@@ -1098,7 +1088,7 @@ std::optional<Trace::Pace> Trace::near_merging() {
   const double apart = glm::length(at_.d());
   const double rate = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / apart;
   if (rate >= 0 || apart >= -2 * rate * step_) return std::nullopt;
-  if (apart >= merging_distance()) {
+  if (apart >= merging_distance(geometry_)) {
     step_ = -0.5 * apart / rate;
     return std::nullopt;
   }
@@ -1165,7 +1155,7 @@ Trace::Pace Trace::advance() {
     // The nearer the contacts are to merging, the worse the system is conditioned.
     const double apart = glm::length(at_.d());
     const bool approach = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) < 0;
-    if (approach && apart < 2 * merging_distance() && step_ < stuck_share * apart &&
+    if (approach && apart < 2 * merging_distance(geometry_) && step_ < stuck_share * apart &&
         ends_merged()) {
       return merged();
     }
@@ -1259,6 +1249,10 @@ void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
 }
 
 }  // namespace
+
+double merging_distance(const ContactGeometry& geometry) {
+  return std::max(merge_distance, 2 * std::pow(geometry.rounding(), 0.25));
+}
 
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   const auto square = [](const dvec3& x) { return glm::dot(x, x); };

@@ -16,6 +16,9 @@ namespace taut {
 /// rounding moves them by about 1e-8 yet. What the hull bridges over a shorter distance deviates
 /// from the surface by less than the fourth power of it.
 inline constexpr double merge_distance = 4e-3;
+/// The same, or more where rounding is so large that heights tie over more: about a free end they
+/// differ by the fourth power of distances.
+double merging_distance(const ContactGeometry& geometry);
 
 /// A direction that is known to have three contacts or more, some of them at poles.
 struct Landmark {

@@ -26,6 +26,12 @@ double square(const dvec3& x) { return glm::dot(x, x); }
 /// A free end: its two points are one, though they may come from two elements.
 bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
 
+/// So flat is one of the contacts that where it lies is rounding.
+bool is_flat(const CommonSupport& s, const ContactGeometry& geometry) {
+  const double least = std::sqrt(geometry.rounding());
+  return is_flat(s.jet[0], s.n, least) || is_flat(s.jet[1], s.n, least);
+}
+
 /// The derivatives in m are not those of a curve that runs about straight between the two.
 bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
   for (std::size_t i = 0; i < 2; ++i) {
@@ -107,6 +113,9 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   if (merged(from) == merged(to)) {
     nearly_merges_ =
         !is_distinct(shorter_) && continues(system.geometry(), from.contact[0], from.contact[1]);
+    lies_flat_ = system.geometry().tie() > support_tie &&
+                 (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
+                  is_flat(CommonSupport(system.geometry(), to), system.geometry()));
     fit();
   } else {
     free_end_ = merged(from) ? 0 : 1;
@@ -120,14 +129,28 @@ void RulingsBetween::fit() {
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
-    const bool noise = nearly_merges_ && !is_distinct(glm::length(m.at.d()));
-    if (!noise && find_speed(m) && !bends(from_, to_, m)) {
+    if (!is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
       polynomial_.add(s, place(m), rate(m));
     } else {
       polynomial_.add(s, place(m));
     }
     s = 1;
   }
+  if (lies_flat_) refine();
+}
+
+/// Adds exact rulings in between.
+void RulingsBetween::refine() {
+  for (const double s : {0.5, 0.25, 0.75}) {
+    MovingRuling m = moving(s, 1);
+    if (solve_share(m, s) && find_speed(m)) polynomial_.add(s, place(m), rate(m));
+  }
+}
+
+/// The slope at this end is.
+bool RulingsBetween::is_noise(const CommonSupport& s) const {
+  if (nearly_merges_ && !is_distinct(glm::length(s.d()))) return true;
+  return lies_flat_ && is_flat(s, system_.geometry());
 }
 
 /// In the share of the longer one's length: from the end, the longer one and some in between, with

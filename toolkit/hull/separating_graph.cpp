@@ -22,6 +22,10 @@ namespace {
 
 /// Contacts within this distance are of one branch.
 constexpr double same_branch = 1e-6;
+/// Or, far from the origin, within the distance over which heights tie.
+double branch_distance(const ContactGeometry& geometry) {
+  return std::max(same_branch, std::sqrt(geometry.tie()));
+}
 /// Directions so near to each other are not parted any further.
 constexpr double narrow = 1e-9;
 /// Share of its motion by which a contact may miss the first order of it.
@@ -207,11 +211,12 @@ bool GraphTracer::is_near(const Sighting& from, const Sighting& to) const {
 
 /// Whether a climb leads from the one contact to the other.
 bool GraphTracer::joined(const Sighting& a, const Sighting& b) const {
-  if (glm::distance(a.x, b.x) < same_branch) return true;
+  const double same = branch_distance(geometry_);
+  if (glm::distance(a.x, b.x) < same) return true;
   const auto leads = [&](const Sighting& from, const Sighting& to) {
     if (is_near(from, to)) return true;
     const std::optional<Contact> c = climbed(geometry_, from.contact, to.n);
-    return c && glm::distance(geometry_.point(*c), to.x) < same_branch;
+    return c && glm::distance(geometry_.point(*c), to.x) < same;
   };
   return leads(a, b) && leads(b, a);
 }
@@ -236,7 +241,7 @@ std::optional<CommonSupport> GraphTracer::parting(const Sighting& a, const Sight
     s.contact[0] = *of_a;
     s.contact[1] = *of_b;
     s.evaluate(geometry_);
-    if (glm::length(s.d()) < same_branch) return std::nullopt;
+    if (glm::length(s.d()) < branch_distance(geometry_)) return std::nullopt;
     const double value = glm::dot(s.d(), s.n);
     if (std::abs(value) < parting_tie) return s;
     (value > 0 ? lower : upper) = t;
