@@ -331,11 +331,7 @@ INSTANTIATE_TEST_SUITE_P(Aligned, FarAway, aligned, name_of);
 INSTANTIATE_TEST_SUITE_P(Flat, FarAway, flat, name_of);
 INSTANTIATE_TEST_SUITE_P(General, FarAwayTurned, general, name_of);
 INSTANTIATE_TEST_SUITE_P(Aligned, FarAwayTurned, aligned, name_of);
-INSTANTIATE_TEST_SUITE_P(Flat, FarAwayTurned,
-                         testing::Values(cylinder_subject, filleted_subject, torus_subject,
-                                         saddle_subject, box_subject, cone_subject,
-                                         beside_box_subject),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Flat, FarAwayTurned, flat, name_of);
 
 INSTANTIATE_TEST_SUITE_P(Curves, GivenTwice, testing::Values(oloid_subject), name_of);
 INSTANTIATE_TEST_SUITE_P(Surfaces, GivenTwice,

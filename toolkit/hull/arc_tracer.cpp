@@ -45,7 +45,8 @@ constexpr double least_curvature = 1e-8;
 constexpr double border_slack = 1e-9;
 /// Pieces shorter than this are none.
 constexpr double shortest_piece = 1e-7;
-/// How far parameters may leave [0, 1] by rounding.
+/// How far contacts may leave their elements by rounding; or by that of coordinates, of a ruling
+/// and of its neighbours.
 constexpr double parameter_slack = 1e-9;
 constexpr int step_limit = 4000;
 /// Sine of the angle below which two edges that merge are one.
@@ -122,6 +123,7 @@ class Trace {
   Event event_here(int contact, const ContactExit& exit) const;
   bool precedes(const Event& a, const Event& b) const;
   double slack(int contact, const ContactExit& exit) const;
+  double border_distance() const { return std::max(parameter_slack, 2 * geometry_.rounding()); }
   /// A contact that the step takes across a pole, or -1, and the side.
   std::pair<int, Side> pole_crossed(const CommonSupport& next) const;
   bool pass_pole(int contact, Side side, double length);
@@ -577,7 +579,7 @@ bool Trace::crosses() {
   if (!end || distance_to(*end) > 4 * glm::length(at_.d())) return false;
   for (std::size_t i = 0; i < 2; ++i) {
     const Contact& c = end->contact[i];
-    if (std::min({c.u, 1 - c.u, c.v, 1 - c.v}) < -parameter_slack) return false;
+    if (std::min({c.u, 1 - c.u, c.v, 1 - c.v}) < -border_distance()) return false;
   }
   if (query_(end->n, end->contact[0]).h > glm::dot(end->jet[0].x, end->n) + geometry_.tie()) {
     return false;
@@ -986,8 +988,8 @@ bool Trace::is_followed(Ruling from, const Ruling& to) {
   const RulingsBetween between(system_, from, to);
   if (between.empty()) return true;
   // As lengths: about a pole parameters are less exact.
-  const auto stays = [](double t, const dvec3& dx) {
-    return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) <= parameter_slack;
+  const auto stays = [&](double t, const dvec3& dx) {
+    return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) <= border_distance();
   };
   const auto supports = [&](double s) {
     const std::optional<MovingRuling> m = between(s);
