@@ -162,7 +162,6 @@ class Trace {
   bool settle();
   void begin_piece();
   bool is_sound() const;
-  void push_on();
   void push(const CommonSupport& s) { arc_.pieces.back().rulings.push_back(s.ruling()); }
 
   Pace ended(TracedArc::End end) {
@@ -417,7 +416,7 @@ bool Trace::leave(double step) {
   at_.evaluate(geometry_);
   begin_piece();
   at_ = next;
-  push_on();
+  push(at_);
   return true;
 }
 
@@ -981,9 +980,7 @@ bool Trace::ends_merged() {
 /// Whether the rulings between two of them are found, in the same elements, and support the model.
 bool Trace::is_followed(Ruling from, const Ruling& to) {
   for (std::size_t i = 0; i < 2; ++i) {
-    // A parameter along a collapsed side becomes that of where the curve goes on (push_on).
-    Contact& c = from.contact[i];
-    if (collapsed_side(geometry_, c)) c = expressed_in(geometry_, c, to.contact[i]).value_or(c);
+    from.contact[i] = turned_to(geometry_, from.contact[i], to.contact[i]);
   }
   const RulingsBetween between(system_, from, to);
   if (between.empty()) return true;
@@ -1060,19 +1057,6 @@ void Trace::find_exits() {
 /// The two contacts support the model.
 bool Trace::supports(const CommonSupport& s) {
   return query_(s.n, s.contact[0]).h <= glm::dot(s.jet[0].x, s.n) + geometry_.tie();
-}
-
-/// Adds the contacts as a ruling. A piece that begins on a collapsed side, where the parameter
-/// along the side is any, does so at the parameter at which it goes on.
-void Trace::push_on() {
-  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
-  for (std::size_t i = 0; i < 2 && rulings.size() == 1; ++i) {
-    Contact& c = rulings.front().contact[i];
-    const std::optional<Side> side = collapsed_side(geometry_, c);
-    if (!side) continue;
-    (along_v(*side) ? c.v : c.u) = along_v(*side) ? at_.contact[i].v : at_.contact[i].u;
-  }
-  push(at_);
 }
 
 /// All numbers are finite: Newton's method may end in anything on surfaces without tangent planes.
@@ -1192,7 +1176,7 @@ Trace::Pace Trace::advance() {
   idle_ = moved ? 0 : idle_ + 1;
   if (idle_ > idle_limit) return lost("a separating curve stays on a border");
   at_ = *next;
-  if (moved) push_on();
+  if (moved) push(at_);
   if (event) return exchange(*event);
   if (moved && !home_) {
     home_ = at_;
@@ -1233,19 +1217,16 @@ void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& plac
   }
 }
 
-/// The contact, where on a collapsed side, at the parameter along it from which the curve comes.
-void turn_to(const ContactGeometry& geometry, Contact& c, const Contact& beside) {
-  const std::optional<Side> side = collapsed_side(geometry, c);
-  if (side) (along_v(*side) ? c.v : c.u) = along_v(*side) ? beside.v : beside.u;
-}
-
+/// Contacts with which pieces begin and end in their normal form: turned to the next ones.
 void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   for (ArcPiece& piece : pieces) {
     std::vector<Ruling>& rulings = piece.rulings;
     if (rulings.size() < 2) continue;
     for (std::size_t i = 0; i < 2; ++i) {
-      turn_to(geometry, rulings.front().contact[i], rulings[1].contact[i]);
-      turn_to(geometry, rulings.back().contact[i], rulings[rulings.size() - 2].contact[i]);
+      Contact& first = rulings.front().contact[i];
+      Contact& last = rulings.back().contact[i];
+      first = turned_to(geometry, first, rulings[1].contact[i]);
+      last = turned_to(geometry, last, rulings[rulings.size() - 2].contact[i]);
     }
   }
 }

@@ -562,18 +562,19 @@ Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
   return geometry.canonical(c);
 }
 
+Contact turned_to(const ContactGeometry& geometry, Contact c, const Contact& beside) {
+  const std::optional<Side> side = collapsed_side(geometry, c);
+  if (side) (along_v(*side) ? c.v : c.u) = along_v(*side) ? beside.v : beside.u;
+  return c;
+}
+
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other) {
   if (c.instance != other.instance) return std::nullopt;
-  if (same_element(c, other)) {
-    // On a collapsed side, at the parameter of the other one along it.
-    const std::optional<Side> side = collapsed_side(geometry, c);
-    Contact own = c;
-    if (side) (along_v(*side) ? own.v : own.u) = along_v(*side) ? other.v : other.u;
-    return own;
-  }
+  if (same_element(c, other)) return turned_to(geometry, c, other);
   const auto found = [&](const std::optional<Contact>& next) {
-    return next && same_element(*next, other) ? next : std::nullopt;
+    const bool own = next && same_element(*next, other);
+    return own ? std::optional(turned_to(geometry, *next, other)) : std::nullopt;
   };
   if (c.kind == SourceKind::vertex) {
     for (const ContactGeometry::PieceEnd& end : geometry.ends(c)) {
