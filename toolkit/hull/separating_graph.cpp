@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/arc_pieces.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/cell_crossings.h"
 #include "taut/hull/contact_exits.h"

@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/merging.h"
 
 namespace taut {
 namespace {
