@@ -7,15 +7,9 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/progress.h"
 #include "taut/hull/contact_system.h"
-#include "taut/hull/supporting_poles.h"
+#include "taut/hull/pole_passage.h"
 
 namespace taut {
-
-/// Contacts so near to each other, in the scene's frame, that keep approaching merge. The smallest
-/// singular value of the system of two contacts falls with the third power of their distance; here
-/// rounding moves them by about 1e-8 yet. What the hull bridges over a shorter distance deviates
-/// from the surface by less than the fourth power of it.
-inline constexpr double merge_distance = 4e-3;
 
 /// One way along a separating curve.
 struct TracedArc {
@@ -36,8 +30,7 @@ struct TracedArc {
 
 /// Follows the separating curve of two contacts in the direction n x (x_0 - x_1), over the borders
 /// of their elements, until a third contact supports, the two merge, or the curve closes in its
-/// start. Steps are predicted along the tangent and corrected across it (pseudo-arclength
-/// continuation; Allgower, Georg 1990); every ruling is checked by a support query.
+/// start. Steps are those of CurvePoint; every ruling is checked by a support query.
 ///
 /// Poles, where a patch's parameters fail, are gone through, left and arrived at along chords: the
 /// directions of poles with three and more contacts are told by `landmarks`.
@@ -50,9 +43,5 @@ struct TracedArc {
 TracedArc trace_arc(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
                     std::span<const Landmark> landmarks, const Progress& progress,
                     bool aside = false);
-
-/// Leaves out pieces without length, as they arise where a contact passes a corner between elements
-/// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
-void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
 
 }  // namespace taut

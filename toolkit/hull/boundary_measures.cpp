@@ -236,7 +236,7 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
     if (between.empty()) continue;
     const auto f = [&](double s, double weight, Sample& sample) {
       // Where no ruling is found there is none that is exact; the accuracy tells what it costs.
-      const auto exact = between.merges() ? std::nullopt : between(s);
+      const auto exact = between.is_smoother() ? std::nullopt : between(s);
       const MovingRuling m = exact ? *exact : between.interpolated(s);
       if (scroll) add_scroll(m, sample);
       for (std::size_t i = 0; i < 2; ++i) {

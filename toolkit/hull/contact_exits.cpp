@@ -78,22 +78,6 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
-/// The contact moved to the side or end at which the exit lies.
-Contact at_exit(Contact c, const ContactExit& exit) {
-  if (exit.kind == ContactExit::Kind::side) {
-    const Side side = all_sides[std::size_t(exit.index)];
-    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
-  } else if (exit.kind == ContactExit::Kind::end) {
-    c.u = exit.index;
-  }
-  return c;
-}
-
-/// To the same point in another element, not into what an edge or a vertex bounds.
-bool leads_over_border(const ContactExit& exit) {
-  return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
-}
-
 /// A contact whose parameter is so near to a collapsed side is at the pole.
 constexpr double pole_parameter = 1e-9;
 /// How near to a pole, as a parameter, a climb in the direction of its normal need not go on.
@@ -417,6 +401,20 @@ double exit_length(const ContactGeometry& geometry, const Contact& c, const Cont
   return 0;
 }
 
+bool leads_over_border(const ContactExit& exit) {
+  return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
+}
+
+Contact at_exit(Contact c, const ContactExit& exit) {
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    c.u = exit.index;
+  }
+  return c;
+}
+
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
                               const ContactExit& exit) {
   const auto first = [&](const std::optional<Contact>& over) {
@@ -564,18 +562,19 @@ Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
   return geometry.canonical(c);
 }
 
+Contact turned_to(const ContactGeometry& geometry, Contact c, const Contact& beside) {
+  const std::optional<Side> side = collapsed_side(geometry, c);
+  if (side) (along_v(*side) ? c.v : c.u) = along_v(*side) ? beside.v : beside.u;
+  return c;
+}
+
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other) {
   if (c.instance != other.instance) return std::nullopt;
-  if (same_element(c, other)) {
-    // On a collapsed side, at the parameter of the other one along it.
-    const std::optional<Side> side = collapsed_side(geometry, c);
-    Contact own = c;
-    if (side) (along_v(*side) ? own.v : own.u) = along_v(*side) ? other.v : other.u;
-    return own;
-  }
+  if (same_element(c, other)) return turned_to(geometry, c, other);
   const auto found = [&](const std::optional<Contact>& next) {
-    return next && same_element(*next, other) ? next : std::nullopt;
+    const bool own = next && same_element(*next, other);
+    return own ? std::optional(turned_to(geometry, *next, other)) : std::nullopt;
   };
   if (c.kind == SourceKind::vertex) {
     for (const ContactGeometry::PieceEnd& end : geometry.ends(c)) {

@@ -32,6 +32,12 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 /// moves the margin by is a length over it.
 double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
 
+/// To the same point in another element, not into what an edge or a vertex bounds.
+bool leads_over_border(const ContactExit& exit);
+
+/// The contact moved to the side or end at which the exit lies.
+Contact at_exit(Contact c, const ContactExit& exit);
+
 /// The contact beyond the exit at which it stands: the same point in the next element. None where
 /// there is no next one that is known (the pole of a collapsed side).
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
@@ -76,8 +82,13 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
 /// no farther than `distance`.
 Contact snapped(const ContactGeometry& geometry, Contact c, double distance);
 
-/// The point of `c` as a contact of the element of `other`, in whose border it lies; at a collapsed
-/// side at the parameter of `other`. None if it does not.
+/// The normal form of a contact on a collapsed side, where the parameter along the side is any: at
+/// that of a contact of the same element beside it, from which a curve comes. Others are as they
+/// are.
+Contact turned_to(const ContactGeometry& geometry, Contact c, const Contact& beside);
+
+/// The point of `c` as a contact of the element of `other`, in whose border it lies, turned to
+/// `other`. None if it does not.
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other);
 

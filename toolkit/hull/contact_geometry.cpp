@@ -80,6 +80,15 @@ std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const d
   return dvec2(uv * slope.y - vv * slope.x, uv * slope.x - uu * slope.y) / det;
 }
 
+bool is_flat(const ContactJet& j, const dvec3& n, double least) {
+  if (j.dimension == 0) return false;
+  const double uu = glm::dot(j.dxx, n) / glm::dot(j.dx[0], j.dx[0]);
+  if (j.dimension == 1) return uu > -least;
+  const double uv = glm::dot(j.dxy, n) / (glm::length(j.dx[0]) * glm::length(j.dx[1]));
+  const double vv = glm::dot(j.dyy, n) / glm::dot(j.dx[1], j.dx[1]);
+  return uu * vv - uv * uv < least * std::abs(uu + vv);
+}
+
 ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
   const Box box = scene.model().control_box();
   const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));

@@ -29,6 +29,10 @@ inline bool is_finite(const dvec3& x) {
 /// where x . n has no strict maximum there.
 std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn);
 
+/// The normal curvature of the contact's element where n supports, the least of those along its
+/// tangents, is below `least`. Vertices are not flat.
+bool is_flat(const ContactJet& j, const dvec3& n, double least);
+
 /// A model's elements in the scene's frame, and how they meet: what all contacts look like.
 ///
 /// Contacts here are of three kinds: on a patch (kind face), on a piece of any edge, border, seam

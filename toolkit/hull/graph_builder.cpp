@@ -105,8 +105,6 @@ void GraphBuilder::settle_in(const FacetNode& node, std::size_t side, int end, R
     const bool first = (i == 0) == (end == 0);
     const std::size_t corner = first ? side : (side + 1) % node.points.size();
     if (glm::distance(node.points[corner], r.point[i]) > rounded_contact) continue;
-    // On a collapsed side the contact's own parameter tells where the curve comes from.
-    if (collapsed_side(geometry_, r.contact[i])) continue;
     const std::optional<Contact> c = expressed_in(geometry_, node.contacts[corner], r.contact[i]);
     if (!c) continue;
     r.contact[i] = *c;

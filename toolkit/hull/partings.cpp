@@ -1,5 +1,6 @@
 #include "taut/hull/partings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "taut/hull/contact_exits.h"
@@ -14,6 +15,10 @@ constexpr int newton_limit = 60;
 constexpr double parting_tie = 1e-15;
 
 }  // namespace
+
+double branch_distance(const ContactGeometry& geometry) {
+  return std::max(same_branch, std::sqrt(geometry.tie()));
+}
 
 Sighting seen(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
               const Contact& hint) {
@@ -31,11 +36,12 @@ bool is_near(const ContactGeometry& geometry, const Sighting& from, const Sighti
 }
 
 bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighting& b) {
-  if (glm::distance(a.x, b.x) < same_branch) return true;
+  const double same = branch_distance(geometry);
+  if (glm::distance(a.x, b.x) < same) return true;
   const auto leads = [&](const Sighting& from, const Sighting& to) {
     if (is_near(geometry, from, to)) return true;
     const std::optional<Contact> c = climbed(geometry, from.contact, to.n);
-    return c && glm::distance(geometry.point(*c), to.x) < same_branch;
+    return c && glm::distance(geometry.point(*c), to.x) < same;
   };
   return leads(a, b) && leads(b, a);
 }
@@ -60,7 +66,7 @@ std::optional<CommonSupport> parting(const ContactGeometry& geometry, const Sigh
     s.contact[0] = *of_a;
     s.contact[1] = *of_b;
     s.evaluate(geometry);
-    if (glm::length(s.d()) < same_branch) return std::nullopt;
+    if (glm::length(s.d()) < branch_distance(geometry)) return std::nullopt;
     const double value = glm::dot(s.d(), s.n);
     if (std::abs(value) < parting_tie) return s;
     (value > 0 ? lower : upper) = t;

@@ -9,6 +9,8 @@ namespace taut {
 
 /// Contacts within this distance, in the scene's frame, are of one branch of the support function.
 inline constexpr double same_branch = 1e-6;
+/// Or, far from the origin, within the distance over which heights tie.
+double branch_distance(const ContactGeometry& geometry);
 
 /// A direction and its support contact.
 struct Sighting {

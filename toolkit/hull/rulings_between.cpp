@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact_exits.h"
 
 namespace taut {
 namespace {
@@ -24,6 +25,12 @@ double square(const dvec3& x) { return glm::dot(x, x); }
 
 /// A free end: its two points are one, though they may come from two elements.
 bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
+
+/// So flat is one of the contacts that where it lies is rounding.
+bool is_flat(const CommonSupport& s, const ContactGeometry& geometry) {
+  const double least = std::sqrt(geometry.rounding());
+  return is_flat(s.jet[0], s.n, least) || is_flat(s.jet[1], s.n, least);
+}
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.
 bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
@@ -104,6 +111,11 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
   if (merged(from) == merged(to)) {
+    nearly_merges_ =
+        !is_distinct(shorter_) && continues(system.geometry(), from.contact[0], from.contact[1]);
+    lies_flat_ = system.geometry().tie() > support_tie &&
+                 (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
+                  is_flat(CommonSupport(system.geometry(), to), system.geometry()));
     fit();
   } else {
     free_end_ = merged(from) ? 0 : 1;
@@ -111,19 +123,34 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   }
 }
 
-/// Between the ends, with their slopes unless these are noise (next to a pole, say).
+/// Between the ends, with their slopes unless these are noise (next to a pole or a free end, say).
 void RulingsBetween::fit() {
   double s = 0;
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
-    if (find_speed(m) && !bends(from_, to_, m)) {
+    if (!is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
       polynomial_.add(s, place(m), rate(m));
     } else {
       polynomial_.add(s, place(m));
     }
     s = 1;
   }
+  if (lies_flat_) refine();
+}
+
+/// Adds exact rulings in between.
+void RulingsBetween::refine() {
+  for (const double s : {0.5, 0.25, 0.75}) {
+    MovingRuling m = moving(s, 1);
+    if (solve_share(m, s) && find_speed(m)) polynomial_.add(s, place(m), rate(m));
+  }
+}
+
+/// The slope at this end is.
+bool RulingsBetween::is_noise(const CommonSupport& s) const {
+  if (nearly_merges_ && !is_distinct(glm::length(s.d()))) return true;
+  return lies_flat_ && is_flat(s, system_.geometry());
 }
 
 /// In the share of the longer one's length: from the end, the longer one and some in between, with
@@ -140,7 +167,7 @@ void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
   }
   polynomial_.add(1, place(m), rate(m));
   for (const double r : {0.75, 0.5, 0.25}) {
-    if (!is_distinct(r)) break;
+    if (!is_distinct(r * length_)) break;
     MovingRuling next = moving(r, 1);
     if (!solve_length(next, r) || !find_slope(next, r)) break;
     polynomial_.add(r, place(next), rate(next));
@@ -178,8 +205,7 @@ bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
 
 /// The rounding of the system's answer, a rounding unit over the cube of the length, is less than
 /// what a quadratic misses.
-bool RulingsBetween::is_distinct(double r) const {
-  const double length = r * length_;
+bool RulingsBetween::is_distinct(double length) {
   return length * length * length >= std::sqrt(rounding_unit);
 }
 

@@ -37,6 +37,10 @@ class RulingsBetween {
   /// The two are the same.
   bool empty() const { return square_ == 0; }
   bool merges() const { return free_end_ >= 0; }
+  /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
+  /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
+  /// to, or far from the origin one of them lies flat.
+  bool is_smoother() const { return merges() || nearly_merges_ || lies_flat_; }
   /// The ruling at s, which may leave [0, 1] by a little, but not beyond a free end. None if
   /// Newton's method does not converge to one near the interpolated one. Next to a free end the
   /// derivatives are the interpolation's.
@@ -68,10 +72,12 @@ class RulingsBetween {
   static State rate(const MovingRuling& m);
 
   void fit();
+  void refine();
+  bool is_noise(const CommonSupport& s) const;
   void fit_free_end(const Ruling& end, const Ruling& longer);
   bool solve_share(MovingRuling& m, double s) const;
   bool solve_length(MovingRuling& m, double r) const;
-  bool is_distinct(double r) const;
+  static bool is_distinct(double length);
   bool find_speed(MovingRuling& m) const;
   bool find_slope(MovingRuling& m, double r) const;
   bool is_near(const MovingRuling& start, const MovingRuling& m) const;
@@ -80,8 +86,10 @@ class RulingsBetween {
   const ContactSystem& system_;
   const Ruling& from_;
   const Ruling& to_;
-  double square_ = 0;      // of the chord
-  double shorter_ = 0;     // of the two rulings' lengths
+  double square_ = 0;   // of the chord
+  double shorter_ = 0;  // of the two rulings' lengths
+  bool nearly_merges_ = false;
+  bool lies_flat_ = false;
   int free_end_ = -1;      // at which the contacts merge
   double length_ = 0;      // of the ruling at the other one
   Polynomial polynomial_;  // in s, or in the length's share

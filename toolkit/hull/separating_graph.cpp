@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "taut/hull/arc_pieces.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
@@ -48,34 +49,6 @@ constexpr int least_refinements = 3;
 constexpr int most_refinements = 8;
 /// Part of its size within which a curve beside a refined cell accounts for it.
 constexpr double refined_margin = 1;
-
-/// Reverses the direction, and with it the order of contacts.
-void reverse(std::vector<ArcPiece>& pieces) {
-  std::reverse(pieces.begin(), pieces.end());
-  for (ArcPiece& piece : pieces) {
-    std::reverse(piece.rulings.begin(), piece.rulings.end());
-    for (Ruling& r : piece.rulings) {
-      std::swap(r.contact[0], r.contact[1]);
-      std::swap(r.point[0], r.point[1]);
-    }
-  }
-}
-
-bool same_elements(const Ruling& a, const Ruling& b) {
-  return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
-}
-
-/// Appends pieces that go on where these end.
-void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
-  auto first = more.begin();
-  if (!pieces.empty() && first != more.end() &&
-      same_elements(pieces.back().rulings.back(), first->rulings.front())) {
-    auto& to = pieces.back().rulings;
-    to.insert(to.end(), first->rulings.begin() + 1, first->rulings.end());
-    ++first;
-  }
-  std::move(first, more.end(), std::back_inserter(pieces));
-}
 
 class GraphTracer {
  public:

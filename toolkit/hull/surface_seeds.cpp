@@ -5,8 +5,8 @@
 #include <set>
 #include <tuple>
 
-#include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/merging.h"
 
 namespace taut {
 namespace {
@@ -79,6 +79,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
 std::optional<CommonSupport> separating_seed(const ContactSystem& system, SupportQuery& query,
                                              const SupportChange& change) {
   const ContactGeometry& geometry = system.geometry();
+  const double least = merging_distance(geometry);
   Contact on = change.on;
   SupportChange beyond = change;
   // The parameter that is the same along the side, and the other.
@@ -101,7 +102,7 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
     seed.n = beyond.n;
     seed.add(geometry, beyond.off);
     seed.add(geometry, beyond.winner);
-    if (glm::length(seed.d()) < merge_distance) return std::nullopt;
+    if (glm::length(seed.d()) < least) return std::nullopt;
     const auto solved = [&] {
       return system.solve(seed, [&](const CommonSupport& now) {
         LinearEquation e;
@@ -120,7 +121,7 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
       if (!solved()) continue;
     }
     if (seed.contact[0].*free < low || seed.contact[0].*free > high || !in_range(seed.contact[1]) ||
-        glm::length(seed.d()) < merge_distance ||
+        glm::length(seed.d()) < least ||
         query(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + geometry.tie()) {
       continue;
     }

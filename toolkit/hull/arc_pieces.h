@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/hull/contact_geometry.h"
+#include "taut/hull/hull_boundary.h"
+
+namespace taut {
+
+/// Pieces of arcs shorter than this, in (n, x_0, x_1), are none.
+inline constexpr double shortest_piece = 1e-7;
+
+/// Leaves out pieces without length, as they arise where a contact passes a corner between elements
+/// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
+/// Contacts with which the others begin and end are in their normal form (turned_to).
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
+
+/// Reverses the direction, and with it the order of contacts.
+void reverse(std::vector<ArcPiece>& pieces);
+
+/// Both contacts are of the same elements.
+bool same_elements(const Ruling& a, const Ruling& b);
+
+/// Appends pieces that go on where these end.
+void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more);
+
+}  // namespace taut

@@ -1,0 +1,113 @@
+#include "taut/hull/curve_point.h"
+
+#include <array>
+
+#include "taut/hull/contact_exits.h"
+#include "taut/hull/rulings_between.h"
+
+namespace taut {
+namespace {
+
+/// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
+constexpr double border_slack = 1e-9;
+/// How far contacts may leave their elements by rounding.
+constexpr double parameter_slack = 1e-9;
+/// Where rulings are looked for between the last one and a free end.
+constexpr std::array<double, 5> merging_shares = {0.1, 0.3, 0.5, 0.7, 0.9};
+
+}  // namespace
+
+CommonSupport CurvePoint::predicted(double length) const {
+  CommonSupport s = at;
+  s.n = glm::normalize(s.n + length * tangent.n);
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.contact[i].u += length * tangent.parameter[i].x;
+    s.contact[i].v += length * tangent.parameter[i].y;
+  }
+  s.evaluate(geometry_);
+  return s;
+}
+
+std::optional<CommonSupport> CurvePoint::stepped(double length) const {
+  CommonSupport s = predicted(length);
+  const bool solved = system_.solve(s, [&](const CommonSupport& now) {
+    LinearEquation e;
+    e.residual = length_to(now) - length;
+    e.n = tangent.n;
+    for (int i = 0; i < 2; ++i) e.add_point(now, i, tangent.x[std::size_t(i)]);
+    return e;
+  });
+  if (!solved) return std::nullopt;
+  return s;
+}
+
+bool CurvePoint::supports(const CommonSupport& s) const {
+  return query_(s.n, s.contact[0]).h <= glm::dot(s.jet[0].x, s.n) + geometry_.tie();
+}
+
+bool CurvePoint::is_followed(Ruling from, const Ruling& to) const {
+  for (std::size_t i = 0; i < 2; ++i) {
+    from.contact[i] = turned_to(geometry_, from.contact[i], to.contact[i]);
+  }
+  const RulingsBetween between(system_, from, to);
+  if (between.empty()) return true;
+  // As lengths: about a pole parameters are less exact.
+  const auto stays = [&](double t, const dvec3& dx) {
+    return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) <= border_distance();
+  };
+  const auto holds = [&](double s) {
+    const std::optional<MovingRuling> m = between(s);
+    if (!m) return false;
+    const CommonSupport& moved = m->at;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Contact& c = moved.contact[i];
+      if (!stays(c.u, moved.jet[i].dx[0]) || !stays(c.v, moved.jet[i].dx[1])) return false;
+    }
+    return supports(moved);
+  };
+  if (!between.merges()) return holds(0.5);
+  return std::all_of(merging_shares.begin(), merging_shares.end(), holds);
+}
+
+bool CurvePoint::settle() {
+  const CurveTangent* before = tangent.n == dvec3(0.0) ? nullptr : &tangent;
+  const std::optional<CurveTangent> t = system_.tangent(at, before);
+  if (!t) return false;
+  tangent = *t;
+  bool changed = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact c = at.contact[i];
+    if (c.kind != SourceKind::face) continue;
+    for (const ContactExit& exit : exits(geometry_, c)) {
+      const LinearEquation e = exit_margin(geometry_, at, int(i), exit);
+      const double along = glm::dot(e.parameter[i], tangent.parameter[i]);
+      // As lengths: about a pole parameters are less exact.
+      const Side side = all_sides[std::size_t(exit.index)];
+      const double size = std::min(1.0, glm::length(at.jet[i].dx[along_v(side) ? 0 : 1]));
+      const double slack = std::max(border_slack, geometry_.rounding());
+      if (std::max(std::abs(e.residual), std::abs(along)) * size > slack) continue;
+      const std::optional<Contact> over = beyond(geometry_, c, exit);
+      if (!over || over->kind == SourceKind::vertex) continue;
+      if (over->kind == SourceKind::face) {
+        // How the contact moves where the direction turns into its own region.
+        const dvec3 inward = i == 0 ? at.d() : -at.d();
+        const std::optional<dvec2> rate = parameter_rate(at.jet[i], at.n, inward);
+        if (!rate || glm::dot(e.parameter[i], *rate) >= 0) continue;
+      }
+      at.contact[i] = *over;
+      changed = true;
+      break;
+    }
+  }
+  if (!changed) return true;
+  at.evaluate(geometry_);
+  const std::optional<CurveTangent> again = system_.tangent(at, before);
+  if (again) tangent = *again;
+  return again.has_value();
+}
+
+double CurvePoint::border_distance() const {
+  return std::max(parameter_slack, 2 * geometry_.rounding());
+}
+
+}  // namespace taut

@@ -1,0 +1,205 @@
+#include "taut/hull/pole_passage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "taut/core/tolerances.h"
+#include "taut/hull/contact_exits.h"
+
+namespace taut {
+namespace {
+
+/// Turns of n that are tried as the first step away from where contacts are singular.
+constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
+/// Share of such a turn by which contacts are told apart.
+constexpr double share_inward = 0.1;
+/// Normal curvature, in the scene's frame, below which a contact is taken for flat.
+constexpr double least_curvature = 1e-8;
+
+}  // namespace
+
+Contact at_pole(Contact c, Side side) {
+  (along_v(side) ? c.u : c.v) = at_upper_end(side) ? 1 : 0;
+  return c;
+}
+
+std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact& c,
+                                  const dvec3& x) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const Contact there = at_pole(c, side);
+    if (is_pole(geometry, c, side) && glm::distance(geometry.point(there), x) < join_distance) {
+      return there;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Contact> in_element(const ContactGeometry& geometry, const Contact& c,
+                                  const Contact& other) {
+  if (!pole_side(geometry, c)) return expressed_in(geometry, c, other);
+  return at_pole_of(geometry, other, geometry.point(c));
+}
+
+bool PolePassage::reach(int contact, Side side, double length) {
+  const auto i = std::size_t(contact);
+  const std::size_t other = 1 - i;
+  CommonSupport pole = point_.at;
+  pole.contact[i] = at_pole(point_.at.contact[i], side);
+  pole.n = unit_normal(geometry_, pole.contact[i]);
+  if (glm::dot(pole.n, point_.at.n) < 0) pole.n = -pole.n;
+  const std::optional<Contact> c = climbed(geometry_, point_.at.contact[other], pole.n);
+  if (!c || !same_element(*c, point_.at.contact[other])) return false;
+  pole.contact[other] = *c;
+  // At another pole its parameter along the side is as it was, not where the climb came from.
+  if (const std::optional<Side> at = pole_side(geometry_, *c)) {
+    pole.contact[other] = at_pole(point_.at.contact[other], *at);
+  }
+  pole.evaluate(geometry_);
+  const double ahead = point_.length_to(pole);
+  if (std::abs(glm::dot(pole.d(), pole.n)) > geometry_.tie() || ahead < 0 || ahead > 2 * length ||
+      point_.query()(pole.n, pole.contact[i]).h >
+          glm::dot(pole.jet[i].x, pole.n) + geometry_.tie()) {
+    return false;
+  }
+  point_.at = pole;
+  return true;
+}
+
+bool PolePassage::is_singular(int contact) const {
+  const auto i = std::size_t(contact);
+  return pole_side(geometry_, point_.at.contact[i]) ||
+         is_flat(point_.at.jet[i], point_.at.n, least_curvature);
+}
+
+std::optional<Ruling> PolePassage::leave() {
+  const CommonSupport start = point_.at;
+  for (const double step : leaving_steps) {
+    point_.at = start;
+    if (const std::optional<Ruling> first = leave(step)) return first;
+  }
+  point_.at = start;
+  return std::nullopt;
+}
+
+std::optional<Ruling> PolePassage::leave(double step) {
+  const CommonSupport start = point_.at;
+  const std::optional<CommonSupport> beside = stepped_aside(step);
+  if (!beside) return std::nullopt;
+  point_.at = *beside;
+  point_.tangent = CurveTangent();
+  if (!point_.settle()) return std::nullopt;
+  const CommonSupport next = point_.at;
+  point_.at = start;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<Contact> c = in_element(geometry_, start.contact[i], next.contact[i]);
+    if (!c) return std::nullopt;
+    point_.at.contact[i] = *c;
+  }
+  point_.at.evaluate(geometry_);
+  const Ruling first = point_.at.ruling();
+  point_.at = next;
+  return first;
+}
+
+/// The contact of the branch that contact i moves on in a direction beside: what supports where the
+/// direction turns a little into its region, if that is near; else where a climb leads.
+std::optional<Contact> PolePassage::aside(int i, double step, const dvec3& n) const {
+  const Contact& own = point_.at.contact[std::size_t(i)];
+  const dvec3 inward = (i == 0 ? 1.0 : -1.0) * unit(point_.at.d());
+  const dvec3 tilted = glm::normalize(n + share_inward * step * inward);
+  const Support top = point_.query()(tilted, own);
+  if (glm::distance(top.point, point_.at.jet[std::size_t(i)].x) <
+      0.25 * glm::length(point_.at.d())) {
+    const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, top.contact, tilted), n);
+    if (c) return c;
+  }
+  return pole_side(geometry_, own) ? beside_pole(geometry_, own, n) : climbed(geometry_, own, n);
+}
+
+/// The common support of the two contacts' branches where n has turned by a step along the curve.
+std::optional<CommonSupport> PolePassage::stepped_aside(double step) const {
+  const dvec3 along = unit(glm::cross(point_.at.n, point_.at.d()));
+  CommonSupport next = point_.at;
+  next.n = glm::normalize(point_.at.n + step * along);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<Contact> c = aside(int(i), step, next.n);
+    if (!c) return std::nullopt;
+    next.contact[i] = *c;
+  }
+  next.evaluate(geometry_);
+  const auto corrected = [&] {
+    return system_.solve(next, [&](const CommonSupport& now) {
+      LinearEquation e;
+      e.residual = glm::dot(now.n - point_.at.n, along) - step;
+      e.n = along;
+      return e;
+    });
+  };
+  // Twice, since near a pole parameters are less exact than points.
+  if (!corrected() || !corrected()) return std::nullopt;
+  bool moved = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& own = next.contact[i];
+    const Contact inside{own.instance, own.kind, own.element, std::clamp(own.u, 0.0, 1.0),
+                         std::clamp(own.v, 0.0, 1.0)};
+    if (inside.u == own.u && inside.v == own.v) continue;
+    // Beyond the border of its element.
+    const std::optional<Contact> c = climbed(geometry_, inside, next.n);
+    if (!c) return std::nullopt;
+    own = *c;
+    moved = true;
+  }
+  next.evaluate(geometry_);
+  if ((moved && !corrected()) || point_.query()(next.n, next.contact[0]).h >
+                                     glm::dot(next.jet[0].x, next.n) + geometry_.tie()) {
+    return std::nullopt;
+  }
+  return next;
+}
+
+/// The straight side of the landmark that the two contacts are nearest to, arriving across it.
+std::optional<std::size_t> PolePassage::nearest_side(const FacetContacts& facet) const {
+  std::optional<std::size_t> best;
+  double least = 0;
+  const std::size_t count = facet.points.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (facet.is_curved(k)) continue;
+    const double off = glm::distance(facet.points[k], point_.at.jet[1].x) +
+                       glm::distance(facet.points[(k + 1) % count], point_.at.jet[0].x);
+    if (best && off >= least) continue;
+    best = k;
+    least = off;
+  }
+  return best;
+}
+
+std::optional<Ruling> PolePassage::arrival(const Landmark& landmark, double length) const {
+  if (glm::distance(landmark.n, point_.at.n) > 1.5 * length) return std::nullopt;
+  const FacetContacts& facet = landmark.facet;
+  const std::optional<std::size_t> side = nearest_side(facet);
+  if (!side) return std::nullopt;
+  CommonSupport end = point_.at;
+  end.n = landmark.n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t corner = (*side + 1 - i) % facet.points.size();
+    std::optional<Contact> there =
+        in_element(geometry_, facet.contacts[corner], point_.at.contact[i]);
+    if (!there) there = climbed(geometry_, point_.at.contact[i], landmark.n);
+    if (!there || !same_element(*there, point_.at.contact[i]) ||
+        glm::distance(geometry_.point(*there), facet.points[corner]) > same_contact) {
+      return std::nullopt;
+    }
+    end.contact[i] = *there;
+  }
+  end.evaluate(geometry_);
+  const double ahead = point_.length_to(end);
+  if (ahead <= margin_slack || ahead > length + margin_slack ||
+      point_.distance_to(end) > (1 + correction_limit) * ahead) {
+    return std::nullopt;
+  }
+  return end.ruling();
+}
+
+}  // namespace taut

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+
+#include "taut/hull/curve_point.h"
+#include "taut/hull/supporting_poles.h"
+
+namespace taut {
+
+/// A contact at the pole of its side, at the same parameter along the side.
+Contact at_pole(Contact c, Side side);
+
+/// The contact at the pole that its patch has at x, at the same parameter along the side; none if
+/// it has none there.
+std::optional<Contact> at_pole_of(const ContactGeometry& geometry, const Contact& c,
+                                  const dvec3& x);
+
+/// The point of a contact as one of the element of `other`; a pole's at the parameter of `other`
+/// along its side.
+std::optional<Contact> in_element(const ContactGeometry& geometry, const Contact& c,
+                                  const Contact& other);
+
+/// Takes a point of a separating curve where its tangent does not tell how it goes on, at poles and
+/// where elements are flat: away from there, into it, and past it. Along chords.
+class PolePassage {
+ public:
+  /// The point outlives it.
+  explicit PolePassage(CurvePoint& point)
+      : geometry_(point.geometry()), system_(point.system()), point_(point) {}
+
+  /// Whether a contact may move without the direction, or its parameters fail: at a pole, and where
+  /// its element is flat along some direction.
+  bool is_singular(int contact) const;
+  /// Takes the first step away from a common support of which contacts are singular. The support as
+  /// a ruling of the elements that the point is in then, or none: the point stays.
+  std::optional<Ruling> leave();
+  /// Goes to a pole, where the patch's parameters fail, if the curve does so to within
+  /// geometry.tie(), in a step of this length.
+  bool reach(int contact, Side side, double length);
+  /// The ruling with which the curve arrives in a landmark that lies within a step of this length.
+  std::optional<Ruling> arrival(const Landmark& landmark, double length) const;
+
+ private:
+  std::optional<Ruling> leave(double step);
+  std::optional<CommonSupport> stepped_aside(double step) const;
+  std::optional<Contact> aside(int i, double step, const dvec3& n) const;
+  std::optional<std::size_t> nearest_side(const FacetContacts& facet) const;
+
+  const ContactGeometry& geometry_;
+  const ContactSystem& system_;
+  CurvePoint& point_;
+};
+
+}  // namespace taut
