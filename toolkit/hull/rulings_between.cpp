@@ -16,6 +16,8 @@ constexpr double correction_share = 0.15;
 constexpr double least_length = 0.1;
 /// What rounding may move contacts by that nearly merge.
 constexpr double rounded = 1e-6;
+/// Contacts whose distance falls to less than this share between two rulings are about to merge.
+constexpr double merging_share = 0.25;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
@@ -111,8 +113,7 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
   if (merged(from) == merged(to)) {
-    nearly_merges_ =
-        !is_distinct(shorter_) && continues(system.geometry(), from.contact[0], from.contact[1]);
+    nearly_merges_ = nearly_merge();
     lies_flat_ = system.geometry().tie() > support_tie &&
                  (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
                   is_flat(CommonSupport(system.geometry(), to), system.geometry()));
@@ -121,6 +122,14 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     free_end_ = merged(from) ? 0 : 1;
     fit_free_end(merged(from) ? from : to, merged(from) ? to : from);
   }
+}
+
+/// Along a chord that is little more than their approach.
+bool RulingsBetween::nearly_merge() const {
+  const double longer = std::max(glm::distance(from_.point[0], from_.point[1]),
+                                 glm::distance(to_.point[0], to_.point[1]));
+  return !is_distinct(shorter_) && shorter_ < merging_share * longer && square_ < longer * longer &&
+         continues(system_.geometry(), from_.contact[0], from_.contact[1]);
 }
 
 /// Between the ends, with their slopes unless these are noise (next to a pole or a free end, say).

@@ -71,6 +71,7 @@ class RulingsBetween {
   static State place(const MovingRuling& m);
   static State rate(const MovingRuling& m);
 
+  bool nearly_merge() const;
   void fit();
   void refine();
   bool is_noise(const CommonSupport& s) const;
