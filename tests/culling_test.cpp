@@ -204,9 +204,10 @@ Shape random_patches(Random& random, int count, int least_degree) {
   Shape shape;
   for (int i = 0; i < count; ++i) {
     const double weights = pick(random, 0, 1) == 0 ? 1 : log_uniform(random, 1.01, 10);
-    const BezierPatch patch =
-        random_patch(random, pick(random, least_degree, 4), pick(random, least_degree, 4), weights);
-    shape = shape + shifted(of_patch(patch), random_point(random));
+    const dvec3 place = random_point(random);
+    const int q = pick(random, least_degree, 4);
+    const int p = pick(random, least_degree, 4);
+    shape = shape + shifted(of_patch(random_patch(random, p, q, weights)), place);
   }
   return shape;
 }
