@@ -50,9 +50,7 @@ class GaussMap {
   std::span<const GaussNode> nodes(int part) const { return maps_[std::size_t(part)].nodes; }
   int root_count(int part) const { return maps_[std::size_t(part)].root_count; }
   /// Such roots have no children (PatchNets).
-  bool ruled(int part, int root) const {
-    return maps_[std::size_t(part)].ruled[std::size_t(root)];
-  }
+  bool ruled(int part, int root) const { return maps_[std::size_t(part)].ruled[std::size_t(root)]; }
 
   /// A leaf and a sign with which it may touch a plane.
   struct Entry {
