@@ -228,6 +228,10 @@ bool Connector::rulings_go_on(const Join& join) const {
 /// G1 along a border x(t) is det(X, X', A, B) = 0 with homogeneous X and cross derivatives A, B: a
 /// polynomial of degree at most 4 d - 2, which 4 d - 1 parameters determine.
 bool Connector::is_smooth(const Use& a, const Use& b) const {
+  if (patch_of(a.side).smooth_sides[to_size(a.side % 4)] &&
+      patch_of(b.side).smooth_sides[to_size(b.side % 4)]) {
+    return true;
+  }
   const Side side_a = all_sides[to_size(a.side % 4)];
   const Side side_b = all_sides[to_size(b.side % 4)];
   const bool reversed = a.reversed != b.reversed;
