@@ -243,6 +243,96 @@ LoopMatrix loop_to_bezier(const Far::PatchTable& table, const Far::PatchTable::P
   return (m * 48.0).array().round() / 48.0;
 }
 
+/// Sheets of faces that meet in edges that are no manifold, parted there and in the ends of these:
+/// infinitely sharp as they are, each sheet has its own boundary along them.
+class Sheets {
+ public:
+  explicit Sheets(const Far::TopologyLevel& level) : level_(level) {
+    for (int f = 0; f < level.GetNumFaces(); ++f) {
+      const auto vertices = level.GetFaceVertices(f);
+      description_.sizes.push_back(vertices.size());
+      first_.push_back(to_int(description_.vertices.size()));
+      description_.vertices.insert(description_.vertices.end(), to_size(vertices.size()), -1);
+      if (level.IsFaceHole(f)) description_.holes.push_back(f);
+    }
+    for (int v = 0; v < level.GetNumVertices(); ++v) part_vertex(v);
+    add_creases();
+    description_.point_count = originals_.size();
+  }
+
+  const Description& description() const { return description_; }
+  /// The level's vertices, in the order of the new ones.
+  const std::vector<int>& originals() const { return originals_; }
+
+ private:
+  /// A copy for each set of faces about the vertex that manifold edges connect.
+  void part_vertex(int v) {
+    const auto faces = level_.GetVertexFaces(v);
+    const auto places = level_.GetVertexFaceLocalIndices(v);
+    std::vector<int> copy(to_size(faces.size()), -1);
+    for (int i = 0; i < faces.size(); ++i) {
+      if (copy[to_size(i)] >= 0) continue;
+      const int number = add_copy(v);
+      std::vector<int> reached = {i};
+      copy[to_size(i)] = number;
+      for (std::size_t k = 0; k < reached.size(); ++k) {
+        for (int j = 0; j < faces.size(); ++j) {
+          if (copy[to_size(j)] >= 0 || !are_joined(v, faces[reached[k]], faces[j])) continue;
+          copy[to_size(j)] = number;
+          reached.push_back(j);
+        }
+      }
+    }
+    for (int i = 0; i < faces.size(); ++i) {
+      description_.vertices[to_size(first_[to_size(faces[i])] + places[i])] = copy[to_size(i)];
+    }
+  }
+
+  int add_copy(int v) {
+    const int number = to_int(originals_.size());
+    originals_.push_back(v);
+    const bool corner = level_.IsVertexNonManifold(v) &&
+                        level_.GetVertexRule(v) == Sdc::Crease::RULE_CORNER;
+    const float sharpness = corner ? float(infinite_sharpness) : level_.GetVertexSharpness(v);
+    if (sharpness > 0) {
+      description_.corner_vertices.push_back(number);
+      description_.corner_sharpness.push_back(sharpness);
+    }
+    return number;
+  }
+
+  /// By a manifold edge at the vertex; one face is joined to itself.
+  bool are_joined(int v, int a, int b) const {
+    if (a == b) return true;
+    const auto edges = level_.GetVertexEdges(v);
+    return std::any_of(edges.begin(), edges.end(), [&](int e) {
+      const auto faces = level_.GetEdgeFaces(e);
+      return !level_.IsEdgeNonManifold(e) && faces.size() == 2 &&
+             ((faces[0] == a && faces[1] == b) || (faces[0] == b && faces[1] == a));
+    });
+  }
+
+  void add_creases() {
+    for (int f = 0; f < level_.GetNumFaces(); ++f) {
+      const auto edges = level_.GetFaceEdges(f);
+      for (int k = 0; k < edges.size(); ++k) {
+        const float sharpness = level_.GetEdgeSharpness(edges[k]);
+        if (sharpness <= 0) continue;
+        const int first = first_[to_size(f)];
+        for (const int corner : {k, (k + 1) % edges.size()}) {
+          description_.crease_vertices.push_back(description_.vertices[to_size(first + corner)]);
+        }
+        description_.crease_sharpness.push_back(sharpness);
+      }
+    }
+  }
+
+  const Far::TopologyLevel& level_;
+  Description description_;
+  std::vector<int> first_;  // of each face's vertices
+  std::vector<int> originals_;
+};
+
 }  // namespace
 
 struct CageLevel::Topology {
@@ -292,9 +382,18 @@ struct CageLevel::Topology {
   std::vector<Primvar> patch_points(const Far::PatchTable& table) const {
     std::vector<Primvar> all(points.size() + to_size(table.GetNumLocalPoints()));
     for (std::size_t i = 0; i < points.size(); ++i) all[i].x = points[i];
-    if (table.GetNumLocalPoints() > 0) {
-      table.GetLocalPointStencilTable<double>()->UpdateValues(all.data(),
-                                                              all.data() + points.size());
+    if (table.GetNumLocalPoints() == 0) return all;
+    // Of Loop caps, weights are rounded to single precision, but so is their sum.
+    const Far::StencilTableReal<double>& stencils = *table.GetLocalPointStencilTable<double>();
+    for (int i = 0; i < stencils.GetNumStencils(); ++i) {
+      const Far::StencilReal<double> stencil = stencils.GetStencil(i);
+      const Far::Index* const vertices = stencil.GetVertexIndices();
+      const dvec3 origin = points[to_size(vertices[0])];
+      dvec3 x(0.0);
+      for (int k = 0; k < stencil.GetSize(); ++k) {
+        x += stencil.GetWeights()[k] * (points[to_size(vertices[k])] - origin);
+      }
+      all[points.size() + to_size(i)].x = origin + x;
     }
     return all;
   }
@@ -358,8 +457,15 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
   options.SetTriangleSubdivision(cage.smooth_triangles ? Sdc::Options::TRI_SUB_SMOOTH
                                                        : Sdc::Options::TRI_SUB_CATMARK);
   topology_->build(description);
-  // Finer levels have what the rule makes of the boundary as tags.
+  // From here on, tags say what the rule makes of the boundary.
   options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+  count_non_manifold();
+  if (non_manifold_edges_ + non_manifold_vertices_ > 0) {
+    const Sheets sheets(topology_->level());
+    topology_->points.clear();
+    for (const int v : sheets.originals()) topology_->points.push_back(cage.points[to_size(v)]);
+    topology_->build(sheets.description());
+  }
   const Far::TopologyLevel base = topology_->level();
   cells_.reserve(cage.faces.size());
   for (int f = 0; f < base.GetNumFaces(); ++f) {
@@ -384,7 +490,8 @@ std::vector<CellPatch> CageLevel::patches() const {
       const int c = cell_of[to_size(face)];
       if (c < 0) continue;
       CellPatch& patch = result[to_size(c)];
-      const bool exact = param.IsRegular() && !topology.is_near_semi_sharp(face);
+      patch.semi_sharp = topology.is_near_semi_sharp(face);
+      const bool exact = param.IsRegular() && !patch.semi_sharp;
       patch.kind = exact ? CellPatch::Kind::regular : CellPatch::Kind::cap;
       patch.smooth = topology.smooth_sides(face);
       const auto vertices = table->GetPatchVertices(array, i);
@@ -482,18 +589,14 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
   return next;
 }
 
-long CageLevel::non_manifold_edges() const {
+void CageLevel::count_non_manifold() {
   const Far::TopologyLevel base = topology_->level();
-  long count = 0;
-  for (int e = 0; e < base.GetNumEdges(); ++e) count += base.IsEdgeNonManifold(e) ? 1 : 0;
-  return count;
-}
-
-long CageLevel::non_manifold_vertices() const {
-  const Far::TopologyLevel base = topology_->level();
-  long count = 0;
-  for (int v = 0; v < base.GetNumVertices(); ++v) count += base.IsVertexNonManifold(v) ? 1 : 0;
-  return count;
+  for (int e = 0; e < base.GetNumEdges(); ++e) {
+    non_manifold_edges_ += base.IsEdgeNonManifold(e) ? 1 : 0;
+  }
+  for (int v = 0; v < base.GetNumVertices(); ++v) {
+    non_manifold_vertices_ += base.IsVertexNonManifold(v) ? 1 : 0;
+  }
 }
 
 }  // namespace taut

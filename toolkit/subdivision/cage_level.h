@@ -26,6 +26,8 @@ struct CellPatch {
     cap,      ///< stands for it: its corners are the limit's, and so are its borders to regular cells
   };
   Kind kind = Kind::none;
+  /// It is, or meets in a vertex, what is semi-sharp.
+  bool semi_sharp = false;
   /// Catmull-Clark: a bicubic net, 16 points along v within along u. Loop: 15 points of a quartic
   /// triangle, (i, j) counts towards the second and third corner: (0,0) .. (4,0), (0,1) .. (3,1),
   /// .. (0,4).
@@ -63,15 +65,19 @@ class CageLevel {
   /// The next level of some cells, in their order, each's children in theirs.
   CageLevel refined(std::span<const std::size_t> cells) const;
 
-  /// What OpenSubdiv treats by rules of its own: edges with more than two faces, or two that run
-  /// alike, and vertices about which faces are no fan.
-  long non_manifold_edges() const;
-  long non_manifold_vertices() const;
+  /// Of the control cage, what OpenSubdiv treats by rules of its own, as infinitely sharp: edges
+  /// with more than two faces, or two that run alike, or both ends in one vertex; and vertices about
+  /// which faces are no fan. The sheets of faces that meet there are parted.
+  long non_manifold_edges() const { return non_manifold_edges_; }
+  long non_manifold_vertices() const { return non_manifold_vertices_; }
 
  private:
   struct Topology;
   CageLevel();
+  void count_non_manifold();
 
+  long non_manifold_edges_ = 0;
+  long non_manifold_vertices_ = 0;
   std::unique_ptr<Topology> topology_;
   std::vector<CageCell> cells_;
 };

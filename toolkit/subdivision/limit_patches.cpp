@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -19,6 +20,9 @@ int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Levels whose patches' corners are the known points around what remains of a region.
 constexpr std::size_t levels_around = 3;
+
+/// How many diameters of a region such points are away at most.
+constexpr double sizes_around = 16;
 
 /// Levels after which a region is left as it is: it halves at least every other one.
 constexpr int level_limit = 96;
@@ -88,7 +92,8 @@ class Refinement {
   void take_regular();
   void sort_out();
   void finish_or_refine(const std::vector<std::size_t>& region);
-  double bound_of(const std::vector<std::size_t>& region) const;
+  double bound_of(const std::vector<std::size_t>& region, double enough) const;
+  Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
   void emit(std::size_t cell);
   void count_irregular();
   void go_down();
@@ -199,8 +204,8 @@ void Refinement::sort_out() {
 }
 
 /// What stands for a region and the region itself are no farther than this from the convex hull of
-/// points of the surface.
-double Refinement::bound_of(const std::vector<std::size_t>& region) const {
+/// points of the surface; anything above `enough` if it is more than that.
+double Refinement::bound_of(const std::vector<std::size_t>& region, double enough) const {
   std::vector<dvec3> known;
   const int number = level_.cells()[region.front()].region;
   if (number >= 0) {
@@ -222,21 +227,43 @@ double Refinement::bound_of(const std::vector<std::size_t>& region) const {
   for (const std::size_t c : region) {
     level_.enclosure(c, points);
     points.insert(points.end(), patches_[c].points.begin(), patches_[c].points.end());
-    for (const dvec3& p : points) bound = std::max(bound, distance_from_hull_bound(p, known));
+    for (const dvec3& p : points) {
+      bound = std::max(bound, distance_from_hull_bound(p, known));
+      if (bound > enough) return bound;
+    }
   }
   return bound;
 }
 
+/// Those of the points that are near a region, as its own size goes.
+Surroundings Refinement::near(const std::vector<std::size_t>& region,
+                              const Surroundings& surroundings) const {
+  Box box;
+  for (const std::size_t c : region) {
+    for (const dvec3& p : corners(patches_[c])) box.include(p);
+  }
+  const double reach = sizes_around * diagonal(box);
+  Surroundings result(surroundings.size());
+  for (std::size_t i = 0; i < surroundings.size(); ++i) {
+    for (const dvec3& p : surroundings[i]) {
+      if (glm::distance(p, box.center()) <= reach) result[i].push_back(p);
+    }
+  }
+  return result;
+}
+
 void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
   const bool has_caps = std::all_of(region.begin(), region.end(), [&](std::size_t c) {
-    return patches_[c].kind == CellPatch::Kind::cap;
+    return patches_[c].kind == CellPatch::Kind::cap && !patches_[c].semi_sharp;
   });
   if (has_caps && depth_ > 0) {
-    const double bound = bound_of(region);
-    const bool small = std::any_of(region.begin(), region.end(), [&](std::size_t c) {
-      return least_side(patches_[c]) < least_side_;
-    });
-    if (bound <= tolerance_ || small || depth_ >= level_limit) {
+    const bool small = depth_ >= level_limit ||
+                       std::any_of(region.begin(), region.end(), [&](std::size_t c) {
+                         return least_side(patches_[c]) < least_side_;
+                       });
+    const double bound =
+        bound_of(region, small ? std::numeric_limits<double>::infinity() : tolerance_);
+    if (bound <= tolerance_ || small) {
       result_.deviation_bound = std::max(result_.deviation_bound, bound);
       for (const std::size_t c : region) emit(c);
       return;
@@ -244,7 +271,7 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
   }
   const int parent = level_.cells()[region.front()].region;
   Surroundings around;
-  if (parent >= 0) around = surroundings_[to_size(parent)];
+  if (parent >= 0) around = near(region, surroundings_[to_size(parent)]);
   for (const std::size_t c : region) level_.cells()[c].region = to_int(surroundings_.size());
   surroundings_.push_back(std::move(around));
   refined_.insert(refined_.end(), region.begin(), region.end());

@@ -19,6 +19,29 @@ dvec3 through(int side, double a, double b) {
   return unit(x);
 }
 
+/// The largest (p - q) . n for directions n within an angle of an axis.
+double may_rise(const dvec3& p, const dvec3& q, const dvec3& axis, double cos_angle,
+                double sin_angle) {
+  const dvec3 d = p - q;
+  const double along = glm::dot(d, axis);
+  const double length = glm::length(d);
+  const double across = std::sqrt(std::max(0.0, length * length - along * along));
+  return across * cos_angle <= along * sin_angle ? length
+                                                 : along * cos_angle + across * sin_angle;
+}
+
+/// The four quarters of a cell, on the next level.
+std::array<std::size_t, 4> children(int level, std::size_t index) {
+  const std::size_t n = std::size_t{1} << level;
+  const std::size_t side = index / (n * n);
+  const std::size_t i = 2 * (index / n % n);
+  const std::size_t j = 2 * (index % n);
+  const auto number = [&](std::size_t a, std::size_t b) {
+    return (side * 2 * n + i + a) * 2 * n + j + b;
+  };
+  return {number(0, 0), number(0, 1), number(1, 0), number(1, 1)};
+}
+
 }  // namespace
 
 TouchTest::TouchTest() {
@@ -47,26 +70,24 @@ TouchTest::TouchTest() {
 }
 
 void TouchTest::add(std::span<const dvec3> points) {
-  if (points.empty()) return;
-  empty_ = false;
-  const auto update = [](Cell& cell, const dvec3& p) {
-    const double height = glm::dot(cell.axis, p);
-    if (height <= cell.height) return;
+  empty_ = empty_ && points.empty();
+  for (const dvec3& p : points) {
+    for (std::size_t side = 0; side < 6; ++side) add(p, 0, side);
+  }
+}
+
+/// Goes down where the point may be farther than what is known in some direction.
+void TouchTest::add(const dvec3& p, int level, std::size_t index) {
+  Cell& cell = levels_[to_size(level)][index];
+  const double height = glm::dot(cell.axis, p);
+  if (height > cell.height) {
     cell.height = height;
     cell.farthest = p;
-  };
-  // The finest cells take what is farthest in those before them, and all points of small sets.
-  constexpr std::size_t few = 4096;
-  const std::size_t exact_levels = points.size() <= few ? level_count : level_count - 1;
-  for (std::size_t level = 0; level < exact_levels; ++level) {
-    for (Cell& cell : levels_[level]) {
-      for (const dvec3& p : points) update(cell, p);
-    }
+  } else if (may_rise(p, cell.farthest, cell.axis, cell.cos_angle, cell.sin_angle) <= 0) {
+    return;
   }
-  if (exact_levels == level_count) return;
-  for (Cell& cell : levels_.back()) {
-    for (const Cell& coarse : levels_[level_count - 2]) update(cell, coarse.farthest);
-  }
+  if (level + 1 == level_count) return;
+  for (const std::size_t child : children(level, index)) add(p, level + 1, child);
 }
 
 bool TouchTest::may_touch(std::span<const dvec3> points) const {
@@ -80,24 +101,13 @@ bool TouchTest::may_touch(std::span<const dvec3> points) const {
 bool TouchTest::may_touch(std::span<const dvec3> points, int level, std::size_t index) const {
   const Cell& cell = levels_[to_size(level)][index];
   const bool below = std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
-    const dvec3 d = p - cell.farthest;
-    const double along = glm::dot(d, cell.axis);
-    const double across = std::sqrt(std::max(0.0, glm::dot(d, d) - along * along));
-    return along * cell.cos_angle + across * cell.sin_angle < 0 &&
-           across * cell.cos_angle > along * cell.sin_angle;
+    return may_rise(p, cell.farthest, cell.axis, cell.cos_angle, cell.sin_angle) < 0;
   });
   if (below) return false;
   if (level + 1 == level_count) return true;
-  const std::size_t n = std::size_t{1} << level;
-  const std::size_t side = index / (n * n);
-  const std::size_t i = index / n % n;
-  const std::size_t j = index % n;
-  for (const std::size_t a : {0U, 1U}) {
-    for (const std::size_t b : {0U, 1U}) {
-      if (may_touch(points, level + 1, (side * 2 * n + 2 * i + a) * 2 * n + 2 * j + b)) return true;
-    }
-  }
-  return false;
+  const auto next = children(level, index);
+  return std::any_of(next.begin(), next.end(),
+                     [&](std::size_t child) { return may_touch(points, level + 1, child); });
 }
 
 }  // namespace taut

@@ -32,9 +32,10 @@ class TouchTest {
     double height = 0;
   };
 
+  void add(const dvec3& p, int level, std::size_t cell);
   bool may_touch(std::span<const dvec3> points, int level, std::size_t cell) const;
 
-  static constexpr int level_count = 5;
+  static constexpr int level_count = 7;
   std::array<std::vector<Cell>, level_count> levels_;
   bool empty_ = true;
 };
