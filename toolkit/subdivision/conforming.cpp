@@ -63,6 +63,14 @@ class SideGraph {
     }
   }
 
+  /// Calls visit(side, other side) for those that meet whole, in twos.
+  template <class Visit>
+  void visit_pairs(const Visit& visit) const {
+    for (const EdgeNode& edge : edges_) {
+      if (edge.sides.size() == 2) visit(edge.sides[0], edge.sides[1]);
+    }
+  }
+
   bool is_split(int side) const { return split_[to_size(edge_of_[to_size(side)])]; }
 
   /// Splits further sides so that all polygons have an even number of such.
@@ -168,9 +176,9 @@ void split_corner(const SurfacePatch& whole, std::vector<SurfacePatch>& result) 
   below.smooth = {smooth(Side::u0), true, smooth(Side::v0), true};
   result.push_back(std::move(below));
   SurfacePatch beside = whole;
-  beside.bezier =
-      tapered(transposed(reversed_v(restricted(whole.bezier, upper, {0, 1}))), 0.5, 1);
-  beside.smooth = {smooth(Side::v1), true, true, smooth(Side::u1)};
+  const BezierPatch turned = transposed(reversed_v(restricted(whole.bezier, upper, {0, 1})));
+  beside.bezier = reversed_v(transposed(tapered(turned, 0.5, 1)));
+  beside.smooth = {true, smooth(Side::u1), true, smooth(Side::v1)};
   result.push_back(std::move(beside));
 }
 
@@ -195,7 +203,13 @@ void split_quad(const SurfacePatch& whole, const std::array<bool, 4>& split,
   } else {
     SurfacePatch turned = u1 ? flipped_u(whole) : whole;
     if (v0) turned = flipped_v(std::move(turned));
+    const std::size_t first = result.size();
     split_corner(turned, result);
+    // Sides of parts are parts of the same sides again.
+    for (std::size_t i = first; i < result.size(); ++i) {
+      if (v0) result[i] = flipped_v(std::move(result[i]));
+      if (u1) result[i] = flipped_u(std::move(result[i]));
+    }
   }
 }
 
@@ -243,8 +257,46 @@ void add_quads(const SurfaceTriangle& triangle, const SubTriangle& part,
     SurfacePatch quad;
     quad.bezier = quad_of_triangle(triangle.points, {c[k], to_last, to_next, centre});
     quad.cage_face = triangle.cage_face;
+    quad.exact = triangle.exact;
     quad.smooth = {part.smooth[before], true, part.smooth[k], true};
     result.push_back(std::move(quad));
+  }
+}
+
+/// Gives a bicubic patch that is not exact the side of another, numbered 4 * patch + side.
+void take_side(std::vector<SurfacePatch>& patches, int side, int from) {
+  SurfacePatch& patch = patches[to_size(side / 4)];
+  if (patch.exact) return;
+  const BezierCurve other =
+      border(patches[to_size(from / 4)].bezier, all_sides[to_size(from % 4)]);
+  const Side own = all_sides[to_size(side % 4)];
+  const bool along = along_v(own);
+  const int fixed = at_upper_end(own) ? 3 : 0;
+  const dvec3 start = dvec3(along ? patch.bezier.at(fixed, 0) : patch.bezier.at(0, fixed));
+  const bool is_reversed = glm::distance(start, dvec3(other.points.back())) <
+                           glm::distance(start, dvec3(other.points.front()));
+  for (int i = 0; i < 4; ++i) {
+    dvec4& p = along ? patch.bezier.at(fixed, i) : patch.bezier.at(i, fixed);
+    p = other.points[to_size(is_reversed ? 3 - i : i)];
+  }
+}
+
+/// The points of a quartic triangle's sides.
+constexpr std::array<std::array<std::size_t, 5>, 3> side_points = {
+    {{0, 1, 2, 3, 4}, {4, 8, 11, 13, 14}, {14, 12, 9, 5, 0}}};
+
+/// Gives a triangle that is not exact the side of another, numbered 3 * triangle + side.
+void take_side(std::vector<SurfaceTriangle>& triangles, int side, int from) {
+  SurfaceTriangle& triangle = triangles[to_size(side / 3)];
+  if (triangle.exact) return;
+  const std::vector<dvec3>& other = triangles[to_size(from / 3)].points;
+  const auto& own_points = side_points[to_size(side % 3)];
+  const auto& points = side_points[to_size(from % 3)];
+  const dvec3 start = triangle.points[own_points.front()];
+  const bool reversed =
+      glm::distance(start, other[points.back()]) < glm::distance(start, other[points.front()]);
+  for (std::size_t i = 0; i < 5; ++i) {
+    triangle.points[own_points[i]] = other[points[reversed ? 4 - i : i]];
   }
 }
 
@@ -263,6 +315,10 @@ std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches) {
     }
   }
   SideGraph graph(sides, 4);
+  graph.visit_pairs([&](int a, int b) {
+    const bool other_way = !patches[to_size(a / 4)].exact && patches[to_size(b / 4)].exact;
+    take_side(patches, other_way ? a : b, other_way ? b : a);
+  });
   graph.make_even();
   std::vector<SurfacePatch> result;
   result.reserve(patches.size());
@@ -274,10 +330,7 @@ std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches) {
   return result;
 }
 
-std::vector<SurfacePatch> conforming(const std::vector<SurfaceTriangle>& triangles) {
-  // The points of a quartic triangle's corners and of its sides.
-  constexpr std::array<std::array<std::size_t, 5>, 3> side_points = {
-      {{0, 1, 2, 3, 4}, {4, 8, 11, 13, 14}, {14, 12, 9, 5, 0}}};
+std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles) {
   std::vector<PolygonSide> sides;
   sides.reserve(3 * triangles.size());
   for (const SurfaceTriangle& t : triangles) {
@@ -287,6 +340,10 @@ std::vector<SurfacePatch> conforming(const std::vector<SurfaceTriangle>& triangl
     }
   }
   const SideGraph graph(sides, 3);
+  graph.visit_pairs([&](int a, int b) {
+    const bool other_way = !triangles[to_size(a / 3)].exact && triangles[to_size(b / 3)].exact;
+    take_side(triangles, other_way ? a : b, other_way ? b : a);
+  });
   std::vector<SurfacePatch> result;
   result.reserve(3 * triangles.size());
   for (int t = 0; t < to_int(triangles.size()); ++t) {

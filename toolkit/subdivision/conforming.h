@@ -13,6 +13,7 @@ struct SurfacePatch {
   int cage_face = 0;
   /// Indexed by Side: the surface goes on smoothly there.
   std::array<bool, 4> smooth = {};
+  bool exact = true;  ///< otherwise it stands for the surface there
 };
 
 /// A quartic triangle of it; points as CellPatch has them, sides from each corner to the next.
@@ -20,6 +21,7 @@ struct SurfaceTriangle {
   std::vector<dvec3> points;
   int cage_face = 0;
   std::array<bool, 3> smooth = {};
+  bool exact = true;
 };
 
 /// @name Patches that meet along whole sides
@@ -30,11 +32,11 @@ struct SurfaceTriangle {
 /// A quad with two such sides becomes two rectangles, or a rectangle and two trapezoids; with four,
 /// four. One with an odd number gets another one, which is passed on from neighbour to neighbour
 /// to the next that needs one or to a boundary. (Where there is neither, the quad stays whole.)
-/// Patches stay in their order.
+/// Patches that are not exact take over the sides of their neighbours. Patches stay in their order.
 std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches);
 /// Every triangle, bisected through the middles of such sides first, becomes three quads about its
-/// centre.
-std::vector<SurfacePatch> conforming(const std::vector<SurfaceTriangle>& triangles);
+/// centre. Triangles that are not exact take over the sides of their neighbours.
+std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles);
 /// @}
 
 }  // namespace taut

@@ -135,12 +135,14 @@ void Refinement::emit(std::size_t cell) {
     surface.bezier.points.reserve(16);
     for (const dvec3& p : patch.points) surface.bezier.points.push_back(homogeneous(p));
     surface.cage_face = face;
+    surface.exact = patch.kind == CellPatch::Kind::regular;
     // Sides run v = 0, u = 1, v = 1, u = 0.
     surface.smooth = {patch.smooth[3], patch.smooth[1], patch.smooth[0], patch.smooth[2]};
     result_.patches.push_back(std::move(surface));
   } else {
     triangles_.push_back({std::move(patch.points), face,
-                          {patch.smooth[0], patch.smooth[1], patch.smooth[2]}});
+                          {patch.smooth[0], patch.smooth[1], patch.smooth[2]},
+                          patch.kind == CellPatch::Kind::regular});
   }
 }
 
@@ -179,7 +181,7 @@ void Refinement::sort_out() {
   for (std::size_t c = 0; c < patches_.size(); ++c) {
     const CellPatch& patch = patches_[c];
     if (patch.kind == CellPatch::Kind::regular) continue;
-    if (patch.kind == CellPatch::Kind::cap && !options_.everywhere) {
+    if (patch.kind == CellPatch::Kind::cap) {
       level_.enclosure(c, points);
       points.insert(points.end(), patch.points.begin(), patch.points.end());
       if (!touch_.may_touch(points)) {
@@ -299,7 +301,7 @@ void Refinement::go_down() {
 
 LimitSurface Refinement::finish() {
   std::vector<SurfacePatch>& patches = result_.patches;
-  patches = triangles_.empty() ? conforming(std::move(patches)) : conforming(triangles_);
+  patches = triangles_.empty() ? conforming(std::move(patches)) : conforming(std::move(triangles_));
   std::stable_sort(patches.begin(), patches.end(), [](const SurfacePatch& a, const SurfacePatch& b) {
     return a.cage_face < b.cage_face;
   });

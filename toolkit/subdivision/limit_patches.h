@@ -12,8 +12,6 @@ struct LimitOptions {
   /// What the stand-ins of small neighbourhoods may change the support function by, as a fraction
   /// of the diagonal of the cage's box.
   double accuracy = 1e-9;
-  /// Refine as much where the surface cannot touch its own convex hull.
-  bool everywhere = false;
   Progress progress;
 };
 
