@@ -21,11 +21,12 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::set<std::string>> layers = {
     {"core", {}},
     {"surface", {"core"}},
+    {"subdivision", {"core", "surface"}},
     {"bounds", {"core", "surface"}},
     {"hull", {"core", "surface", "bounds"}},
     {"envelope", {"core", "surface", "bounds", "hull"}},
     {"containment", {"core", "surface", "bounds", "hull"}},
-    {"io", {"core", "surface", "bounds", "hull"}},
+    {"io", {"core", "surface", "subdivision", "bounds", "hull"}},
 };
 
 /// A third-party library and the only folders, of toolkit/ and plugins/, that may include it.
@@ -38,7 +39,7 @@ struct Home {
 
 const std::vector<Home> homes = {
     {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"toolkit/core/"}},
-    {"OpenSubdiv", std::regex("opensubdiv/.*"), {"toolkit/surface/"}},
+    {"OpenSubdiv", std::regex("opensubdiv/.*"), {"toolkit/subdivision/"}},
     {"OpenMesh", std::regex("OpenMesh/.*"), {"toolkit/hull/", "toolkit/io/"}},
     {"OSMesa", std::regex("(GL|EGL|GLES[0-9])/.*|.*osmesa.*"), {"toolkit/envelope/"}},
     {"Embree", std::regex("embree.*"), {"toolkit/containment/"}},
@@ -243,7 +244,7 @@ TEST_F(Layers, FindsPlantedEscapeFromToolkit) {
 TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
   const std::map<std::string, std::string> header_and_home = {
       {"<tbb/parallel_for.h>", "toolkit/core"},
-      {"<opensubdiv/far/patchTable.h>", "toolkit/surface"},
+      {"<opensubdiv/far/patchTable.h>", "toolkit/subdivision"},
       {"<OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>", "toolkit/hull"},
       {"<GL/osmesa.h>", "toolkit/envelope"},
       {"<embree3/rtcore.h>", "toolkit/containment"},
@@ -262,7 +263,7 @@ TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
 }
 
 TEST_F(Layers, FindsPlantedThirdPartyInPublicHeader) {
-  EXPECT_EQ(violations_of("toolkit/surface/subdivision.h", "<opensubdiv/far/patchTable.h>"), 1U);
+  EXPECT_EQ(violations_of("toolkit/subdivision/limit_patches.h", "<opensubdiv/far/patchTable.h>"), 1U);
   EXPECT_EQ(violations_of("toolkit/hull/verify.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 1U);
   EXPECT_EQ(violations_of("toolkit/hull/hull_mesh.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 0U);
   EXPECT_EQ(violations_of("toolkit/io/report.h", "<nlohmann/json.hpp>"), 1U);

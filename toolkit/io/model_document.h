@@ -18,8 +18,11 @@ enum class DocumentEncoding { json, cbor };
 /// - Surfaces and free curves are taken as they are, also where their knots are not clamped.
 /// - Edges that name "faces" are borders of surfaces, which Taut finds by itself: they are checked
 ///   and left out. Edges without are free curves, "vertices" free points.
-/// - Of cages only those of the scheme "bilinear" are read, as polygons; their creases, corners and
-///   boundary change nothing in the polygons and are passed over.
+/// - Cages of the schemes "catmark" and "loop" are control cages (ControlCage): "creases" are [vertex,
+///   vertex, sharpness], "corners" [vertex, sharpness], "holes" faces; "boundary" is as name_of() has
+///   it, "crease_method" "uniform" or "chaikin", "triangle_rule" "catmark" or "smooth"; the first of
+///   each where the key is absent. Those of the scheme "bilinear" are polygons, in which tags change
+///   nothing.
 /// - A model has no unit: the numbers are taken as they stand, with a warning where the unit is
 ///   not "mm".
 /// - Keys that are not known are passed over, with one warning for each kind.
@@ -41,7 +44,8 @@ void read_document(const std::string& file, std::string_view data, DocumentEncod
 ///   its surface or curve says by how many doubles the product is off: [index of the point, along v
 ///   within u, and one integer for each coordinate]. A reader that does not know it loses a bit.
 ///   (Coordinates that underflow are not kept so.)
-/// - Polygons are one bilinear cage, with all points of their part. Border edges are not written.
+/// - Control cages are written as such, not as patches; polygons as a bilinear cage, with all
+///   points of their part. Border edges are not written.
 /// - The unit is "mm", the format's; names that are no UTF-8 have what is none replaced; zeros lose
 ///   their signs.
 /// @throws InvalidInput if a trim loop's Euclidean coordinate overflows

@@ -8,6 +8,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/io/obj_reference.h"
+#include "taut/io/obj_tags.h"
 
 namespace taut {
 namespace {
@@ -60,6 +61,7 @@ class Parser {
   std::size_t bytes_;
   ObjFile file_;
   ObjReferences references_;
+  ObjTagReader tags_;
 
   // The state that elements stand in.
   std::string name_;
@@ -89,6 +91,8 @@ ObjFile Parser::parse() {
     scanner_.fail(element_.line, "the " + body_ + " that begins here has no end");
   }
   references_.check(scanner_, file_.vertices.size());
+  tags_.check(scanner_, file_.vertices.size(), file_.polygons.size());
+  file_.tags = tags_.take();
   return std::move(file_);
 }
 
@@ -134,7 +138,6 @@ void Parser::read_parameter_point(const Statement& s) {
 }
 
 void Parser::read_polygon(const Statement& s) {
-  if (file_.polygons.empty()) file_.polygon_line = s[0].line;
   add_obj_polygon(scanner_, s, file_.vertices.size(), references_, file_.polygons);
 }
 
@@ -164,6 +167,7 @@ void Parser::read_polyline(const Statement& s) {
 
 void Parser::read_tag(const Statement& s) {
   if (file_.tag_line == 0) file_.tag_line = s[0].line;
+  if (!tags_.add(scanner_, s)) warn_once("unknown-tag", s[1], "is a tag that is left out");
 }
 
 void Parser::read_loop(const Statement& s) {

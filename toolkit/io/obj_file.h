@@ -7,6 +7,7 @@
 #include "taut/core/geometry.h"
 #include "taut/core/progress.h"
 #include "taut/io/text_scanner.h"
+#include "taut/surface/control_cage.h"
 
 namespace taut {
 
@@ -51,6 +52,17 @@ struct ObjElement {
   long line = 0;
 };
 
+/// OpenSubdiv's tags of a subdivision cage. Vertices and faces are in range, faces are polygons in
+/// their order.
+struct ObjTags {
+  std::vector<CageCrease> creases;
+  std::vector<CageCorner> corners;
+  std::vector<int> holes;
+  CageBoundary boundary = CageBoundary::edge_and_corner;
+  bool chaikin = false;
+  bool smooth_triangles = false;
+};
+
 /// What an OBJ file holds of geometry, in the file's own terms.
 struct ObjFile {
   std::vector<ObjVertex> vertices;
@@ -59,8 +71,8 @@ struct ObjFile {
   std::vector<ObjElement> parameter_curves;
   std::vector<std::vector<int>> polygons;  ///< indices in range
   std::vector<int> points;                 ///< of `p`, likewise
-  long polygon_line = 0;                   ///< of the first polygon, or 0
-  long tag_line = 0;                       ///< of the first tag of a subdivision cage, or 0
+  ObjTags tags;
+  long tag_line = 0;  ///< of the first tag of a subdivision cage, or 0
 };
 
 /// Reads all statements; checks numbers and the order of statements, not what they mean together.

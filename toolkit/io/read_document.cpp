@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "taut/io/document_node.h"
 #include "taut/io/model_document.h"
 #include "taut/io/text_scanner.h"
+#include "taut/subdivision/add_cage.h"
 
 namespace taut {
 namespace {
@@ -144,14 +147,20 @@ std::string name_of(const DocumentNode& node, const std::string& otherwise) {
 /// Reads the parts of one document.
 class PartReader {
  public:
+  explicit PartReader(const ReadOptions& options) : options_(options) {}
+
   Part read(const DocumentNode& node, const std::string& name);
 
  private:
   void read_surfaces(const DocumentNode& list);
   void read_edges(const DocumentNode& list);
   void read_cage(const DocumentNode& node);
+  void read_polygons(const DocumentNode& node);
+  void add(const DocumentNode& node, const ControlCage& cage);
+  ControlCage read_control_cage(const DocumentNode& node, CageScheme scheme);
   void count(const DocumentNode& node, double points);
 
+  const ReadOptions& options_;
   Part part_;
   std::map<int, std::size_t> ids_;
   double piece_points_ = 0;
@@ -213,28 +222,95 @@ void PartReader::read_edges(const DocumentNode& list) {
   }
 }
 
-void PartReader::read_cage(const DocumentNode& node) {
-  node.expect_keys("cage", {"scheme", "points", "faces", "creases", "corners", "boundary"});
-  const DocumentNode scheme = node.at("scheme");
-  if (scheme.string() == "catmark" || scheme.string() == "loop") {
-    scheme.fail("subdivision cages are not evaluated yet: only the scheme \"bilinear\" is read");
-  }
-  if (scheme.string() != "bilinear") scheme.fail("no scheme is called so");
-  PolygonMesh mesh;
-  const DocumentNode points = node.at("points");
-  const int last = int(std::min(points.size(), to_size(most))) - 1;
-  mesh.points.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) mesh.points[i] = points[i].vector();
-  const DocumentNode faces = node.at("faces");
-  mesh.polygons.resize(faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
+std::vector<dvec3> read_points(const DocumentNode& cage) {
+  const DocumentNode points = cage.at("points");
+  std::vector<dvec3> result(points.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = points[i].vector();
+  return result;
+}
+
+std::vector<std::vector<int>> read_faces(const DocumentNode& cage) {
+  const int last = int(std::min(cage.at("points").size(), to_size(most))) - 1;
+  const DocumentNode faces = cage.at("faces");
+  std::vector<std::vector<int>> result(faces.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
     const DocumentNode face = faces[i];
     if (face.size() < 3) face.refuse("the polygon has fewer than three corners");
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      mesh.polygons[i].push_back(face[k].integer(0, last));
+    for (std::size_t k = 0; k < face.size(); ++k) result[i].push_back(face[k].integer(0, last));
+  }
+  return result;
+}
+
+void PartReader::read_cage(const DocumentNode& node) {
+  node.expect_keys("cage", {"scheme", "points", "faces", "creases", "corners", "holes", "boundary",
+                            "crease_method", "triangle_rule"});
+  const DocumentNode scheme = node.at("scheme");
+  if (scheme.string() == "bilinear") {
+    read_polygons(node);
+  } else if (scheme.string() == name_of(CageScheme::catmark)) {
+    add(node, read_control_cage(node, CageScheme::catmark));
+  } else if (scheme.string() == name_of(CageScheme::loop)) {
+    add(node, read_control_cage(node, CageScheme::loop));
+  } else {
+    scheme.fail("no scheme is called so");
+  }
+}
+
+void PartReader::read_polygons(const DocumentNode& node) {
+  const PolygonMesh mesh{read_points(node), read_faces(node)};
+  node.placed([&] { part_.add_polygons(mesh); });
+}
+
+void PartReader::add(const DocumentNode& node, const ControlCage& cage) {
+  node.placed([&] {
+    add_cage(part_, cage, "the cage", {options_.cage_accuracy, options_.progress});
+  });
+}
+
+/// The one of some words that a key's value is, as a number; the first where there is no key.
+std::size_t choice(const DocumentNode& node, std::string_view key,
+                   std::initializer_list<std::string_view> words) {
+  const auto value = node.find(key);
+  if (!value) return 0;
+  const auto found = std::find(words.begin(), words.end(), value->string());
+  if (found == words.end()) value->fail("no rule is called so");
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+ControlCage PartReader::read_control_cage(const DocumentNode& node, CageScheme scheme) {
+  ControlCage cage;
+  cage.scheme = scheme;
+  cage.points = read_points(node);
+  cage.faces = read_faces(node);
+  const int last = int(std::min(cage.points.size(), to_size(most))) - 1;
+  if (const auto creases = node.find("creases")) {
+    for (std::size_t i = 0; i < creases->size(); ++i) {
+      const DocumentNode crease = (*creases)[i];
+      crease.expect_size(3);
+      cage.creases.push_back({{crease[0].integer(0, last), crease[1].integer(0, last)},
+                              crease[2].number()});
     }
   }
-  node.placed([&] { part_.add_polygons(mesh); });
+  if (const auto corners = node.find("corners")) {
+    for (std::size_t i = 0; i < corners->size(); ++i) {
+      const DocumentNode corner = (*corners)[i];
+      corner.expect_size(2);
+      cage.corners.push_back({corner[0].integer(0, last), corner[1].number()});
+    }
+  }
+  if (const auto holes = node.find("holes")) {
+    const int last_face = int(std::min(cage.faces.size(), to_size(most))) - 1;
+    for (std::size_t i = 0; i < holes->size(); ++i) {
+      cage.holes.push_back((*holes)[i].integer(0, last_face));
+    }
+  }
+  constexpr std::array boundaries = {CageBoundary::edge_and_corner, CageBoundary::edge_only,
+                                     CageBoundary::none};
+  cage.boundary = boundaries[choice(node, "boundary", {name_of(boundaries[0]), name_of(boundaries[1]),
+                                                       name_of(boundaries[2])})];
+  cage.chaikin = choice(node, "crease_method", {"uniform", "chaikin"}) == 1;
+  cage.smooth_triangles = choice(node, "triangle_rule", {"catmark", "smooth"}) == 1;
+  return cage;
 }
 
 void PartReader::count(const DocumentNode& node, double points) {
@@ -300,7 +376,7 @@ void read_document(const std::string& file, std::string_view data, DocumentEncod
   const int first = int(grown.parts().size());
   const std::size_t before = grown.instances().size();
   const DocumentNode parts = root.at("parts");
-  PartReader reader;
+  PartReader reader(options);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part part = reader.read(parts[i], "part " + std::to_string(i));
     parts[i].placed([&] { grown.add_part(std::move(part), options.smooth_angle); });

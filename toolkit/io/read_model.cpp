@@ -24,7 +24,7 @@ void require_known(const std::string& name, const std::string& format) {
 }
 
 void add(FileContent content, const std::string& name, Model& model, const ReadOptions& options) {
-  Part part = as_part(std::move(content), name);
+  Part part = as_part(std::move(content), name, options);
   options.progress.check();
   try {
     model.add_part(std::move(part), options.smooth_angle);

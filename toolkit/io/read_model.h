@@ -7,6 +7,7 @@
 
 #include "taut/core/progress.h"
 #include "taut/core/tolerances.h"
+#include "taut/subdivision/add_cage.h"
 #include "taut/surface/model.h"
 
 namespace taut {
@@ -21,8 +22,11 @@ enum class Scheme {
 struct ReadOptions {
   /// Borders whose tangent planes differ by less are smooth joins; radians.
   double smooth_angle = smooth_join_angle;
-  /// If not given, polygons are bilinear unless their file has the tags of a subdivision cage.
+  /// If not given, polygons are bilinear unless their file has the tags of a subdivision cage: then
+  /// they are one of a Loop surface if all are triangles, else of a Catmull-Clark surface.
   std::optional<Scheme> scheme;
+  /// CageOptions::accuracy of cages.
+  double cage_accuracy = default_cage_accuracy;
   /// Receives a warning for each part of a file that is named but not supported.
   Progress progress;
 };
@@ -36,8 +40,8 @@ struct ReadOptions {
 /// Nothing that a file says is trusted: counts, indices and numbers are checked before memory is
 /// taken, and the model is unchanged if anything is wrong.
 /// @throws IoError (FILE:LINE: ... or FILE:byte N: ...) if the file cannot be read or is not what
-/// its format says, also for cages of schemes other than bilinear, which are not evaluated;
-/// InvalidInput (likewise with place) if its numbers are no valid geometry or there is none;
+/// its format says; InvalidInput (likewise with place) if its numbers are no valid geometry or there is
+/// none; BackendError for cages that OpenSubdiv does not take;
 /// LimitExceeded for files above 2 GiB, surfaces with more than 2^26 control points once decomposed
 /// or trimming loops that name curves far more often than their file is large, and as
 /// Model::add_instance() does; Cancelled

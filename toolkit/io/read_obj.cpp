@@ -47,10 +47,16 @@ class Builder {
       : scanner_(scanner), file_(file), most_trim_points_(max_trim_points + bytes) {}
 
   void add(const ObjElement& element);
-  PolygonMesh used_polygons();
+  PolygonMesh used_polygons() {
+    std::vector<int> number;
+    return used_polygons(number);
+  }
+  ControlCage cage(Scheme scheme);
   Part take() { return std::move(part_); }
 
  private:
+  static constexpr int unused = -1;
+
   struct ParameterCurve {
     NurbsCurve curve;
     std::vector<CurvePiece> pieces;
@@ -67,6 +73,7 @@ class Builder {
   TrimLoop trim_loop(const ObjLoop& loop);
   void add_curve(const ObjElement& e);
   void add_surface(const ObjElement& e);
+  PolygonMesh used_polygons(std::vector<int>& number);
   void fail(const ObjElement& e, const std::string& what) const { scanner_.fail(e.line, what); }
 
   const TextScanner& scanner_;
@@ -214,9 +221,9 @@ TrimLoop Builder::trim_loop(const ObjLoop& loop) {
 }
 
 /// Polygons, and points that stand alone, with the vertices that either uses, in the file's order.
-PolygonMesh Builder::used_polygons() {
-  constexpr int unused = -1;
-  std::vector<int> number(file_.vertices.size(), unused);
+/// `number`: that of each of the file's vertices, or `unused`.
+PolygonMesh Builder::used_polygons(std::vector<int>& number) {
+  number.assign(file_.vertices.size(), unused);
   for (const std::vector<int>& polygon : file_.polygons) {
     for (const int v : polygon) number[to_size(v)] = 0;
   }
@@ -232,6 +239,42 @@ PolygonMesh Builder::used_polygons() {
     for (int& v : polygon) v = number[to_size(v)];
   }
   return mesh;
+}
+
+/// The polygons as a cage with the file's tags; points that stand alone are left.
+ControlCage Builder::cage(Scheme scheme) {
+  ControlCage cage;
+  cage.scheme = scheme == Scheme::loop ? CageScheme::loop : CageScheme::catmark;
+  const std::vector<int> alone = std::exchange(file_.points, {});
+  std::vector<int> number;
+  PolygonMesh mesh = used_polygons(number);
+  file_.points = alone;
+  file_.polygons.clear();
+  cage.points = std::move(mesh.points);
+  cage.faces = std::move(mesh.polygons);
+  const ObjTags& tags = file_.tags;
+  cage.boundary = tags.boundary;
+  cage.chaikin = tags.chaikin;
+  cage.smooth_triangles = tags.smooth_triangles;
+  cage.holes = tags.holes;
+  for (CageCrease crease : tags.creases) {
+    for (int& v : crease.vertices) v = number[to_size(v)];
+    if (crease.vertices[0] != unused && crease.vertices[1] != unused) cage.creases.push_back(crease);
+  }
+  for (CageCorner corner : tags.corners) {
+    corner.vertex = number[to_size(corner.vertex)];
+    if (corner.vertex != unused) cage.corners.push_back(corner);
+  }
+  return cage;
+}
+
+/// What the polygons stand for.
+Scheme scheme_of(const ObjFile& file, const ReadOptions& options) {
+  if (options.scheme) return *options.scheme;
+  if (file.tag_line == 0) return Scheme::bilinear;
+  const bool triangles = std::all_of(file.polygons.begin(), file.polygons.end(),
+                                     [](const std::vector<int>& p) { return p.size() == 3; });
+  return triangles ? Scheme::loop : Scheme::catmark;
 }
 
 void Builder::add_surface(const ObjElement& e) {
@@ -264,10 +307,6 @@ void Builder::add_surface(const ObjElement& e) {
 FileContent read_obj(const std::string& name, std::string_view data, const ReadOptions& options) {
   TextScanner scanner(name, data);
   ObjFile file = parse_obj(scanner, options.progress);
-  if (!file.polygons.empty()) {
-    if (asks_for_cage(options)) scanner.fail(file.polygon_line, cages_are_not_evaluated);
-    if (file.tag_line > 0 && !options.scheme) scanner.fail(file.tag_line, cages_are_not_evaluated);
-  }
   if (file.elements.empty() && file.polygons.empty() && file.points.empty()) {
     throw InvalidInput(name + ": holds no geometry" +
                        (file.vertices.empty() ? "" : ", only vertices that nothing uses"));
@@ -277,8 +316,11 @@ FileContent read_obj(const std::string& name, std::string_view data, const ReadO
     options.progress.check();
     builder.add(element);
   }
+  std::optional<ControlCage> cage;
+  const Scheme scheme = scheme_of(file, options);
+  if (!file.polygons.empty() && scheme != Scheme::bilinear) cage = builder.cage(scheme);
   PolygonMesh mesh = builder.used_polygons();
-  return {builder.take(), std::move(mesh)};
+  return {builder.take(), std::move(mesh), std::move(cage)};
 }
 
 }  // namespace taut

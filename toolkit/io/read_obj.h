@@ -15,8 +15,8 @@ namespace taut {
 /// polyline is a curve of degree 1. Vertices that no polygon, point or element uses count for
 /// nothing. `trim` and `hole` become loops of the face; they are turned to run counter-clockwise
 /// and clockwise, for which the format has no rule. Special curves and statements that are not
-/// known are left out with a warning; other bases are refused, and so are polygons that the
-/// file's tags or the options make a subdivision cage, save for the scheme `bilinear`.
+/// known are left out with a warning; other bases are refused. Polygons are a control cage if the
+/// options say so, or the file's tags and no options.
 ///
 /// `data` is the whole file, `name` its name for messages.
 /// Source: Alias|Wavefront, "Advanced Visualizer", appendix B1 "Object files" (3.0).

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "taut/io/cage_of_polygons.h"
 #include "taut/io/mesh_readers.h"
 #include "taut/io/read_bpt.h"
 #include "taut/io/read_obj.h"
 #include "taut/io/read_xyz.h"
+#include "taut/subdivision/add_cage.h"
 
 namespace taut {
 
@@ -21,23 +23,33 @@ FileContent read_content(std::string_view data, const std::string& name, std::st
                          const ReadOptions& options) {
   const Progress& progress = options.progress;
   progress.check();
-  if (format == ".bpt") return {read_bpt(name, data, progress), {}};
+  if (format == ".bpt") return {read_bpt(name, data, progress), {}, {}};
   if (format == ".obj") return read_obj(name, data, options);
   FileContent content;
   if (format == ".off") content.mesh = read_off(name, data, progress);
   if (format == ".ply") content.mesh = read_ply(name, data, progress);
   if (format == ".stl") content.mesh = read_stl(name, data, progress);
   if (format == ".xyz") content.mesh.points = read_xyz(name, data, progress);
-  if (asks_for_cage(options) && !content.mesh.polygons.empty()) {
-    throw IoError(name + ": " + std::string(cages_are_not_evaluated));
+  const Scheme scheme = options.scheme.value_or(Scheme::bilinear);
+  if (scheme == Scheme::bilinear || content.mesh.polygons.empty()) return content;
+  if (format == ".stl") {
+    throw IoError(name + ": triangles of an STL file have no vertices in common, so they are no cage; "
+                         "--scheme bilinear takes them as they are");
   }
+  content.cage = cage_of(std::exchange(content.mesh, {}), scheme);
   return content;
 }
 
-Part as_part(FileContent content, const std::string& name) {
+Part as_part(FileContent content, const std::string& name, const ReadOptions& options) {
   Part part = std::move(content.part);
   try {
     part.add_polygons(content.mesh);
+    if (content.cage) {
+      const std::string shown_name = std::filesystem::path(name).filename().string();
+      add_cage(part, *content.cage, shown_name, {options.cage_accuracy, options.progress});
+    }
+  } catch (const BackendError& error) {
+    throw BackendError(name + ": " + error.what());
   } catch (const InvalidInput& error) {
     throw InvalidInput(name + ": " + error.what());
   } catch (const LimitExceeded& error) {

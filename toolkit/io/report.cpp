@@ -74,6 +74,11 @@ std::string to_json(const Report& report) {
   Json json = {{"taut", TAUT_VERSION},         {"input", to_json(report.input)},
                {"method", report.method},      {"dimension", report.dimension},
                {"hull", to_json(report.hull)}, {"mesh", to_json(report.mesh)}};
+  if (report.subdivision) {
+    json["subdivision"] = {{"irregular_faces", report.subdivision->irregular_faces},
+                           {"refined_faces", report.subdivision->refined_faces},
+                           {"deviation_bound", report.subdivision->deviation_bound}};
+  }
   if (report.culling) {
     json["culling"] = {{"leaves", report.culling->leaves},
                        {"kept", report.culling->kept},

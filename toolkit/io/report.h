@@ -53,6 +53,14 @@ struct Report {
     long leaves = 0, kept = 0, searched = 0;
   };
   std::optional<Culling> culling;
+  /// Faces of control cages whose surface is no single polynomial, and those of them that were
+  /// refined since they may touch the hull; what is left changes the support function by no more
+  /// than the bound. None where there are no cages.
+  struct Subdivision {
+    long irregular_faces = 0, refined_faces = 0;
+    double deviation_bound = 0;
+  };
+  std::optional<Subdivision> subdivision;
   struct Queries {
     long support = 0, newton_iterations = 0;
   } queries;

@@ -54,7 +54,13 @@ class ModelWriter {
   void write(const Instance& instance);
   void write_surface(const Part& part, int index);
   void write_vertices(const Part& part);
-  void write_cage(const Part& part);
+  void write_cages(const Part& part);
+  void write_polygons(const Part& part);
+  void write(const ControlCage& cage);
+  void write_tags(const ControlCage& cage);
+  void write_points(const std::vector<dvec3>& points, std::size_t count);
+  void write_faces(const std::vector<std::vector<int>>& faces);
+  void integers(const std::vector<int>& values);
 
   void begin_list(std::string_view key, std::size_t count);
   void numbers(const std::vector<double>& values);
@@ -108,9 +114,13 @@ void ModelWriter::write(const Part& part) {
   out_.begin_object();
   out_.key("name");
   out_.text(part.name);
-  if (!part.faces().empty()) {
-    begin_list("surfaces", part.faces().size());
-    for (int i = 0; i < int(part.faces().size()); ++i) write_surface(part, i);
+  std::vector<int> surfaces;
+  for (int i = 0; i < int(part.faces().size()); ++i) {
+    if (part.faces()[to_size(i)].cage < 0) surfaces.push_back(i);
+  }
+  if (!surfaces.empty()) {
+    begin_list("surfaces", surfaces.size());
+    for (const int i : surfaces) write_surface(part, i);
     out_.end_array();
   }
   std::vector<const Edge*> free;
@@ -129,11 +139,8 @@ void ModelWriter::write(const Part& part) {
     }
     out_.end_array();
   }
-  if (!part.polygons().empty()) {
-    write_cage(part);
-  } else if (part.point_count() > 0) {
-    write_vertices(part);
-  }
+  if (part.polygons().empty() && part.point_count() > 0) write_vertices(part);
+  if (!part.polygons().empty() || !part.cages().empty()) write_cages(part);
   out_.end_object();
 }
 
@@ -218,26 +225,88 @@ void ModelWriter::write_vertices(const Part& part) {
   out_.end_array();
 }
 
-void ModelWriter::write_cage(const Part& part) {
-  begin_list("cages", 1);
+void ModelWriter::write_cages(const Part& part) {
+  begin_list("cages", part.cages().size() + (part.polygons().empty() ? 0 : 1));
+  if (!part.polygons().empty()) write_polygons(part);
+  for (const CageOfPart& cage : part.cages()) write(*cage.cage);
+  out_.end_array();
+}
+
+void ModelWriter::write_polygons(const Part& part) {
+  out_.line();
   out_.begin_object();
   out_.key("scheme");
   out_.text("bilinear");
-  begin_list("points", to_size(part.point_count()));
-  for (int i = 0; i < part.point_count(); ++i) {
-    out_.line();
-    vector(part.vertices()[to_size(i)]);
-  }
-  out_.end_array();
-  begin_list("faces", part.polygons().size());
-  for (const std::vector<int>& polygon : part.polygons()) {
-    out_.line();
-    out_.begin_array(polygon.size());
-    for (const int v : polygon) out_.integer(v);
+  write_points(part.vertices(), to_size(part.point_count()));
+  write_faces(part.polygons());
+  out_.end_object();
+}
+
+void ModelWriter::write(const ControlCage& cage) {
+  out_.line();
+  out_.begin_object();
+  out_.key("scheme");
+  out_.text(name_of(cage.scheme));
+  out_.key("boundary");
+  out_.text(name_of(cage.boundary));
+  out_.key("crease_method");
+  out_.text(cage.chaikin ? "chaikin" : "uniform");
+  out_.key("triangle_rule");
+  out_.text(cage.smooth_triangles ? "smooth" : "catmark");
+  write_points(cage.points, cage.points.size());
+  write_faces(cage.faces);
+  write_tags(cage);
+  out_.end_object();
+}
+
+void ModelWriter::write_tags(const ControlCage& cage) {
+  if (!cage.creases.empty()) {
+    begin_list("creases", cage.creases.size());
+    for (const CageCrease& crease : cage.creases) {
+      out_.begin_array(3);
+      for (const int v : crease.vertices) out_.integer(v);
+      out_.number(crease.sharpness);
+      out_.end_array();
+    }
     out_.end_array();
   }
+  if (!cage.corners.empty()) {
+    begin_list("corners", cage.corners.size());
+    for (const CageCorner& corner : cage.corners) {
+      out_.begin_array(2);
+      out_.integer(corner.vertex);
+      out_.number(corner.sharpness);
+      out_.end_array();
+    }
+    out_.end_array();
+  }
+  if (cage.holes.empty()) return;
+  out_.line();
+  out_.key("holes");
+  integers(cage.holes);
+}
+
+void ModelWriter::write_points(const std::vector<dvec3>& points, std::size_t count) {
+  begin_list("points", count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out_.line();
+    vector(points[i]);
+  }
   out_.end_array();
-  out_.end_object();
+}
+
+void ModelWriter::write_faces(const std::vector<std::vector<int>>& faces) {
+  begin_list("faces", faces.size());
+  for (const std::vector<int>& face : faces) {
+    out_.line();
+    integers(face);
+  }
+  out_.end_array();
+}
+
+void ModelWriter::integers(const std::vector<int>& values) {
+  out_.begin_array(values.size());
+  for (const int value : values) out_.integer(value);
   out_.end_array();
 }
 

@@ -42,6 +42,10 @@ bool JoinSmoothness::is_smooth(const Join& join) const {
   if (join.size() != 2) return false;
   const Use& a = join[0];
   const Use& b = join[1];
+  if (patch(a.side).smooth_sides[to_size(a.side % 4)] &&
+      patch(b.side).smooth_sides[to_size(b.side % 4)]) {
+    return true;
+  }
   const bool reversed = a.reversed != b.reversed;
   // Where b continues a, the directions into the two patches are opposite; where it folds back onto
   // a, they are the same. So the sign between the two normals is known.

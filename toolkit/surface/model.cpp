@@ -105,6 +105,36 @@ void Part::add_surface(const NurbsSurface& surface, std::string face_name,
   box_ = box;
 }
 
+void Part::add_patches(std::vector<FacePatch> patches, std::string face_name) {
+  assert(!connected_);
+  const std::string shown_name = printable(face_name);
+  Box box = box_;
+  for (const FacePatch& patch : patches) {
+    validate(patch.bezier, shown_name);
+    include(box, patch.bezier.points);
+  }
+  if (!patches.empty()) validate_extent(box, shown_name);
+
+  const int face = to_int(faces_.size());
+  faces_.push_back({std::move(face_name), to_int(patches_.size()), to_int(patches.size()), {}});
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    Patch patch;
+    patch.bezier = std::move(patches[k].bezier);
+    patch.smooth_sides = patches[k].smooth_sides;
+    patch.u = {static_cast<double>(k), static_cast<double>(k + 1)};
+    patch.face = face;
+    patches_.push_back(std::move(patch));
+  }
+  box_ = box;
+}
+
+void Part::add_cage(CageOfPart cage, int first_face) {
+  for (std::size_t f = to_size(first_face); f < faces_.size(); ++f) {
+    faces_[f].cage = to_int(cages_.size());
+  }
+  cages_.push_back(std::move(cage));
+}
+
 void Part::add_curve(const NurbsCurve& curve, std::string edge_name) {
   assert(!connected_);
   const std::string shown_name = printable(edge_name);
@@ -284,5 +314,10 @@ int Model::vertex_count() const {
   return sum_over_instances(*this, [](const Part& part) { return vertex_count_of(part); });
 }
 int Model::patch_count() const { return patch_count_; }
+double Model::deviation_bound() const {
+  double bound = 0;
+  for (const Part& part : parts_) bound = std::max(bound, part.deviation_bound());
+  return bound;
+}
 
 }  // namespace taut

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "taut/surface/control_cage.h"
 #include "taut/surface/nurbs.h"
 #include "taut/surface/polygon_mesh.h"
 
@@ -52,6 +55,8 @@ struct Patch {
   /// at a speed of their own.
   bool ruled_obliquely = false;
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
+  /// Indexed by Side: known to go on smoothly there, whatever its tangent planes say.
+  std::array<bool, 4> smooth_sides = {};
   /// The first patch of the part with the same control points, which lies before this one, or -1.
   /// A patch that repeats one takes no part in joins; its borders and corners are those of the
   /// other.
@@ -87,6 +92,13 @@ struct TrimLoop {
   std::vector<NurbsCurve> curves;
 };
 
+/// A Bezier patch of a face that is given by patches.
+struct FacePatch {
+  BezierPatch bezier;
+  /// Indexed by Side: the surface is known to go on smoothly there (Part::connect).
+  std::array<bool, 4> smooth_sides = {};
+};
+
 /// What the input calls a face: one surface. Its patches are consecutive in Part::patches.
 struct Face {
   std::string name;
@@ -94,6 +106,16 @@ struct Face {
   int patch_count = 0;
   /// The loops that bound it; none where the whole surface counts.
   std::vector<TrimLoop> loops;
+  int cage = -1;  ///< the cage of the part that it belongs to (Part::cages), or none
+};
+
+/// A control cage and what became of it.
+struct CageOfPart {
+  std::shared_ptr<const ControlCage> cage;
+  /// Its faces whose surface is no single polynomial (at extraordinary vertices, semi-sharp creases
+  /// and the like), and those of them that were refined since they may touch the hull.
+  long irregular_faces = 0;
+  long refined_faces = 0;
 };
 
 /// A curve where the surface is not smooth or ends, or a free curve; its pieces are consecutive in
@@ -117,6 +139,8 @@ class Part {
   /// Loops are checked as curves, not for how they lie.
   void add_surface(const NurbsSurface& surface, std::string face_name,
                    std::vector<TrimLoop> loops = {});
+  /// A face of any Bezier patches, of which the k-th covers [k, k + 1] x [0, 1] of its parameters.
+  void add_patches(std::vector<FacePatch> patches, std::string face_name);
   void add_curve(const NurbsCurve& curve, std::string edge_name);
   void add_point(const dvec3& point);
   void add_points(std::span<const dvec3> points);
@@ -135,7 +159,8 @@ class Part {
   /// Two sides meet if their curves agree, parameter by parameter in either direction, within
   /// join_distance of the part's diagonal; the join of exactly two is smooth if the one surface
   /// continues the other with tangent planes that agree within `smooth_angle` everywhere along it
-  /// (checked at as many parameters as determine the polynomials involved). Surfaces need not be
+  /// (checked at as many parameters as determine the polynomials involved), or if both are known to
+  /// go on smoothly there (FacePatch). Surfaces need not be
   /// oriented alike; one that folds back onto the other is not smooth, though its planes agree.
   ///
   /// All other sides are edges: maximal runs of straight-on borders along which the same sides of
@@ -172,6 +197,17 @@ class Part {
   /// Box of the control points, which contains the geometry.
   const Box& control_box() const { return box_; }
 
+  /// Where surfaces stand for something that they meet only within a tolerance: a proven bound of
+  /// the difference that this makes to the support function of the part, the largest that was told.
+  double deviation_bound() const { return deviation_bound_; }
+  /// @pre not negative
+  void include_deviation(double bound) { deviation_bound_ = std::max(deviation_bound_, bound); }
+
+  /// Control cages whose limit surfaces have been added; their faces are those with Face::cage.
+  const std::vector<CageOfPart>& cages() const { return cages_; }
+  /// The faces added since `first_face` are the cage's limit surface.
+  void add_cage(CageOfPart cage, int first_face);
+
  private:
   std::vector<Face> faces_;
   std::vector<std::vector<int>> polygons_;
@@ -183,6 +219,8 @@ class Part {
   std::vector<EdgePiece> pieces_;
   Box box_;
   bool connected_ = false;
+  double deviation_bound_ = 0;
+  std::vector<CageOfPart> cages_;
 };
 
 /// A part placed by a rigid motion.
@@ -236,6 +274,8 @@ class Model {
   int edge_count() const;
   int vertex_count() const;
   int patch_count() const;
+  /// The largest of all parts (Part::deviation_bound).
+  double deviation_bound() const;
 
  private:
   void validate_room(const Part& part, const std::string& name) const;

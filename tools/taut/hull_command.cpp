@@ -167,7 +167,7 @@ double mean_width(const HullMesh& mesh) {
 Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method,
                              Console& console) {
   Report::ExactHull exact;
-  exact.gap_bound = hull.distance_bound;
+  exact.gap_bound = hull.distance_bound + input.model().deviation_bound();
   if (hull.boundary) {
     const HullBoundary& boundary = *hull.boundary;
     warn_of_unresolved(boundary, console);
@@ -198,6 +198,22 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
   return exact;
 }
 
+/// What became of the control cages, if there are any.
+std::optional<Report::Subdivision> subdivision(const Model& model) {
+  Report::Subdivision sum;
+  bool any = false;
+  for (const Part& part : model.parts()) {
+    for (const CageOfPart& cage : part.cages()) {
+      any = true;
+      sum.irregular_faces += cage.irregular_faces;
+      sum.refined_faces += cage.refined_faces;
+    }
+  }
+  if (!any) return {};
+  sum.deviation_bound = model.deviation_bound();
+  return sum;
+}
+
 Report make_report(Input& input, const Hull& hull, const HullArguments& arguments, double tolerance,
                    Console& console) {
   Report report;
@@ -212,7 +228,9 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   report.mesh.measures = measure(polygons(hull.mesh));
   report.seconds.measure = measuring.seconds();
   report.mesh.tolerance = tolerance;
-  report.mesh.distance_bound = hull.distance_bound;
+  // The scene's surfaces themselves may stand for others.
+  report.mesh.distance_bound = hull.distance_bound + input.model().deviation_bound();
+  report.subdivision = subdivision(input.model());
   const HullStatistics& statistics = hull.statistics;
   if (statistics.cells > 0) {
     report.culling = {statistics.cells, statistics.cells_kept, statistics.cells_searched};

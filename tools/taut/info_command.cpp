@@ -23,6 +23,11 @@ struct Contents {
   DegreeCounts free_pieces;
   long free_vertices = 0;
   long polygons = 0;
+  /// Control cages by their schemes, and faces of them.
+  std::map<std::string, long> cage_faces;
+  long irregular_faces = 0;
+  long refined_faces = 0;
+  double deviation_bound = 0;
   int trimmed = 0;
   long rational = 0;
   std::vector<std::string> face_names;
@@ -46,9 +51,24 @@ Contents contents(Input& input) {
     }
     contents.free_vertices += part.point_count();
     contents.polygons += long(part.polygons().size());
+    for (const CageOfPart& cage : part.cages()) {
+      contents.cage_faces[name_of(cage.cage->scheme)] += long(cage.cage->faces.size());
+      contents.irregular_faces += cage.irregular_faces;
+      contents.refined_faces += cage.refined_faces;
+    }
     for (const Face& face : part.faces()) contents.face_names.push_back(face.name);
   }
+  contents.deviation_bound = input.model().deviation_bound();
   return contents;
+}
+
+/// What the polygons of a file were taken for; empty if it has none.
+std::string scheme_of(const Contents& file) {
+  std::string schemes = file.polygons > 0 ? "bilinear" : "";
+  for (const auto& [scheme, faces] : file.cage_faces) {
+    schemes += (schemes.empty() ? "" : ", ") + scheme;
+  }
+  return schemes;
 }
 
 /// All files taken together, without building a common scene.
@@ -86,7 +106,13 @@ Json json_of(const Contents& file) {
   json["free_curves"] = degrees_json(file.free_pieces, "pieces");
   json["points"] = file.free_vertices;
   json["polygons"] = file.polygons;
-  json["scheme"] = file.polygons > 0 ? Json("bilinear") : Json();
+  const std::string scheme = scheme_of(file);
+  json["scheme"] = scheme.empty() ? Json() : Json(scheme);
+  if (!file.cage_faces.empty()) {
+    json["subdivision"] = {{"irregular_faces", file.irregular_faces},
+                           {"refined_faces", file.refined_faces},
+                           {"deviation_bound", file.deviation_bound}};
+  }
   json["trimmed"] = file.trimmed;
   json["rational"] = file.rational > 0;
   json["diagonal"] = counts["diagonal"];
@@ -128,6 +154,14 @@ std::string text_of(const Contents& file, bool names) {
   }
   if (file.polygons > 0) {
     text += "  polygons  " + number(file.polygons) + ", taken as they are (scheme bilinear)\n";
+  }
+  for (const auto& [scheme, faces] : file.cage_faces) {
+    text += "  cage      " + counted(faces, "face", "faces") + " (scheme " + scheme + ")\n";
+  }
+  if (!file.cage_faces.empty()) {
+    text += "  irregular " + counted(file.irregular_faces, "face", "faces") + ", " +
+            number(file.refined_faces) + " refined since they may touch the hull, to within " +
+            number(file.deviation_bound, 2) + "\n";
   }
   if (file.free_vertices > 0) text += "  points    " + number(file.free_vertices) + "\n";
   if (file.trimmed > 0) {

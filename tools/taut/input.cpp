@@ -41,6 +41,7 @@ Input::Input(const InputArguments& arguments, Console& console)
   ReadOptions options;
   options.progress = console.progress();
   options.scheme = scheme_of(arguments.scheme);
+  options.cage_accuracy = arguments.cage_accuracy.value_or(default_cage_accuracy);
   if (std::count(files_.begin(), files_.end(), "-") > 1) {
     throw UsageError("standard input can be read only once");
   }
@@ -111,10 +112,15 @@ void add_inputs(CLI::App& command, InputArguments& arguments) {
       ->type_name("FORMAT");
   command
       .add_option("--scheme", arguments.scheme,
-                  "What polygons stand for: bilinear (default): themselves; catmark\nand loop: "
-                  "subdivision cages, which are not available yet")
+                  "What polygons stand for: bilinear: themselves; catmark and loop: the\ncontrol cage of "
+                  "a subdivision surface. Default: bilinear, but of .obj\nfiles with the tags of a "
+                  "cage loop where all are triangles, else\ncatmark")
       ->check(CLI::IsMember({"bilinear", "catmark", "loop"}).description(""))
       ->type_name("SCHEME");
+  add_positive(command, "--cage-accuracy", arguments.cage_accuracy,
+               "What may be left of the exact surface of a control cage near\nextraordinary vertices, as "
+               "a fraction of the diagonal; default 1e-9")
+      ->type_name("R");
 }
 
 Json to_json(const Box& box) {

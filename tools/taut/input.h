@@ -18,6 +18,7 @@ struct InputArguments {
   std::vector<std::string> files;  ///< "-" is standard input
   std::string format;              ///< of standard input and output; may begin with a dot
   std::string scheme;              ///< empty: by the files
+  std::optional<double> cage_accuracy;
 
   /// The format as an extension, with its dot; empty if it is not given.
   std::string extension() const;

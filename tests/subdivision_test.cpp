@@ -1,0 +1,382 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cages.h"
+#include "models.h"
+#include "taut/bounds/scene.h"
+#include "taut/bounds/support_query.h"
+#include "taut/core/error.h"
+#include "taut/subdivision/add_cage.h"
+#include "taut/subdivision/conforming.h"
+#include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/limit_patches.h"
+#include "taut/subdivision/reparametrize.h"
+#include "taut/subdivision/touch_test.h"
+#include "taut/surface/point_grid.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: cages
+
+struct NamedCage {
+  std::string name;
+  ControlCage cage;
+};
+
+std::vector<NamedCage> smooth_cages() {
+  std::vector<NamedCage> all;
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    for (const int n : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 50}) {
+      all.push_back({std::string(name_of(scheme)) + " of valence " + std::to_string(n),
+                     dome_cage(scheme, n)});
+    }
+    all.push_back({std::string(name_of(scheme)) + " tetrahedron", tetrahedron_cage(scheme)});
+  }
+  all.push_back({"cube", cube_cage()});
+  all.push_back({"torus", torus_cage(6, 5)});
+  all.push_back({"torus of triangles", triangle_torus_cage(6, 5)});
+  return all;
+}
+
+/// Edges about a vertex, and the rim of a dome's top.
+std::vector<CageCrease> rim(const ControlCage& cage, double sharpness) {
+  const int ring = int(cage.points.size() - 2) / 2;
+  std::vector<CageCrease> creases;
+  for (int i = 0; i < ring; ++i) creases.push_back({{2 + i, 2 + (i + 1) % ring}, sharpness});
+  return creases;
+}
+
+std::vector<NamedCage> tagged_cages() {
+  std::vector<NamedCage> all;
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    const std::string name = name_of(scheme);
+    for (const double sharpness : {0.5, 1.0, 2.3, 4.0}) {
+      ControlCage cage = dome_cage(scheme, 5);
+      cage.creases = rim(cage, sharpness);
+      all.push_back({name + ", rim of sharpness " + std::to_string(sharpness), cage});
+      cage.chaikin = true;
+      cage.creases.resize(cage.creases.size() / 2);
+      if (sharpness < 1) continue;
+      cage.chaikin = false;
+      cage.corners = {{0, sharpness}};
+      all.push_back({name + ", half a rim and a corner " + std::to_string(sharpness), cage});
+    }
+    ControlCage sharp = dome_cage(scheme, 6);
+    sharp.creases = rim(sharp, infinite_sharpness);
+    all.push_back({name + ", sharp rim", sharp});
+    ControlCage hole = dome_cage(scheme, 4);
+    hole.holes = {0, 4};
+    all.push_back({name + ", holes", hole});
+    ControlCage open = dome_cage(scheme, 5);
+    open.faces.erase(open.faces.begin(), open.faces.begin() + 3);
+    all.push_back({name + ", open", open});
+  }
+  ControlCage eight = cube_cage();
+  eight.creases = {{{0, 1}, 8.0}};
+  all.push_back({"cube with an edge of sharpness 8", eight});
+  ControlCage box = cube_cage();
+  for (const auto& f : box.faces) {
+    for (std::size_t k = 0; k < 4; ++k) box.creases.push_back({{f[k], f[(k + 1) % 4]}, 10});
+  }
+  all.push_back({"cube with sharp edges", box});
+  all.push_back({"sheet", sheet_cage(3, 4)});
+  return all;
+}
+
+std::vector<NamedCage> all_cages() {
+  std::vector<NamedCage> all = smooth_cages();
+  for (NamedCage& cage : tagged_cages()) all.push_back(std::move(cage));
+  return all;
+}
+
+double size_of(const ControlCage& cage) {
+  Box box;
+  for (const dvec3& p : cage.points) box.include(p);
+  return diagonal(box);
+}
+
+/// Points known by place.
+class PointSet {
+ public:
+  PointSet(const std::vector<LimitPoint>& points, const Box& box, double tolerance)
+      : points_(points), grid_(box, tolerance) {
+    for (std::size_t i = 0; i < points.size(); ++i) grid_.insert(points[i].x, int(i));
+  }
+  const LimitPoint* find(const dvec3& x) const {
+    const LimitPoint* found = nullptr;
+    grid_.visit_near(x, [&](int i) { found = &points_[std::size_t(i)]; });
+    return found;
+  }
+
+ private:
+  const std::vector<LimitPoint>& points_;
+  PointGrid grid_;
+};
+
+/// Patches of few levels against limit masks at their corners, and where they are four times finer.
+TEST(LimitPatches, AreExactWhereTheySaySo) {
+  for (const auto& [name, cage] : all_cages()) {
+    if (name.find("sharpness 8") != name.npos || name.find("4.0") != name.npos) continue;
+    if (cage.points.size() > 60) continue;
+    LimitOptions options;
+    options.accuracy = 0.05;
+    const LimitSurface surface = limit_patches(cage, options);
+    ASSERT_LE(surface.levels, 4) << name;
+    // The quarters of a patch of the last level.
+    const std::vector<LimitPoint> points = limit_points(cage, std::max(2, surface.levels) + 2);
+    Box box;
+    for (const dvec3& p : cage.points) box.include(p);
+    const double tolerance = 1e-7 * size_of(cage);
+    const PointSet set(points, box, tolerance);
+    int exact = 0;
+    for (const SurfacePatch& patch : surface.patches) {
+      if (!patch.exact) continue;
+      ++exact;
+      const bool whole = patch.bezier.degree_u == 3 && patch.bezier.degree_v == 3;
+      for (const double u : {0.0, 0.5, 1.0}) {
+        for (const double v : {0.0, 0.5, 1.0}) {
+          if (!whole && (u == 0.5 || v == 0.5)) continue;
+          if (!whole && cage.scheme == CageScheme::loop && (u == 1 && v == 1)) continue;
+          const dvec3 x = point(patch.bezier, u, v);
+          const LimitPoint* const limit = set.find(x);
+          ASSERT_NE(limit, nullptr) << name << " at " << u << " " << v;
+          EXPECT_LE(glm::distance(limit->x, x), 4e-14 * size_of(cage)) << name;
+          if (limit->normal == dvec3(0.0) || u != 0.5 || v != 0.5) continue;
+          EXPECT_LE(glm::length(glm::cross(limit->normal, unit_normal(patch.bezier, u, v))), 1e-11)
+              << name;
+        }
+      }
+    }
+    EXPECT_GT(exact, 0) << name;
+  }
+}
+
+/// Support values at the limit normals of limit points that are support points: by masks, and by
+/// the patches.
+void expect_support_values(const std::string& name, const ControlCage& cage, double accuracy) {
+  const Scene scene(cage_model(cage, accuracy));
+  const double bound = scene.model().deviation_bound();
+  const double rounding = 1e-12 * size_of(cage);
+  SupportQuery query(scene);
+  // Masks are those of limits once semi-sharp creases are smooth.
+  double sharpest = 4;
+  for (const CageCrease& crease : cage.creases) {
+    if (crease.sharpness < infinite_sharpness) sharpest = std::max(sharpest, crease.sharpness);
+  }
+  const std::vector<LimitPoint> points = limit_points(cage, int(std::ceil(sharpest)));
+  int checked = 0;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    if (points[i].normal == dvec3(0.0)) continue;
+    for (const double sign : {-1.0, 1.0}) {
+      const dvec3 n = sign * points[i].normal;
+      double most = -std::numeric_limits<double>::infinity();
+      for (const LimitPoint& p : points) most = std::max(most, glm::dot(p.x, n));
+      const ModelSupport s = support(query, scene, n);
+      // Never below a point of the surface.
+      ASSERT_GE(s.h_bound, most - bound - rounding) << name;
+      // Elsewhere on the surface it may reach farther, between limit points.
+      if (glm::distance(s.point, points[i].x) > 1e-4 * size_of(cage)) continue;
+      ++checked;
+      ASSERT_LE(s.h, glm::dot(points[i].x, n) + bound + rounding)
+          << name << " limit point " << i;
+    }
+  }
+  EXPECT_GT(checked, 0) << name;
+}
+
+TEST(LimitPatches, SupportValuesAreThoseOfLimitMasks) {
+  for (const auto& [name, cage] : smooth_cages()) {
+    if (name.find("50") == name.npos) expect_support_values(name, cage, 1e-9);
+  }
+}
+
+TEST(LimitPatches, SupportValuesOfTaggedCages) {
+  for (const auto& [name, cage] : tagged_cages()) expect_support_values(name, cage, 1e-6);
+}
+
+TEST(LimitPatches, SupportValuesAtValence50) {
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    expect_support_values("valence 50", dome_cage(scheme, 50), 1e-5);
+  }
+}
+
+/// Up to a dozen faces around a vertex the bound comes below the accuracy.
+TEST(LimitPatches, KeepTheirAccuracy) {
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    for (const int n : {3, 5, 6, 7, 8}) {
+      const ControlCage cage = dome_cage(scheme, n);
+      for (const double accuracy : {1e-3, 1e-6, 1e-8}) {
+        LimitOptions options;
+        options.accuracy = accuracy;
+        EXPECT_LE(limit_patches(cage, options).deviation_bound, accuracy * size_of(cage))
+            << name_of(scheme) << " " << n;
+      }
+    }
+  }
+}
+
+TEST(LimitPatches, RefineOnlyWhatCanTouch) {
+  // A torus whose inside has an extraordinary vertex: two quads there become a hexagon.
+  ControlCage cage = torus_cage(12, 8);
+  const int inner = 4;
+  std::vector<int> a = cage.faces[std::size_t(inner)];
+  const std::vector<int>& b = cage.faces[std::size_t(8 + inner)];
+  cage.faces[std::size_t(inner)] = {a[0], a[1], b[1], b[2], a[2], a[3]};
+  cage.faces.erase(cage.faces.begin() + 8 + inner);
+  const LimitSurface surface = limit_patches(cage);
+  EXPECT_EQ(surface.irregular_faces, 11);
+  EXPECT_LE(surface.levels, 2);
+  EXPECT_EQ(surface.deviation_bound, 0);
+}
+
+int dome_valence(const ControlCage& cage) {
+  return int(std::count_if(cage.faces.begin(), cage.faces.end(), [](const std::vector<int>& f) {
+    return std::find(f.begin(), f.end(), 0) != f.end();
+  }));
+}
+
+int open_sides(const Model& model) {
+  int count = 0;
+  for (const Patch& patch : model.parts()[0].patches()) {
+    for (const Border& border : patch.borders) count += border.neighbor < 0 ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(AddCage, SmoothCagesHaveNoEdges) {
+  for (const auto& [name, cage] : smooth_cages()) {
+    // Of higher valences not all faces touch the hull; there caps do not meet finer neighbours.
+    if (dome_valence(cage) > 7) continue;
+    const Model model = cage_model(cage, 1e-5);
+    const Part& part = model.parts()[0];
+    EXPECT_EQ(part.faces().size(), cage.faces.size()) << name;
+    EXPECT_EQ(part.edges().size(), 0U) << name;
+    EXPECT_EQ(part.point_count(), 0) << name;
+    EXPECT_EQ(open_sides(model), 0) << name;
+  }
+}
+
+TEST(AddCage, SharpEdgesAreEdges) {
+  ControlCage box = cube_cage();
+  for (const auto& f : box.faces) {
+    for (std::size_t k = 0; k < 4; ++k) box.creases.push_back({{f[k], f[(k + 1) % 4]}, 10});
+  }
+  const Model model = cage_model(box);
+  EXPECT_EQ(model.edge_count(), 12);
+  EXPECT_EQ(model.vertex_count(), 8);
+  EXPECT_EQ(model.patch_count(), 6);
+  // The rim of a dome's top: as many edges as faces meet there in different pairs, and no vertex.
+  ControlCage dome = dome_cage(CageScheme::catmark, 6);
+  dome.creases = rim(dome, infinite_sharpness);
+  const Model rimmed = cage_model(dome, 1e-4);
+  EXPECT_EQ(rimmed.edge_count(), 12);
+  EXPECT_EQ(rimmed.vertex_count(), 0);
+  const Model sheet = cage_model(sheet_cage(3, 4));
+  EXPECT_EQ(sheet.vertex_count(), 4);
+  EXPECT_EQ(sheet.edge_count(), 14);
+}
+
+TEST(AddCage, RefusesWhatIsNoCage) {
+  Part part;
+  ControlCage cage = cube_cage();
+  cage.faces[2][1] = 8;
+  EXPECT_THROW(add_cage(part, cage, "c"), InvalidInput);
+  cage = cube_cage();
+  cage.scheme = CageScheme::loop;
+  EXPECT_THROW(add_cage(part, cage, "c"), InvalidInput);
+  cage = cube_cage();
+  cage.creases = {{{1, 1}, 2.0}};
+  EXPECT_THROW(add_cage(part, cage, "c"), InvalidInput);
+  cage.creases = {{{0, 1}, std::nan("")}};
+  EXPECT_THROW(add_cage(part, cage, "c"), InvalidInput);
+  EXPECT_TRUE(part.faces().empty());
+}
+
+/// Three sheets along one edge, and a face with a vertex twice.
+TEST(AddCage, WarnsOfNonManifoldCages) {
+  ControlCage cage;
+  cage.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 1, 0}, {-1, 1, 1}, {-1, -1, 0},
+                 {-1, -1, 1}};
+  cage.faces = {{0, 2, 3, 1}, {0, 4, 5, 1}, {0, 6, 7, 1}};
+  std::vector<std::string> codes;
+  CageOptions options;
+  options.progress.warn = [&](std::string_view code, std::string_view) {
+    codes.emplace_back(code);
+  };
+  Part part;
+  add_cage(part, cage, "c", options);
+  EXPECT_EQ(codes, std::vector<std::string>{"non-manifold-cage"});
+  part.connect(1e-3);
+  EXPECT_EQ(part.patches().size(), 3U);
+  EXPECT_TRUE(std::any_of(part.edges().begin(), part.edges().end(),
+                          [](const Edge& e) { return e.faces.size() == 3; }));
+}
+
+TEST(Tapered, IsTheSamePatch) {
+  Random random(3);
+  for (const int m : {1, 2, 3}) {
+    for (const int n : {1, 3, 4}) {
+      const BezierPatch patch = random_patch(random, m, n, 1);
+      const BezierPatch part = tapered(patch, 0.75, 0.25);
+      EXPECT_EQ(part.degree_v, m + n);
+      for (const double s : {0.0, 0.3, 1.0}) {
+        for (const double t : {0.0, 0.6, 1.0}) {
+          const double u = s * (0.75 * (1 - t) + 0.25 * t);
+          EXPECT_LE(glm::distance(point(part, s, t), point(patch, u, t)), 1e-14);
+        }
+      }
+    }
+  }
+}
+
+TEST(HullDistance, OfSimplePolytopes) {
+  const std::vector<dvec3> cube = cube_cage().points;
+  EXPECT_LE(distance_from_hull_bound({0.1, 0.2, -0.3}, cube), 1e-14);
+  EXPECT_NEAR(distance_from_hull_bound({0.1, 0.2, 3}, cube), 2, 1e-13);
+  EXPECT_NEAR(distance_from_hull_bound({2, 2, 0.5}, cube), std::sqrt(2.0), 1e-13);
+  EXPECT_NEAR(distance_from_hull_bound({2, 2, 2}, cube), std::sqrt(3.0), 1e-13);
+  EXPECT_NEAR(distance_from_hull_bound({1, 2, 3}, std::vector<dvec3>{{1, 2, 2}}), 1, 1e-13);
+  Random random(5);
+  std::vector<dvec3> points;
+  for (int i = 0; i < 40; ++i) points.push_back(random_direction(random));
+  for (int i = 0; i < 200; ++i) {
+    const dvec3 p = 1.5 * random_point(random);
+    const double bound = distance_from_hull_bound(p, points);
+    // Any supporting plane gives a lower bound.
+    double lower = 0;
+    for (int k = 0; k < 2000; ++k) {
+      const dvec3 n = random_direction(random);
+      double h = -2;
+      for (const dvec3& q : points) h = std::max(h, glm::dot(q, n));
+      lower = std::max(lower, glm::dot(p, n) - h);
+    }
+    EXPECT_GE(bound, lower - 1e-14);
+    EXPECT_LE(bound, lower * 1.05 + 5e-2);
+  }
+}
+
+TEST(TouchTest, IsSure) {
+  Random random(7);
+  TouchTest test;
+  EXPECT_TRUE(test.may_touch(std::vector<dvec3>{{0, 0, 0}}));
+  std::vector<dvec3> points;
+  for (int i = 0; i < 20000; ++i) points.push_back(random_direction(random));
+  test.add(points);
+  for (int i = 0; i < 200; ++i) {
+    const dvec3 n = random_direction(random);
+    EXPECT_TRUE(test.may_touch(std::vector<dvec3>{1.001 * n}));
+    EXPECT_TRUE(test.may_touch(std::vector<dvec3>{points[std::size_t(i)]}));
+    EXPECT_FALSE(test.may_touch(std::vector<dvec3>{0.98 * n, 0.97 * n}));
+    EXPECT_TRUE(test.may_touch(std::vector<dvec3>{0.5 * n, 1.01 * n}));
+  }
+}
+
+}  // namespace
+}  // namespace taut

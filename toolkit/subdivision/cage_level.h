@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "taut/surface/bezier.h"
+#include "taut/surface/control_cage.h"
+
+namespace taut {
+
+/// A face of a level of refinement that is to have a surface.
+struct CageCell {
+  int face = 0;         ///< of the level
+  int cage_face = 0;    ///< the face of the control cage that it is part of
+  int region = -1;      ///< free for the caller; refined cells have that of their parent
+};
+
+/// The surface of a cell.
+struct CellPatch {
+  enum class Kind {
+    none,     ///< a face of the cage that is no quad (Loop: none is)
+    regular,  ///< exactly the limit surface
+    cap,      ///< stands for it: its corners are the limit's, and so are its borders to regular cells
+  };
+  Kind kind = Kind::none;
+  /// It is, or meets in a vertex, what is semi-sharp.
+  bool semi_sharp = false;
+  /// Catmull-Clark: a bicubic net, 16 points along v within along u. Loop: 15 points of a quartic
+  /// triangle, (i, j) counts towards the second and third corner: (0,0) .. (4,0), (0,1) .. (3,1),
+  /// .. (0,4).
+  std::vector<dvec3> points;
+  /// Of the sides from each corner to the next: the surface goes on smoothly there.
+  std::array<bool, 4> smooth = {};
+};
+
+/// One level of a control cage's refinement, or the part of it that matters: cells and all faces
+/// that touch them, so that the cells' limit surface is that of the whole cage.
+///
+/// Refinement, tags and patches are OpenSubdiv's (Far, in double precision). Cells of a cage with
+/// infinitely sharp edges, boundaries and corners are regular where OpenSubdiv has exact patches;
+/// those near semi-sharp ones are not until these have become smooth.
+class CageLevel {
+ public:
+  /// The control cage itself: its faces but the holes, and those without surface at its boundary.
+  /// @throws BackendError if OpenSubdiv does not take the cage
+  explicit CageLevel(const ControlCage& cage);
+  ~CageLevel();
+  CageLevel(CageLevel&&) noexcept;
+  CageLevel& operator=(CageLevel&&) noexcept;
+
+  std::vector<CageCell>& cells() { return cells_; }
+  const std::vector<CageCell>& cells() const { return cells_; }
+
+  /// The patches of all cells.
+  std::vector<CellPatch> patches() const;
+
+  /// The control points of a cell: the convex hull of them contains its limit surface.
+  void enclosure(std::size_t cell, std::vector<dvec3>& points) const;
+  /// The vertices of a cell in their order, numbers of this level.
+  std::span<const int> vertices(std::size_t cell) const;
+
+  /// The next level of some cells, in their order, each's children in theirs.
+  CageLevel refined(std::span<const std::size_t> cells) const;
+
+  /// Of the control cage, what OpenSubdiv treats by rules of its own, as infinitely sharp: edges
+  /// with more than two faces, or two that run alike, or both ends in one vertex; and vertices about
+  /// which faces are no fan. The sheets of faces that meet there are parted.
+  long non_manifold_edges() const { return non_manifold_edges_; }
+  long non_manifold_vertices() const { return non_manifold_vertices_; }
+
+ private:
+  struct Topology;
+  CageLevel();
+  void count_non_manifold();
+
+  long non_manifold_edges_ = 0;
+  long non_manifold_vertices_ = 0;
+  std::unique_ptr<Topology> topology_;
+  std::vector<CageCell> cells_;
+};
+
+}  // namespace taut

@@ -1,0 +1,86 @@
+#include "taut/subdivision/hull_distance.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <vector>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// The corral of Wolfe's algorithm: points with their barycentric weights.
+struct Corral {
+  std::vector<dvec3> points;
+  std::vector<double> weights;
+
+  dvec3 sum() const {
+    dvec3 x(0.0);
+    for (std::size_t i = 0; i < points.size(); ++i) x += weights[i] * points[i];
+    return x;
+  }
+
+  /// Weights of the point of the affine hull that is nearest to the origin.
+  std::vector<double> affine_minimizer() const {
+    const auto n = static_cast<Eigen::Index>(points.size());
+    Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n + 1, n + 1);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 1);
+    double scale = 0;
+    for (const dvec3& p : points) scale = std::max(scale, glm::dot(p, p));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        m(i, j) = glm::dot(points[std::size_t(i)], points[std::size_t(j)]) / scale;
+      }
+      m(i, n) = m(n, i) = 1;
+    }
+    right(n) = 1;
+    const Eigen::VectorXd solution = m.fullPivLu().solve(right);
+    return {solution.data(), solution.data() + n};
+  }
+
+  /// Moves towards the weights until one of them vanishes, and drops its point; false if none does.
+  bool step_towards(const std::vector<double>& to) {
+    double share = 1;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (to[i] <= 0) share = std::min(share, weights[i] / (weights[i] - to[i]));
+    }
+    const bool whole = std::all_of(to.begin(), to.end(), [](double w) { return w > 0; });
+    for (std::size_t i = 0; i < to.size(); ++i) weights[i] += share * (to[i] - weights[i]);
+    if (whole) return false;
+    const auto least = std::min_element(weights.begin(), weights.end());
+    points.erase(points.begin() + (least - weights.begin()));
+    weights.erase(least);
+    return true;
+  }
+};
+
+}  // namespace
+
+double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points) {
+  constexpr int step_limit = 64;
+  const auto nearest = std::min_element(
+      points.begin(), points.end(), [&](const dvec3& a, const dvec3& b) {
+        return glm::dot(a - p, a - p) < glm::dot(b - p, b - p);
+      });
+  Corral corral{{*nearest - p}, {1.0}};
+  dvec3 x = corral.sum();
+  double best = glm::length(x);
+  for (int step = 0; step < step_limit && best > 0; ++step) {
+    const auto next = std::min_element(
+        points.begin(), points.end(),
+        [&](const dvec3& a, const dvec3& b) { return glm::dot(a, x) < glm::dot(b, x); });
+    const dvec3 q = *next - p;
+    if (glm::dot(q, x) >= glm::dot(x, x) * (1 - 64 * rounding_unit)) break;
+    corral.points.push_back(q);
+    corral.weights.push_back(0);
+    while (corral.points.size() > 1 && corral.step_towards(corral.affine_minimizer())) {
+    }
+    if (corral.points.size() == 1) corral.weights[0] = 1;
+    x = corral.sum();
+    if (!(glm::length(x) < best)) break;
+    best = glm::length(x);
+  }
+  return best + 16 * rounding_unit * (glm::length(p) + glm::length(*nearest));
+}
+
+}  // namespace taut

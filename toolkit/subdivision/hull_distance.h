@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+
+#include "taut/core/geometry.h"
+
+namespace taut {
+
+/// Upper bound of the distance of a point from the convex hull of others, that of a point of it
+/// that is nearest up to rounding (Wolfe 1976, "Finding the nearest point in a polytope").
+/// @pre not empty
+double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points);
+
+}  // namespace taut

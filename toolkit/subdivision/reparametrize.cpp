@@ -1,0 +1,135 @@
+#include "taut/subdivision/reparametrize.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace taut {
+namespace {
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+
+double binomial(int n, int k) {
+  double result = 1;
+  for (int i = 1; i <= k; ++i) result = result * (n - k + i) / i;
+  return result;
+}
+
+/// Bernstein coefficients of a polynomial in one variable.
+using Coefficients = std::vector<double>;
+
+Coefficients product(const Coefficients& a, const Coefficients& b) {
+  const int m = static_cast<int>(a.size()) - 1;
+  const int n = static_cast<int>(b.size()) - 1;
+  Coefficients c(to_size(m + n + 1));
+  for (int i = 0; i <= m; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      c[to_size(i + j)] += binomial(m, i) * binomial(n, j) / binomial(m + n, i + j) *
+                           a[to_size(i)] * b[to_size(j)];
+    }
+  }
+  return c;
+}
+
+/// Bernstein coefficients of a polynomial in two variables, along t within along s.
+struct Net {
+  int degree = 0;  ///< in both
+  std::vector<double> c = {1};
+
+  double at(int i, int j) const { return c[to_size(i * (degree + 1) + j)]; }
+  double& at(int i, int j) { return c[to_size(i * (degree + 1) + j)]; }
+};
+
+Net product(const Net& a, const Net& b) {
+  Net r;
+  r.degree = a.degree + b.degree;
+  r.c.assign(to_size((r.degree + 1) * (r.degree + 1)), 0.0);
+  for (int i = 0; i <= a.degree; ++i) {
+    for (int k = 0; k <= b.degree; ++k) {
+      const double u =
+          binomial(a.degree, i) * binomial(b.degree, k) / binomial(r.degree, i + k);
+      for (int j = 0; j <= a.degree; ++j) {
+        for (int l = 0; l <= b.degree; ++l) {
+          const double v =
+              binomial(a.degree, j) * binomial(b.degree, l) / binomial(r.degree, j + l);
+          r.at(i + k, j + l) += u * v * a.at(i, j) * b.at(k, l);
+        }
+      }
+    }
+  }
+  return r;
+}
+
+}  // namespace
+
+/// With B_i^m(s w) = sum over k >= i of B_i^k(w) B_k^m(s).
+BezierPatch tapered(const BezierPatch& patch, double w0, double w1) {
+  const int m = patch.degree_u;
+  const int n = patch.degree_v;
+  BezierPatch result;
+  result.degree_u = m;
+  result.degree_v = m + n;
+  result.points.assign(to_size((m + 1) * (m + n + 1)), dvec4(0, 0, 0, 1));
+  const Coefficients ends[2] = {{1 - w0, 1 - w1}, {w0, w1}};
+  for (int k = 0; k <= m; ++k) {
+    std::vector<dvec3> row(to_size(m + n + 1), dvec3(0.0));
+    for (int i = 0; i <= k; ++i) {
+      // B_i^k(w(t)), raised to degree m in t.
+      Coefficients b(to_size(m - k + 1), binomial(k, i));
+      for (int f = 0; f < k; ++f) b = product(b, ends[f < i ? 1 : 0]);
+      for (int a = 0; a <= m; ++a) {
+        for (int j = 0; j <= n; ++j) {
+          const double weight = binomial(m, a) * binomial(n, j) / binomial(m + n, a + j);
+          row[to_size(a + j)] += weight * b[to_size(a)] * dvec3(patch.at(i, j));
+        }
+      }
+    }
+    for (int j = 0; j <= m + n; ++j) result.at(k, j) = homogeneous(row[to_size(j)]);
+  }
+  return result;
+}
+
+BezierPatch quad_of_triangle(std::span<const dvec3> triangle,
+                             const std::array<dvec3, 4>& corners) {
+  // The barycentric coordinates over the quadrilateral, and their powers.
+  std::array<std::array<Net, 5>, 3> power;
+  for (int b = 0; b < 3; ++b) {
+    Net coordinate{1, {corners[0][b], corners[1][b], corners[2][b], corners[3][b]}};
+    auto& powers = power[to_size(b)];
+    for (std::size_t k = 1; k < powers.size(); ++k) powers[k] = product(powers[k - 1], coordinate);
+  }
+  BezierPatch result;
+  result.degree_u = result.degree_v = 4;
+  std::vector<dvec3> sum(25, dvec3(0.0));
+  std::size_t point = 0;
+  for (int j = 0; j <= 4; ++j) {
+    for (int i = 0; i + j <= 4; ++i, ++point) {
+      const double multinomial = binomial(4, i) * binomial(4 - i, j);
+      const Net basis = product(product(power[0][to_size(4 - i - j)], power[1][to_size(i)]),
+                                power[2][to_size(j)]);
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        sum[k] += multinomial * basis.c[k] * triangle[point];
+      }
+    }
+  }
+  result.points.reserve(sum.size());
+  for (const dvec3& p : sum) result.points.push_back(homogeneous(p));
+  return result;
+}
+
+BezierPatch reversed_u(const BezierPatch& patch) {
+  BezierPatch result = patch;
+  for (int i = 0; i <= patch.degree_u; ++i) {
+    for (int j = 0; j <= patch.degree_v; ++j) result.at(i, j) = patch.at(patch.degree_u - i, j);
+  }
+  return result;
+}
+
+BezierPatch reversed_v(const BezierPatch& patch) {
+  BezierPatch result = patch;
+  for (int i = 0; i <= patch.degree_u; ++i) {
+    for (int j = 0; j <= patch.degree_v; ++j) result.at(i, j) = patch.at(i, patch.degree_v - j);
+  }
+  return result;
+}
+
+}  // namespace taut
