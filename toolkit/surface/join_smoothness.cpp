@@ -42,8 +42,8 @@ bool JoinSmoothness::is_smooth(const Join& join) const {
   if (join.size() != 2) return false;
   const Use& a = join[0];
   const Use& b = join[1];
-  if (patch(a.side).smooth_sides[to_size(a.side % 4)] &&
-      patch(b.side).smooth_sides[to_size(b.side % 4)]) {
+  if (patch(a.side).smooth_sides[std::size_t(a.side % 4)] &&
+      patch(b.side).smooth_sides[std::size_t(b.side % 4)]) {
     return true;
   }
   const bool reversed = a.reversed != b.reversed;
