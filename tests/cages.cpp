@@ -60,8 +60,7 @@ std::unique_ptr<Far::TopologyRefiner> refiner_of(const ControlCage& cage) {
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  const auto scheme =
-      cage.scheme == CageScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
+  const auto scheme = cage.scheme == CageScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
   return std::unique_ptr<Far::TopologyRefiner>(
       Factory::Create(d, Factory::Options(scheme, options)));
 }

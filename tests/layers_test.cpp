@@ -263,7 +263,8 @@ TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
 }
 
 TEST_F(Layers, FindsPlantedThirdPartyInPublicHeader) {
-  EXPECT_EQ(violations_of("toolkit/subdivision/limit_patches.h", "<opensubdiv/far/patchTable.h>"), 1U);
+  EXPECT_EQ(violations_of("toolkit/subdivision/limit_patches.h", "<opensubdiv/far/patchTable.h>"),
+            1U);
   EXPECT_EQ(violations_of("toolkit/hull/verify.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 1U);
   EXPECT_EQ(violations_of("toolkit/hull/hull_mesh.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 0U);
   EXPECT_EQ(violations_of("toolkit/io/report.h", "<nlohmann/json.hpp>"), 1U);

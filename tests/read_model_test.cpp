@@ -625,9 +625,9 @@ TEST_F(ReadModel, ObjPolygonsBesideSurfaces) {
 }
 
 TEST_F(ReadModel, ObjSubdivisionTagsAndSchemes) {
-  const std::string cage =
-      vertices(4) + "s off\nf 1 2 3 4\nt crease 2/1/0 0 1 1.5\nt corner 1/1/0 2 3\n"
-      "t interpolateboundary 1/0/0 1\n";
+  const std::string cage = vertices(4) +
+                           "s off\nf 1 2 3 4\nt crease 2/1/0 0 1 1.5\nt corner 1/1/0 2 3\n"
+                           "t interpolateboundary 1/0/0 1\n";
   const Part tagged = part("a.obj", cage);
   ASSERT_EQ(tagged.cages().size(), 1U);
   const taut::ControlCage& control = *tagged.cages()[0].cage;
@@ -657,18 +657,24 @@ TEST_F(ReadModel, ObjSubdivisionTagsAndSchemes) {
 
 TEST_F(ReadModel, ObjSubdivisionTags) {
   const std::string cage = vertices(4) + "f 1 2 3 4\n";
-  const auto control = [&](const std::string& tags) { return *part("a.obj", cage + tags).cages()[0].cage; };
+  const auto control = [&](const std::string& tags) {
+    return *part("a.obj", cage + tags).cages()[0].cage;
+  };
   EXPECT_EQ(control("t crease 3/2/0 0 1 2 1 2\n").creases[1].sharpness, 2);
   EXPECT_EQ(control("t crease 3/1/0 0 1 2 4\n").creases[1].sharpness, 4);
   EXPECT_EQ(control("t interpolateboundary 1/0/0 2\n").boundary, taut::CageBoundary::edge_only);
   EXPECT_TRUE(control("t creasemethod 0/0/1 chaikin\n").chaikin);
   EXPECT_TRUE(control("t smoothtriangles 1/0/0 2\n").smooth_triangles);
   EXPECT_EQ(control("t vertexedit 1/0/0 2\n").faces.size(), 1U);
-  const auto at_fault = [&](const std::string& tag) { return message<InvalidInput>("a.obj", cage + tag); };
+  const auto at_fault = [&](const std::string& tag) {
+    return message<InvalidInput>("a.obj", cage + tag);
+  };
   EXPECT_EQ(at_fault("t crease 2/1/0 0 4 1\n").substr(0, 4), ":6: ");
   EXPECT_EQ(at_fault("t hole 1/0/0 1\n").substr(0, 4), ":6: ");
   EXPECT_EQ(at_fault("t corner 1/1/0 0 -1\n").substr(0, 4), ":6: ");
-  const auto malformed = [&](const std::string& tag) { return message<IoError>("a.obj", cage + tag); };
+  const auto malformed = [&](const std::string& tag) {
+    return message<IoError>("a.obj", cage + tag);
+  };
   EXPECT_EQ(malformed("t crease\n").substr(0, 4), ":6: ");
   EXPECT_EQ(malformed("t crease 2/1 0 1 1\n").substr(0, 4), ":6: ");
   EXPECT_EQ(malformed("t crease 2/2/0 0 1 1\n").substr(0, 4), ":6: ");

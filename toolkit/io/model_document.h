@@ -18,11 +18,12 @@ enum class DocumentEncoding { json, cbor };
 /// - Surfaces and free curves are taken as they are, also where their knots are not clamped.
 /// - Edges that name "faces" are borders of surfaces, which Taut finds by itself: they are checked
 ///   and left out. Edges without are free curves, "vertices" free points.
-/// - Cages of the schemes "catmark" and "loop" are control cages (ControlCage): "creases" are [vertex,
-///   vertex, sharpness], "corners" [vertex, sharpness], "holes" faces; "boundary" is as name_of() has
-///   it, "crease_method" "uniform" or "chaikin", "triangle_rule" "catmark" or "smooth"; the first of
-///   each where the key is absent. Those of the scheme "bilinear" are polygons, in which tags change
-///   nothing.
+/// - Cages of the schemes "catmark" and "loop" are control cages (ControlCage): "creases" are
+/// [vertex,
+///   vertex, sharpness], "corners" [vertex, sharpness], "holes" faces; "boundary" is as name_of()
+///   has it, "crease_method" "uniform" or "chaikin", "triangle_rule" "catmark" or "smooth"; the
+///   first of each where the key is absent. Those of the scheme "bilinear" are polygons, in which
+///   tags change nothing.
 /// - A model has no unit: the numbers are taken as they stand, with a warning where the unit is
 ///   not "mm".
 /// - Keys that are not known are passed over, with one warning for each kind.

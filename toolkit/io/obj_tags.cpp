@@ -50,7 +50,8 @@ bool ObjTagReader::add(const TextScanner& scanner, const std::vector<Word>& stat
   const Tag tag(scanner, statement);
   const auto first_integer = [&](long from, long to) {
     if (tag.integers.size() != 1 || tag.integers[0] < from || tag.integers[0] > to) {
-      tag.fail(scanner, "takes one integer of " + std::to_string(from) + " .. " + std::to_string(to));
+      tag.fail(scanner,
+               "takes one integer of " + std::to_string(from) + " .. " + std::to_string(to));
     }
     return tag.integers[0];
   };

@@ -287,8 +287,8 @@ ControlCage PartReader::read_control_cage(const DocumentNode& node, CageScheme s
     for (std::size_t i = 0; i < creases->size(); ++i) {
       const DocumentNode crease = (*creases)[i];
       crease.expect_size(3);
-      cage.creases.push_back({{crease[0].integer(0, last), crease[1].integer(0, last)},
-                              crease[2].number()});
+      cage.creases.push_back(
+          {{crease[0].integer(0, last), crease[1].integer(0, last)}, crease[2].number()});
     }
   }
   if (const auto corners = node.find("corners")) {
@@ -306,8 +306,8 @@ ControlCage PartReader::read_control_cage(const DocumentNode& node, CageScheme s
   }
   constexpr std::array boundaries = {CageBoundary::edge_and_corner, CageBoundary::edge_only,
                                      CageBoundary::none};
-  cage.boundary = boundaries[choice(node, "boundary", {name_of(boundaries[0]), name_of(boundaries[1]),
-                                                       name_of(boundaries[2])})];
+  cage.boundary = boundaries[choice(
+      node, "boundary", {name_of(boundaries[0]), name_of(boundaries[1]), name_of(boundaries[2])})];
   cage.chaikin = choice(node, "crease_method", {"uniform", "chaikin"}) == 1;
   cage.smooth_triangles = choice(node, "triangle_rule", {"catmark", "smooth"}) == 1;
   return cage;

@@ -40,11 +40,11 @@ struct ReadOptions {
 /// Nothing that a file says is trusted: counts, indices and numbers are checked before memory is
 /// taken, and the model is unchanged if anything is wrong.
 /// @throws IoError (FILE:LINE: ... or FILE:byte N: ...) if the file cannot be read or is not what
-/// its format says; InvalidInput (likewise with place) if its numbers are no valid geometry or there is
-/// none; BackendError for cages that OpenSubdiv does not take;
-/// LimitExceeded for files above 2 GiB, surfaces with more than 2^26 control points once decomposed
-/// or trimming loops that name curves far more often than their file is large, and as
-/// Model::add_instance() does; Cancelled
+/// its format says; InvalidInput (likewise with place) if its numbers are no valid geometry or
+/// there is none; BackendError for cages that OpenSubdiv does not take; LimitExceeded for files
+/// above 2 GiB, surfaces with more than 2^26 control points once decomposed or trimming loops that
+/// name curves far more often than their file is large, and as Model::add_instance() does;
+/// Cancelled
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options = {});
 
 /// Reads what a file of the format (".obj") holds; the name stands in messages and names the part.

@@ -259,7 +259,8 @@ ControlCage Builder::cage(Scheme scheme) {
   cage.holes = tags.holes;
   for (CageCrease crease : tags.creases) {
     for (int& v : crease.vertices) v = number[to_size(v)];
-    if (crease.vertices[0] != unused && crease.vertices[1] != unused) cage.creases.push_back(crease);
+    if (crease.vertices[0] != unused && crease.vertices[1] != unused)
+      cage.creases.push_back(crease);
   }
   for (CageCorner corner : tags.corners) {
     corner.vertex = number[to_size(corner.vertex)];

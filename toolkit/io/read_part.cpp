@@ -33,8 +33,9 @@ FileContent read_content(std::string_view data, const std::string& name, std::st
   const Scheme scheme = options.scheme.value_or(Scheme::bilinear);
   if (scheme == Scheme::bilinear || content.mesh.polygons.empty()) return content;
   if (format == ".stl") {
-    throw IoError(name + ": triangles of an STL file have no vertices in common, so they are no cage; "
-                         "--scheme bilinear takes them as they are");
+    throw IoError(name +
+                  ": triangles of an STL file have no vertices in common, so they are no cage; "
+                  "--scheme bilinear takes them as they are");
   }
   content.cage = cage_of(std::exchange(content.mesh, {}), scheme);
   return content;

@@ -258,7 +258,8 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
     throw IoError(name + ": is no file");
   }
   FileContent content = read_content(read_file(path), name, format, options_);
-  return files_.emplace(key, File{as_part(std::move(content), name, options_), {}, false}).first->second;
+  return files_.emplace(key, File{as_part(std::move(content), name, options_), {}, false})
+      .first->second;
 }
 
 void ProjectLoader::put_into(Model& model) {

@@ -19,11 +19,11 @@ long faces_with_repeated_vertices(const ControlCage& cage) {
 void warn(const ControlCage& cage, const LimitSurface& surface, const std::string& name,
           const Progress& progress) {
   if (surface.non_manifold_edges + surface.non_manifold_vertices > 0) {
-    progress.warning("non-manifold-cage",
-                     name + ": the cage is no manifold at " +
-                         std::to_string(surface.non_manifold_edges) + " edges and " +
-                         std::to_string(surface.non_manifold_vertices) +
-                         " vertices, which are taken as infinitely sharp");
+    progress.warning("non-manifold-cage", name + ": the cage is no manifold at " +
+                                              std::to_string(surface.non_manifold_edges) +
+                                              " edges and " +
+                                              std::to_string(surface.non_manifold_vertices) +
+                                              " vertices, which are taken as infinitely sharp");
   }
   if (const long count = faces_with_repeated_vertices(cage); count > 0) {
     progress.warning("degenerate-cage", name + ": " + std::to_string(count) +
@@ -52,9 +52,9 @@ void add_cage(Part& part, const ControlCage& cage, const std::string& name,
     if (!last) continue;
     part.add_patches(std::exchange(face, {}), "face " + std::to_string(patch.cage_face));
   }
-  part.add_cage({std::make_shared<const ControlCage>(cage), surface.irregular_faces,
-                 surface.refined_faces},
-                first_face);
+  part.add_cage(
+      {std::make_shared<const ControlCage>(cage), surface.irregular_faces, surface.refined_faces},
+      first_face);
   part.include_deviation(surface.deviation_bound);
 }
 

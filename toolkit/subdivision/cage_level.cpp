@@ -225,7 +225,8 @@ using LoopMatrix = Eigen::Matrix<double, quartic_points, loop_points>;
 
 /// The Bezier points of a box spline's triangle, from its twelve control points, by its basis at as
 /// many parameters. The matrix is of 48ths, to which it is rounded.
-LoopMatrix loop_to_bezier(const Far::PatchTable& table, const Far::PatchTable::PatchHandle& handle) {
+LoopMatrix loop_to_bezier(const Far::PatchTable& table,
+                          const Far::PatchTable::PatchHandle& handle) {
   Eigen::Matrix<double, quartic_points, quartic_points> bernstein;
   LoopMatrix basis;
   int row = 0;
@@ -236,7 +237,8 @@ LoopMatrix loop_to_bezier(const Far::PatchTable& table, const Far::PatchTable::P
     table.EvaluateBasis(handle, u, v, weights);
     for (int k = 0; k < loop_points; ++k) basis(row, k) = weights[k];
     int column = 0;
-    for_each_quartic_point([&](int i, int j) { bernstein(row, column++) = quartic_bernstein(i, j, u, v); });
+    for_each_quartic_point(
+        [&](int i, int j) { bernstein(row, column++) = quartic_bernstein(i, j, u, v); });
     ++row;
   });
   LoopMatrix m = bernstein.fullPivLu().solve(basis);
@@ -291,8 +293,8 @@ class Sheets {
   int add_copy(int v) {
     const int number = to_int(originals_.size());
     originals_.push_back(v);
-    const bool corner = level_.IsVertexNonManifold(v) &&
-                        level_.GetVertexRule(v) == Sdc::Crease::RULE_CORNER;
+    const bool corner =
+        level_.IsVertexNonManifold(v) && level_.GetVertexRule(v) == Sdc::Crease::RULE_CORNER;
     const float sharpness = corner ? float(infinite_sharpness) : level_.GetVertexSharpness(v);
     if (sharpness > 0) {
       description_.corner_vertices.push_back(number);
@@ -525,7 +527,8 @@ void CageLevel::enclosure(std::size_t cell, std::vector<dvec3>& points) const {
   const std::vector<int> faces = with_surroundings(base, {cells_[cell].face});
   for (const int f : faces) {
     const auto vertices = base.GetFaceVertices(f);
-    for (int k = 0; k < vertices.size(); ++k) points.push_back(topology_->points[to_size(vertices[k])]);
+    for (int k = 0; k < vertices.size(); ++k)
+      points.push_back(topology_->points[to_size(vertices[k])]);
   }
 }
 

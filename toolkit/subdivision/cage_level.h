@@ -13,9 +13,9 @@ namespace taut {
 
 /// A face of a level of refinement that is to have a surface.
 struct CageCell {
-  int face = 0;         ///< of the level
-  int cage_face = 0;    ///< the face of the control cage that it is part of
-  int region = -1;      ///< free for the caller; refined cells have that of their parent
+  int face = 0;       ///< of the level
+  int cage_face = 0;  ///< the face of the control cage that it is part of
+  int region = -1;    ///< free for the caller; refined cells have that of their parent
 };
 
 /// The surface of a cell.
@@ -23,7 +23,7 @@ struct CellPatch {
   enum class Kind {
     none,     ///< a face of the cage that is no quad (Loop: none is)
     regular,  ///< exactly the limit surface
-    cap,      ///< stands for it: its corners are the limit's, and so are its borders to regular cells
+    cap,  ///< stands for it: its corners are the limit's, and so are its borders to regular cells
   };
   Kind kind = Kind::none;
   /// It is, or meets in a vertex, what is semi-sharp.
@@ -66,8 +66,8 @@ class CageLevel {
   CageLevel refined(std::span<const std::size_t> cells) const;
 
   /// Of the control cage, what OpenSubdiv treats by rules of its own, as infinitely sharp: edges
-  /// with more than two faces, or two that run alike, or both ends in one vertex; and vertices about
-  /// which faces are no fan. The sheets of faces that meet there are parted.
+  /// with more than two faces, or two that run alike, or both ends in one vertex; and vertices
+  /// about which faces are no fan. The sheets of faces that meet there are parted.
   long non_manifold_edges() const { return non_manifold_edges_; }
   long non_manifold_vertices() const { return non_manifold_vertices_; }
 

@@ -267,8 +267,7 @@ void add_quads(const SurfaceTriangle& triangle, const SubTriangle& part,
 void take_side(std::vector<SurfacePatch>& patches, int side, int from) {
   SurfacePatch& patch = patches[to_size(side / 4)];
   if (patch.exact) return;
-  const BezierCurve other =
-      border(patches[to_size(from / 4)].bezier, all_sides[to_size(from % 4)]);
+  const BezierCurve other = border(patches[to_size(from / 4)].bezier, all_sides[to_size(from % 4)]);
   const Side own = all_sides[to_size(side % 4)];
   const bool along = along_v(own);
   const int fixed = at_upper_end(own) ? 3 : 0;

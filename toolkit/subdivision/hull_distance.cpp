@@ -58,8 +58,8 @@ struct Corral {
 
 double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points) {
   constexpr int step_limit = 64;
-  const auto nearest = std::min_element(
-      points.begin(), points.end(), [&](const dvec3& a, const dvec3& b) {
+  const auto nearest =
+      std::min_element(points.begin(), points.end(), [&](const dvec3& a, const dvec3& b) {
         return glm::dot(a - p, a - p) < glm::dot(b - p, b - p);
       });
   Corral corral{{*nearest - p}, {1.0}};

@@ -140,7 +140,8 @@ void Refinement::emit(std::size_t cell) {
     surface.smooth = {patch.smooth[3], patch.smooth[1], patch.smooth[0], patch.smooth[2]};
     result_.patches.push_back(std::move(surface));
   } else {
-    triangles_.push_back({std::move(patch.points), face,
+    triangles_.push_back({std::move(patch.points),
+                          face,
                           {patch.smooth[0], patch.smooth[1], patch.smooth[2]},
                           patch.kind == CellPatch::Kind::regular});
   }
@@ -168,9 +169,9 @@ void Refinement::take_regular() {
 }
 
 void Refinement::count_irregular() {
-  result_.irregular_faces = std::count_if(
-      patches_.begin(), patches_.end(),
-      [](const CellPatch& p) { return p.kind != CellPatch::Kind::regular; });
+  result_.irregular_faces = std::count_if(patches_.begin(), patches_.end(), [](const CellPatch& p) {
+    return p.kind != CellPatch::Kind::regular;
+  });
 }
 
 /// Decides for all irregular cells: end caps stand for those that do not touch.
@@ -259,10 +260,10 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
     return patches_[c].kind == CellPatch::Kind::cap && !patches_[c].semi_sharp;
   });
   if (has_caps && depth_ > 0) {
-    const bool small = depth_ >= level_limit ||
-                       std::any_of(region.begin(), region.end(), [&](std::size_t c) {
-                         return least_side(patches_[c]) < least_side_;
-                       });
+    const bool small =
+        depth_ >= level_limit || std::any_of(region.begin(), region.end(), [&](std::size_t c) {
+          return least_side(patches_[c]) < least_side_;
+        });
     const double bound =
         bound_of(region, small ? std::numeric_limits<double>::infinity() : tolerance_);
     if (bound <= tolerance_ || small) {
@@ -302,9 +303,9 @@ void Refinement::go_down() {
 LimitSurface Refinement::finish() {
   std::vector<SurfacePatch>& patches = result_.patches;
   patches = triangles_.empty() ? conforming(std::move(patches)) : conforming(std::move(triangles_));
-  std::stable_sort(patches.begin(), patches.end(), [](const SurfacePatch& a, const SurfacePatch& b) {
-    return a.cage_face < b.cage_face;
-  });
+  std::stable_sort(
+      patches.begin(), patches.end(),
+      [](const SurfacePatch& a, const SurfacePatch& b) { return a.cage_face < b.cage_face; });
   return std::move(result_);
 }
 

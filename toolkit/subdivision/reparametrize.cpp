@@ -23,8 +23,8 @@ Coefficients product(const Coefficients& a, const Coefficients& b) {
   Coefficients c(to_size(m + n + 1));
   for (int i = 0; i <= m; ++i) {
     for (int j = 0; j <= n; ++j) {
-      c[to_size(i + j)] += binomial(m, i) * binomial(n, j) / binomial(m + n, i + j) *
-                           a[to_size(i)] * b[to_size(j)];
+      c[to_size(i + j)] +=
+          binomial(m, i) * binomial(n, j) / binomial(m + n, i + j) * a[to_size(i)] * b[to_size(j)];
     }
   }
   return c;
@@ -45,8 +45,7 @@ Net product(const Net& a, const Net& b) {
   r.c.assign(to_size((r.degree + 1) * (r.degree + 1)), 0.0);
   for (int i = 0; i <= a.degree; ++i) {
     for (int k = 0; k <= b.degree; ++k) {
-      const double u =
-          binomial(a.degree, i) * binomial(b.degree, k) / binomial(r.degree, i + k);
+      const double u = binomial(a.degree, i) * binomial(b.degree, k) / binomial(r.degree, i + k);
       for (int j = 0; j <= a.degree; ++j) {
         for (int l = 0; l <= b.degree; ++l) {
           const double v =
@@ -88,8 +87,7 @@ BezierPatch tapered(const BezierPatch& patch, double w0, double w1) {
   return result;
 }
 
-BezierPatch quad_of_triangle(std::span<const dvec3> triangle,
-                             const std::array<dvec3, 4>& corners) {
+BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<dvec3, 4>& corners) {
   // The barycentric coordinates over the quadrilateral, and their powers.
   std::array<std::array<Net, 5>, 3> power;
   for (int b = 0; b < 3; ++b) {

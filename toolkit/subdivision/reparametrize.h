@@ -20,8 +20,7 @@ BezierPatch tapered(const BezierPatch& patch, double w0, double w1);
 /// The quadrilateral of a triangular patch of degree four (points as CellPatch has them) with these
 /// barycentric corners, (0, 0), (0, 1), (1, 0) and (1, 1), weights of the patch's first, second and
 /// third corner. Of degree (4, 4).
-BezierPatch quad_of_triangle(std::span<const dvec3> triangle,
-                             const std::array<dvec3, 4>& corners);
+BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<dvec3, 4>& corners);
 
 BezierPatch reversed_u(const BezierPatch& patch);
 BezierPatch reversed_v(const BezierPatch& patch);

@@ -26,8 +26,7 @@ double may_rise(const dvec3& p, const dvec3& q, const dvec3& axis, double cos_an
   const double along = glm::dot(d, axis);
   const double length = glm::length(d);
   const double across = std::sqrt(std::max(0.0, length * length - along * along));
-  return across * cos_angle <= along * sin_angle ? length
-                                                 : along * cos_angle + across * sin_angle;
+  return across * cos_angle <= along * sin_angle ? length : along * cos_angle + across * sin_angle;
 }
 
 /// The four quarters of a cell, on the next level.

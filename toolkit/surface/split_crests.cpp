@@ -28,9 +28,13 @@ struct FaceGrid {
   int first_patch = 0;
   int count_u = 0, count_v = 0;
   int first_row = 0;
+  /// Patches of a refined face of a cage are no grid: rows do not go through them.
+  bool can_be_cut = true;
 
   FaceGrid(const Face& face, const std::vector<Patch>& patches, int row)
-      : first_patch(face.first_patch), first_row(row) {
+      : first_patch(face.first_patch),
+        first_row(row),
+        can_be_cut(face.cage < 0 || face.patch_count == 1) {
     const Patch* const first = patches.data() + face.first_patch;
     while (count_v < face.patch_count && first[count_v].u.lower == first[0].u.lower) ++count_v;
     count_u = count_v == 0 ? 0 : face.patch_count / count_v;
@@ -244,9 +248,12 @@ bool RowSplitter::too_thin(const Cut& cut) const {
   return false;
 }
 
-/// False if the row has too many.
+/// False if the row cannot be cut, or has too many.
 bool RowSplitter::add(const Cut& cut, std::vector<Cut>& added) {
-  if (cuts_[to_size(cut.row)].size() >= cut_limit || too_thin(cut)) return false;
+  if (!grid_of_row(cut.row).can_be_cut || cuts_[to_size(cut.row)].size() >= cut_limit ||
+      too_thin(cut)) {
+    return false;
+  }
   cuts_[to_size(cut.row)].push_back(cut.s);
   added.push_back(cut);
   return true;

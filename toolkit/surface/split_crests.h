@@ -16,7 +16,9 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches);
 /// that a row ends at, as far as the row goes on: every side still meets whole ones. A crest from
 /// which the rows would wind without end, or that would leave strips as thin as what counts as one
 /// point, stays where it is.
-/// @pre every face's patches are a grid, v within u; rulings are found. The box contains them.
+/// Faces of cages with more than one patch are not split.
+/// @pre the patches of all other faces are grids, v within u; rulings are found. The box contains
+/// them.
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
 
 /// Splits patches, rows as above, where sides of others end inside of theirs and run along them, so

@@ -413,6 +413,7 @@ Command add_hull(CLI::App& parent) {
       "  taut hull teapot.bpt -o hull.ply -o hull.stl --relative 1e-5 --report report.json\n"
       "  taut hull teapot.bpt -o teapot.hull.json     the exact hull: patches, scrolls, facets\n"
       "  taut hull a.bpt b.obj --tolerance 0.01 --json\n"
+      "  taut hull cage.obj --scheme catmark -o hull.ply   of the subdivision surface\n"
       "  taut hull scan.xyz -o hull.ply              points and triangles: the exact hull");
   const auto arguments = std::make_shared<HullArguments>();
   CLI::App& app = *command.app;

@@ -111,15 +111,17 @@ void add_inputs(CLI::App& command, InputArguments& arguments) {
                   "obj, taut.json, ...")
       ->type_name("FORMAT");
   command
-      .add_option("--scheme", arguments.scheme,
-                  "What polygons stand for: bilinear: themselves; catmark and loop: the\ncontrol cage of "
-                  "a subdivision surface. Default: bilinear, but of .obj\nfiles with the tags of a "
-                  "cage loop where all are triangles, else\ncatmark")
+      .add_option(
+          "--scheme", arguments.scheme,
+          "What polygons stand for: bilinear: themselves; catmark and loop: the\ncontrol cage of "
+          "a subdivision surface. Default: bilinear, but of .obj\nfiles with the tags of a "
+          "cage loop where all are triangles, else\ncatmark")
       ->check(CLI::IsMember({"bilinear", "catmark", "loop"}).description(""))
       ->type_name("SCHEME");
-  add_positive(command, "--cage-accuracy", arguments.cage_accuracy,
-               "What may be left of the exact surface of a control cage near\nextraordinary vertices, as "
-               "a fraction of the diagonal; default 1e-9")
+  add_positive(
+      command, "--cage-accuracy", arguments.cage_accuracy,
+      "What may be left of the exact surface of a control cage near\nextraordinary vertices, as "
+      "a fraction of the diagonal; default 1e-9")
       ->type_name("R");
 }
 
