@@ -17,7 +17,8 @@ namespace {
 constexpr std::array widths = {4, 2, 1};
 /// Rectangles after which the surroundings are given up: two rings of patches about one are 25.
 constexpr std::size_t rectangle_limit = 32;
-constexpr std::size_t step_limit = 2 * rectangle_limit;
+/// The same of those that have grown together on the way.
+constexpr std::size_t growth_limit = 2 * rectangle_limit;
 /// Distance that is kept clear of the outline, in the cell's sizes, far more than rounding.
 constexpr double clearance = 1e-6;
 /// Parts of a rectangle, in each direction, the control points of which bound where it is.
@@ -290,7 +291,7 @@ class ConcaveSurroundings::Neighborhood {
     std::vector<Rectangle> wide = {around_poles({own_.patch, widened(own_.u, lengths * stretch_u_),
                                                  widened(own_.v, lengths * stretch_v_)})};
     std::vector<std::size_t> waiting = {0};
-    for (std::size_t step = 0; !waiting.empty(); ++step) {
+    while (!waiting.empty()) {
       const Rectangle r = wide[waiting.back()];
       waiting.pop_back();
       if (r.patch < 0) continue;
@@ -308,7 +309,7 @@ class ConcaveSurroundings::Neighborhood {
           next.v = united(next.v, wide[k].v);
           wide[k].patch = -1;
         }
-        if (step == step_limit) return {};
+        if (wide.size() == growth_limit) return {};
         waiting.push_back(wide.size());
         wide.push_back(next);
       }

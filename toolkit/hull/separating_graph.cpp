@@ -47,6 +47,8 @@ constexpr int circle_halvings = 10;
 /// leaves fewer of them.
 constexpr int least_refinements = 3;
 constexpr int most_refinements = 8;
+/// Not more than so many cells at a time.
+constexpr std::size_t refined_cells = 16384;
 /// Part of its size within which a curve beside a refined cell accounts for it.
 constexpr double refined_margin = 1;
 
@@ -303,6 +305,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
   bool fewer = true;
   for (int level = 1; !left.empty() && !given_up(); ++level) {
     if (level > least_refinements && (!fewer || level > most_refinements)) break;
+    if (left.size() > refined_cells) break;
     progress_.check();
     const std::size_t count = left.size();
     left = built_.uncrossed(refinement.refined(left), refined_margin);
