@@ -321,7 +321,7 @@ TEST(AddCage, WarnsOfNonManifoldCages) {
 /// A regular torus has a crest on its top and its bottom, and two flat disks; with a NURBS model, a
 /// curve and points it makes one hull.
 TEST(CageHull, OfTorusAndMixedScenes) {
-  const Hull torus = convex_hull(cage_model(torus_cage(6, 5)), {.relative = 1e-2});
+  const Hull torus = convex_hull(cage_model(torus_cage(6, 5)), {.relative = 1e-2, .progress = {}});
   ASSERT_TRUE(torus.boundary);
   EXPECT_TRUE(torus.boundary->unresolved.empty());
   EXPECT_EQ(torus.boundary->count(FaceKind::facet), 2);
@@ -338,7 +338,7 @@ TEST(CageHull, OfTorusAndMixedScenes) {
   line.points = {{0, -3, 0, 1}, {0, -3, 1, 1}};
   others.add_curve(line, "line");
   mixed.add_part(std::move(others), smooth_join_angle);
-  const Hull hull = convex_hull(mixed, {.relative = 1e-2});
+  const Hull hull = convex_hull(mixed, {.relative = 1e-2, .progress = {}});
   ASSERT_TRUE(hull.boundary);
   EXPECT_TRUE(hull.boundary->unresolved.empty());
   EXPECT_EQ(hull.kind, HullKind::solid);
