@@ -25,9 +25,11 @@ int to_int(std::size_t n) { return static_cast<int>(n); }
 /// A point as OpenSubdiv combines it.
 struct Primvar {
   dvec3 x = dvec3(0.0);
+  // NOLINTBEGIN(readability-identifier-naming): the names are OpenSubdiv's
   void Clear(void* = nullptr) { x = dvec3(0.0); }
   void AddWithWeight(const Primvar& other, double weight) { x += weight * other.x; }
   void AddWithWeight(const Primvar& other, float weight) { x += double(weight) * other.x; }
+  // NOLINTEND(readability-identifier-naming)
 };
 
 /// Faces with their tags, as OpenSubdiv takes them.
