@@ -286,7 +286,8 @@ class ConcaveSurroundings::Neighborhood {
   bool is_sound() const { return flat_; }
 
   /// The rectangles within so many lengths of the cell, those of its longer side where the other
-  /// one is shorter, over smooth joins too; none if they are too many. They do not overlap.
+  /// one is shorter, over smooth joins too; none if they are too many. Where two of a patch overlap
+  /// yet, their sides count as outline, which proves less.
   std::vector<Rectangle> within(int lengths) const {
     std::vector<Rectangle> wide = {around_poles({own_.patch, widened(own_.u, lengths * stretch_u_),
                                                  widened(own_.v, lengths * stretch_v_)})};

@@ -23,8 +23,9 @@ namespace taut {
 /// region, and a point of them is above all of the model beyond them, in the directions of the
 /// cell's normals, each point of the cell supports its normal, alone.
 ///
-/// In corners that are no vertices, and at poles, the angles of the patches are taken to sum to a
-/// full turn.
+/// Joins that are declared smooth (FacePatch) are taken to be so: what they miss is within the
+/// model's deviation bound. In corners that are no vertices, and at poles, the angles of the
+/// patches are taken to sum to a full turn.
 ///
 /// Holds what it learns of patches; use one object a thread. The scene must outlive it.
 class ConcaveSurroundings {
