@@ -116,14 +116,16 @@ CurvatureNets::CurvatureNets(const BezierPatch& patch, const std::array<bool, 4>
                           std::pow(product.shape.q + 1.0, product.shape.q - quotient.shape.q);
     return Net<double>{
         quotient.shape, unscaled(quotient),
-        (net.rounding_bound + roundings * rounding_unit * normal_size) * second_size * growth};
+        (net.rounding_bound + roundings * rounding_unit * normal_size) * second_size * growth,
+        normal_size * second_size * growth};
   };
   uu_ = form(2, 0);
   uv_ = form(1, 1);
   vv_ = form(0, 2);
   const ScaledNet<dvec3> quotient = divided(normals, {1, 1}, normal_size);
   normals_ = {quotient.shape, unscaled(quotient),
-              net.rounding_bound * (net.shape.p + 1.0) * (net.shape.q + 1.0)};
+              net.rounding_bound * (net.shape.p + 1.0) * (net.shape.q + 1.0),
+              largest(unscaled(quotient))};
   if (!sound) uu_.error = std::numeric_limits<double>::infinity();
 }
 
@@ -136,6 +138,52 @@ Interval CurvatureNets::range(const Net<double>& net, const Interval& u, const I
 
 SecondForm CurvatureNets::over(const Interval& u, const Interval& v) const {
   return {range(uu_, u, v), range(uv_, u, v), range(vv_, u, v)};
+}
+
+Interval CurvatureNets::range(const Net<double>& net) {
+  const auto [least, most] = std::minmax_element(net.entries.begin(), net.entries.end());
+  return {*least - net.error, *most + net.error};
+}
+
+int CurvatureNets::definite_sign() const {
+  SecondForm form;
+  form.uu = range(uu_);
+  if (form.uu.lower <= 0 && form.uu.upper >= 0) return 0;
+  form.vv = range(vv_);
+  if (form.vv.lower <= 0 && form.vv.upper >= 0) return 0;
+  form.uv = range(uv_);
+  if (form.surely_negative()) return -1;
+  return form.surely_positive() ? 1 : 0;
+}
+
+/// Convex combinations, one after the other along a line of the net, each of one rounding.
+template <class Entry>
+CurvatureNets::Net<Entry> CurvatureNets::Net<Entry>::upper_half(Direction direction,
+                                                                Net<Entry>& lower) const {
+  Net<Entry> upper = *this;
+  const bool of_u = direction == Direction::u;
+  upper.error += (of_u ? shape.p : shape.q) * rounding_unit * size;
+  lower = upper;
+  if (of_u) {
+    halve_u(shape, upper.entries.data(), lower.entries.data());
+  } else {
+    halve_v(shape, upper.entries.data(), lower.entries.data());
+  }
+  return upper;
+}
+
+std::array<CurvatureNets, 2> CurvatureNets::halves(Direction direction) const {
+  std::array<CurvatureNets, 2> result = {CurvatureNets(), CurvatureNets()};
+  auto& [lower, upper] = result;
+  upper.normals_ = normals_.upper_half(direction, lower.normals_);
+  upper.uu_ = uu_.upper_half(direction, lower.uu_);
+  upper.uv_ = uv_.upper_half(direction, lower.uv_);
+  upper.vv_ = vv_.upper_half(direction, lower.vv_);
+  return result;
+}
+
+std::optional<NormalPyramid> CurvatureNets::normals() const {
+  return normal_pyramid(normals_.entries, normals_.error);
 }
 
 std::optional<NormalPyramid> CurvatureNets::normals(const Interval& u, const Interval& v) const {

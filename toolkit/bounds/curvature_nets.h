@@ -26,8 +26,16 @@ class CurvatureNets {
   /// Bounds over a rectangle, in parameters stretched by distances from the poles: definite where
   /// the form is.
   SecondForm over(const Interval& u, const Interval& v) const;
+  /// Which of the two it surely is over all of the square: -1 negative, 1 positive definite; 0 if
+  /// neither.
+  int definite_sign() const;
   /// Contains the normals there.
   std::optional<NormalPyramid> normals(const Interval& u, const Interval& v) const;
+  /// Of all of the net.
+  std::optional<NormalPyramid> normals() const;
+
+  /// Those over the two halves of the square, in parameters of their own.
+  std::array<CurvatureNets, 2> halves(Direction direction) const;
 
  private:
   template <class Entry>
@@ -35,7 +43,12 @@ class CurvatureNets {
     NetShape shape;
     std::vector<Entry> entries;
     double error = 0;  ///< of an entry
+    double size = 0;   ///< of the largest entry
+
+    Net<Entry> upper_half(Direction direction, Net<Entry>& lower) const;
   };
+  CurvatureNets() = default;
+  static Interval range(const Net<double>& net);
   static Interval range(const Net<double>& net, const Interval& u, const Interval& v);
 
   Net<dvec3> normals_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <utility>
@@ -11,16 +12,19 @@
 
 namespace taut {
 
-/// Proves that cells of patches touch the hull, with what surrounds them on other patches too: over
-/// smooth joins and around poles.
+class ConcavePatch;
+struct ParameterRectangle;
+
+/// Proves that cells of patches touch the hull, with what surrounds them, on other patches too:
+/// over smooth joins and around poles.
 ///
-/// Rectangles of patches about the cell, joined side to side, are curved one way, with all normals
-/// within a right angle of the cell's axis m. Each lies over the plane normal to m without a fold,
-/// and so, in an abstract copy, do all of them joined, but for their outline. Over a convex region
-/// of that plane that does not meet the outline, what is joined to the cell is therefore the graph
-/// of one function, of class C1 and piecewise of negative second derivatives: a concave one. There
-/// every tangent plane is above all of the graph. If the rectangles next to the cell lie over the
-/// region, and a point of them is above all of the model beyond them, in the directions of the
+/// Let m be the cell's axis, D a disc in the plane normal to it about the cell, as seen along m, in
+/// coordinates in which the surface falls off evenly in all directions. Walk from the cell as far
+/// as the surface lies over D. Where the surface is curved one way all along, with all normals
+/// within a right angle of m, and has no edge over D, it lies over D without a fold or an end: D
+/// being simply connected, what is joined to the cell is the graph of one function over D, of class
+/// C1 and piecewise of negative second derivatives, a concave one. Every tangent plane is above all
+/// of the graph. If a point of the graph is above all else of the model, in the directions of the
 /// cell's normals, each point of the cell supports its normal, alone.
 ///
 /// Joins that are declared smooth (FacePatch) are taken to be so: what they miss is within the
@@ -38,13 +42,17 @@ class ConcaveSurroundings {
                  double sign);
 
  private:
-  class Surface;
-  class Neighborhood;
-  struct Rectangle;
+  class Walk;
+
+  ConcavePatch& surface(int part, int patch);
+  bool is_above_others(int instance, int patch, const ParameterRectangle& cell,
+                       const std::array<dvec3, 4>& corners,
+                       const std::vector<std::pair<int, ParameterRectangle>>& pieces);
 
   const Scene& scene_;
   ReachTest reach_;
-  std::map<std::pair<int, int>, std::unique_ptr<Surface>> surfaces_;  // by part and patch
+  long walks_ = 0;
+  std::map<std::pair<int, int>, std::unique_ptr<ConcavePatch>> surfaces_;  // by part and patch
 };
 
 }  // namespace taut

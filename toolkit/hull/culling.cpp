@@ -11,6 +11,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
+#include "taut/core/pool.h"
 #include "taut/hull/concave_surroundings.h"
 
 namespace taut {
@@ -41,6 +42,9 @@ constexpr std::size_t patches_per_task = 8;
 /// principal curvatures differ by a factor of k, a pyramid across them may hold normals that point
 /// k cells away.
 constexpr int widest_surrounding = 8;
+
+/// Roundings by which a point that supports its normal may fall short of what a query finds.
+constexpr double middle_rounding = 16;
 
 /// Distances of the points that stand for a cell, in its sizes.
 constexpr std::array<double, 2> ring_radii = {0.5, 2};
@@ -122,10 +126,11 @@ struct PatchResult {
 
 /// Scratch memory of a task.
 struct Tools {
-  explicit Tools(const Scene& scene) : query(scene), reach(scene), surroundings(scene) {}
+  Tools(const Scene& scene, ConcaveSurroundings& with)
+      : query(scene), reach(scene), surroundings(with) {}
   SupportQuery query;
   ReachTest reach;
-  ConcaveSurroundings surroundings;
+  ConcaveSurroundings& surroundings;
   std::vector<std::array<CellNets, 4>> quarters;  // per level
 };
 
@@ -217,12 +222,12 @@ class PatchCulling {
     }
     if (bounds.pyramid) {
       const NormalPyramid& pyramid = *bounds.pyramid;
-      const bool may_be_on = bounds.definite && left.plus != left.minus;
+      const bool may_be_on = left.plus != left.minus;
       const double sign = left.plus ? 1 : -1;
       Beacon& beacon = beacons[left.plus ? 0 : 1];
       // Where the parent's support point is here, the proof needs no query.
       const bool near = may_be_on && is_near(beacon, cell);
-      bool on = near && surely_on(pyramid, nets.points, cell, sign);
+      bool on = near && surely_on(bounds, nets.points, cell, sign);
       if (on) {
         sample_middle(cell, sign);
       } else {
@@ -233,8 +238,8 @@ class PatchCulling {
           finish(cell, CellState::off, left);
           return;
         }
-        on = may_be_on && !near && is_near(beacon, cell) &&
-             surely_on(pyramid, nets.points, cell, sign);
+        on = left.plus != left.minus && !near && is_near(beacons[left.plus ? 0 : 1], cell) &&
+             surely_on(bounds, nets.points, cell, left.plus ? 1 : -1);
       }
       if (on) {
         ++count.on;
@@ -372,12 +377,17 @@ class PatchCulling {
     result_.frame_points.push_back(content_.frame_point(middle));
   }
 
-  bool surely_on(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
+  /// The finest are tried with others later, those that no curve crosses.
+  bool surely_on(const NormalBounds& bounds, const std::vector<dvec4>& points,
                  const PatchCell& cell, double sign) {
-    if (touches_another(cell)) {
-      // The finest are tried later, those that no curve crosses.
-      return cell.level < finest_ && surely_on_with_others(pyramid, cell, sign);
-    }
+    const NormalPyramid& pyramid = *bounds.pyramid;
+    const bool alone = bounds.definite && !touches_another(cell);
+    return (alone && surely_on_alone(pyramid, points, cell, sign)) ||
+           (cell.level < finest_ && surely_on_with_others(pyramid, cell, sign));
+  }
+
+  bool surely_on_alone(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
+                       const PatchCell& cell, double sign) {
     std::array<dvec3, 4> corners = pyramid.corners;
     for (dvec3& n : corners) n *= sign;
     const auto is_concave = [&](const std::vector<dvec4>& net) {
@@ -399,7 +409,26 @@ class PatchCulling {
   }
 
   bool surely_on_with_others(const NormalPyramid& pyramid, const PatchCell& cell, double sign) {
-    return tools_.surroundings.surely_on(instance_, element_.index, cell, pyramid, sign);
+    return supports_in_middle(cell, sign) &&
+           tools_.surroundings.surely_on(instance_, element_.index, cell, pyramid, sign);
+  }
+
+  /// Otherwise there is no need to look further.
+  bool supports_in_middle(const PatchCell& cell, double sign) {
+    const Contact middle{instance_, SourceKind::face, element_.index, cell.u().at(0.5),
+                         cell.v().at(0.5)};
+    const dvec3 normal = sign * unit_normal(patch().bezier, middle.u, middle.v);
+    if (normal == dvec3(0.0)) return false;
+    const dvec3 n = unit(to_frame(normal));
+    const Support s = tools_.query(n, middle);
+    ++result_.queries;
+    if (glm::dot(s.point - content_.frame_point(middle), n) <=
+        middle_rounding * content_.rounding) {
+      return true;
+    }
+    result_.samples.push_back({n, s.contact});
+    result_.frame_points.push_back(s.point);
+    return false;
   }
 
   /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
@@ -480,9 +509,13 @@ void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
 
 struct CellRefinement::Content {
   explicit Content(const Scene& of)
-      : scene(of), spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}), tools(of) {}
+      : scene(of),
+        spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}),
+        surroundings(of),
+        tools(of, surroundings) {}
   const Scene& scene;
   SpreadSamples spread;
+  ConcaveSurroundings surroundings;
   Tools tools;
 };
 
@@ -536,9 +569,12 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   result.frame_points = spread.points();
   result.support_queries = long(spread.samples().size());
   std::vector<PatchResult> results(places.size());
+  Pool<ConcaveSurroundings> surroundings(
+      [&] { return std::make_unique<ConcaveSurroundings>(scene); });
   parallel_for(places.size(), patches_per_task, options.threads,
                [&](std::size_t begin, std::size_t end) {
-                 Tools tools(scene);
+                 const Pool<ConcaveSurroundings>::Lease lent = surroundings.lease();
+                 Tools tools(scene, *lent);
                  for (std::size_t k = begin; k < end; ++k) {
                    options.progress.check();
                    results[k] = PatchCulling(scene, map, spread, places[k].instance, places[k].root,

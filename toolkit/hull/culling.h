@@ -79,7 +79,8 @@ struct Culling {
 /// of R is above all of the model outside R in these directions. For then at x in X with its normal
 /// n, S . n is concave over R with its only maximum at x, so that x . n >= p . n > y . n for every
 /// y outside R: x alone supports n, and the Gauss map is injective on X. Cells next to a border
-/// between patches, or to a pole, are never proven on.
+/// between patches, or to a pole, and those that no such rectangle shows to be on, are proven with
+/// what surrounds them (ConcaveSurroundings), but for those of the finest level.
 ///
 /// Both are proofs: deviations and rounding included, up to the rounding of the stored model (the
 /// normals at a collapsed side within rounding of it are those of its limit). They speak of
