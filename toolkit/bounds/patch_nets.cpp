@@ -82,7 +82,7 @@ NormalBounds PatchNets::bounds(const CellNets& cell, int level) const {
   const double rounding =
       normal_rounding_ + 4.0 * (level + 1) * (p + q) * rounding_unit * normal_size_;
   result.pyramid = normal_pyramid(cell.normals, rounding, u_first ? along_u : along_v);
-  if (!result.pyramid) return result;
+  if (!result.pyramid || element_->stand_in) return result;
   const SecondForm form = second_form(element_->shape, element_->rational, cell.points, cell.points,
                                       result.pyramid->corners, point_rounding_);
   result.signs = {form.may_be_negative(), form.may_be_positive()};

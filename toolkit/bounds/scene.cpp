@@ -228,6 +228,7 @@ ScenePart make_part(const Part& part, double scale, int threads) {
       built[k]->ruled_u = patch.ruled_u;
       built[k]->ruled_v = patch.ruled_v;
       built[k]->ruled_obliquely = patch.ruled_obliquely;
+      built[k]->stand_in = patch.stand_in;
     }
   });
   result.element_of_patch.assign(part.patches().size(), -1);

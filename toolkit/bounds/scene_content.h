@@ -78,6 +78,7 @@ struct SceneElement {
   bool ruled_v = false;
   bool ruled_obliquely = false;
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
+  bool stand_in = false;  ///< see Patch
 };
 
 /// A cell of an element's CBVH at which searches start: flat enough that its net bounds it well.

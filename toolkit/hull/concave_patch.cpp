@@ -33,6 +33,11 @@ std::array<bool, 4> poles(const Patch& patch) {
   return result;
 }
 
+bool within_right_angle(const NormalPyramid& pyramid, double sign, const dvec3& m) {
+  return std::all_of(pyramid.corners.begin(), pyramid.corners.end(),
+                     [&](const dvec3& n) { return sign * glm::dot(n, m) > 0; });
+}
+
 bool are_disjoint(const Interval& a, const Interval& b) {
   return a.upper <= b.lower || b.upper <= a.lower;
 }
@@ -44,7 +49,11 @@ bool ParameterRectangle::overlaps(const ParameterRectangle& other) const {
 }
 
 ConcavePatch::ConcavePatch(const SceneElement& element, const Patch& patch)
-    : bezier_(bezier_of(element)), poles_(poles(patch)), curvature_(bezier_, poles_), nodes_(1) {
+    : bezier_(bezier_of(element)),
+      stand_in_(patch.stand_in),
+      poles_(poles(patch)),
+      curvature_(bezier_, poles_),
+      nodes_(1) {
   nodes_.front().nets = std::make_unique<CurvatureNets>(curvature_);
 }
 
@@ -101,6 +110,13 @@ const std::vector<dvec3>& ConcavePatch::points(int node) {
 }
 
 bool ConcavePatch::is_concave(int node, const dvec3& m) {
+  if (stand_in_) {
+    std::optional<NormalPyramid>& pyramid = at(node).pyramid;
+    if (!pyramid) pyramid = curvature_.normals(cell(node).u, cell(node).v);
+    if (!pyramid) return false;
+    const double sign = glm::dot(pyramid->axis, m) > 0 ? 1 : -1;
+    return within_right_angle(*pyramid, sign, m);
+  }
   look(node);
   return at(node).sign != 0 && faces(node, m);
 }
@@ -111,11 +127,11 @@ bool ConcavePatch::faces(int node, const dvec3& m) {
   if (parent >= 0 && at(parent).sign != 0 && faces(parent, m)) return true;
   std::optional<NormalPyramid>& pyramid = at(node).pyramid;
   if (!pyramid) pyramid = curvature_.normals(cell(node).u, cell(node).v);
-  return pyramid && std::all_of(pyramid->corners.begin(), pyramid->corners.end(),
-                                [&](const dvec3& n) { return at(node).sign * glm::dot(n, m) > 0; });
+  return pyramid && within_right_angle(*pyramid, at(node).sign, m);
 }
 
 double ConcavePatch::curvature(const dvec2& p) const {
+  if (stand_in_) return std::numeric_limits<double>::infinity();
   for (const Side side : all_sides) {
     const double t = along_v(side) ? p.x : p.y;
     if (poles_[std::size_t(side)] && t == (at_upper_end(side) ? 1 : 0)) {

@@ -26,9 +26,11 @@ class ConcavePatch {
   ConcavePatch(const SceneElement& element, const Patch& patch);
 
   const BezierPatch& bezier() const { return bezier_; }
+  bool stand_in() const { return stand_in_; }
   NetShape shape() const { return {bezier_.degree_u, bezier_.degree_v}; }
 
-  /// Gaussian curvature at a point, infinity at a pole; zero where it is negligible.
+  /// Gaussian curvature at a point, zero where it is negligible; infinity at a pole and where it
+  /// tells nothing.
   double curvature(const dvec2& p) const;
 
   /// @name Nodes of the tree, 0 its root
@@ -40,7 +42,7 @@ class ConcavePatch {
   /// Control points over the rectangle, without their weights.
   const std::vector<dvec3>& points(int node);
   /// Certain: there it is curved one way, downwards where m is up, with normals within a right
-  /// angle of m.
+  /// angle of m. A stand-in is taken to be curved so.
   bool is_concave(int node, const dvec3& m);
   /// What a walk over the surface, by its number, has found there.
   struct Mark {
@@ -69,6 +71,7 @@ class ConcavePatch {
   void halve(int node);
 
   BezierPatch bezier_;
+  bool stand_in_;
   std::array<bool, 4> poles_;
   CurvatureNets curvature_;
   std::vector<Node> nodes_;

@@ -44,16 +44,17 @@ constexpr int level_limit = 80;
 /// falls below its tangent plane by half the square of the distance, to second order.
 class FallMap {
  public:
-  /// None if it does not fall to all sides, away from the axis.
-  static std::optional<FallMap> about(const BezierPatch& patch, double u, double v,
+  /// None if it does not fall to all sides, away from the axis. Of a stand-in, distances count.
+  static std::optional<FallMap> about(const ConcavePatch& patch, const dvec2& p,
                                       const dvec3& axis) {
-    const PatchJet2 jet = jet2(patch, u, v);
+    const PatchJet2 jet = jet2(patch.bezier(), p.x, p.y);
     dvec3 n = glm::cross(jet.Su, jet.Sv);
     const double volume = glm::dot(n, axis);
     n *= std::copysign(1 / glm::length(n), volume);
-    const double uu = -glm::dot(jet.Suu, n);
-    const double uv = -glm::dot(jet.Suv, n);
-    const double vv = -glm::dot(jet.Svv, n);
+    const bool falls = !patch.stand_in();
+    const double uu = falls ? -glm::dot(jet.Suu, n) : glm::dot(jet.Su, jet.Su);
+    const double uv = falls ? -glm::dot(jet.Suv, n) : glm::dot(jet.Su, jet.Sv);
+    const double vv = falls ? -glm::dot(jet.Svv, n) : glm::dot(jet.Sv, jet.Sv);
     const double rest = vv - uv * uv / uu;
     if (!(uu > 0 && rest > flat_share * vv)) return {};
     const dvec3 to_u = glm::cross(jet.Sv, axis) / volume;
@@ -254,7 +255,8 @@ class ConcaveSurroundings::Walk {
     if (pieces_.empty()) curvature_ = k;
     pieces_.push_back(std::move(piece));
     const int index = int(pieces_.size()) - 1;
-    waiting_.emplace(std::abs(std::log(k / curvature_)), index);
+    const bool tells = std::isfinite(k) && std::isfinite(curvature_);
+    waiting_.emplace(tells ? std::abs(std::log(k / curvature_)) : 0, index);
     return index;
   }
 
@@ -357,8 +359,7 @@ bool ConcaveSurroundings::surely_on(int instance, int patch, const PatchCell& ce
   const ParameterRectangle own{cell.u(), cell.v()};
   const dvec2 middle = own.middle();
   const ConcavePatch& surface_here = surface(placed.part, patch);
-  const std::optional<FallMap> map =
-      FallMap::about(surface_here.bezier(), middle.x, middle.y, axis);
+  const std::optional<FallMap> map = FallMap::about(surface_here, middle, axis);
   if (!map) return false;
   double size = 0;
   for (const dvec4& p : restricted(surface_here.bezier(), own.u, own.v).points) {

@@ -5,7 +5,9 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <set>
 
+#include "taut/bounds/scene_content.h"
 #include "taut/hull/arc_pieces.h"
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
@@ -69,6 +71,8 @@ class GraphTracer {
   void find_poles();
   void add_pole(const SupportingPole& pole);
   bool is_in_plane(const dvec3& n) const;
+  void find_settled(const std::vector<CulledCell>& cells);
+  bool is_settled(const Contact& c) const;
   void part_samples(const std::vector<Sample>& samples);
   void part(const Sighting& a, const Sighting& b, int depth);
   void part_about(const SupportingPole& pole);
@@ -95,6 +99,7 @@ class GraphTracer {
   long cell_limit_ = 0;
   bool stopped_ = false;
   long cells_searched_ = 0;
+  std::set<std::pair<int, int>> settled_;  // instances and patches
   std::vector<Landmark> landmarks_;
   std::vector<SupportingPole> poles_;
   std::vector<int> waiting_;             // nodes whose slots may be open
@@ -162,9 +167,27 @@ void GraphTracer::add_pole(const SupportingPole& pole) {
   if (!known) poles_.push_back(pole);
 }
 
+/// Stand-ins all cells of which are on: what they have of branches is not the surface's.
+void GraphTracer::find_settled(const std::vector<CulledCell>& cells) {
+  const Scene::Content& content = geometry_.scene().content();
+  std::set<std::pair<int, int>> left;
+  for (const CulledCell& c : cells) {
+    const ScenePart& part = content.part_of(c.instance);
+    const int element = part.element_of_patch[std::size_t(c.patch)];
+    if (!part.elements[std::size_t(element)].stand_in) continue;
+    (c.state == CellState::on ? settled_ : left).emplace(c.instance, c.patch);
+  }
+  for (const auto& place : left) settled_.erase(place);
+}
+
+bool GraphTracer::is_settled(const Contact& c) const {
+  return c.kind == SourceKind::face && settled_.count({c.instance, c.element}) > 0;
+}
+
 /// Finds and traces the curves that the great arc between two sightings crosses.
 void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
-  if (given_up() || are_joined(geometry_, a, b)) return;
+  if (given_up() || is_settled(a.contact) || is_settled(b.contact)) return;
+  if (are_joined(geometry_, a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
     // Two samples on the curve itself.
     CommonSupport tie;
@@ -214,7 +237,7 @@ void GraphTracer::part_samples(const std::vector<Sample>& samples) {
   std::vector<dvec3> points;
   Box box;
   for (const Sample& s : samples) {
-    if (is_in_plane(s.n)) continue;
+    if (is_in_plane(s.n) || is_settled(s.contact)) continue;
     const Contact c = at_rest(geometry_, s.contact, s.n);
     const dvec3 x = geometry_.point(c);
     box.include(x);
@@ -455,6 +478,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
   first_cells_ = query_.cells();
   cell_limit_ = least_cells + cells_a_sample * long(samples.size());
+  find_settled(cells);
   find_planes();
   find_poles();
   trace_waiting();

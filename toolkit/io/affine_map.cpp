@@ -46,7 +46,7 @@ std::vector<FacePatch> transformed_patches(const Part& part, const Face& face,
   result.reserve(static_cast<std::size_t>(face.patch_count));
   for (int i = 0; i < face.patch_count; ++i) {
     const Patch& patch = part.patches()[static_cast<std::size_t>(face.first_patch + i)];
-    result.push_back({patch.bezier, patch.smooth_sides});
+    result.push_back({patch.bezier, patch.smooth_sides, patch.stand_in});
     transform(result.back().bezier.points, map);
   }
   return result;

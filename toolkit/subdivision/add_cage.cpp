@@ -46,7 +46,7 @@ void add_cage(Part& part, const ControlCage& cage, const std::string& name,
   std::vector<FacePatch> face;
   for (std::size_t i = 0; i < surface.patches.size(); ++i) {
     SurfacePatch& patch = surface.patches[i];
-    face.push_back({std::move(patch.bezier), patch.smooth});
+    face.push_back({std::move(patch.bezier), patch.smooth, !patch.exact});
     const bool last =
         i + 1 == surface.patches.size() || surface.patches[i + 1].cage_face != patch.cage_face;
     if (!last) continue;

@@ -121,6 +121,7 @@ void Part::add_patches(std::vector<FacePatch> patches, std::string face_name) {
     Patch patch;
     patch.bezier = std::move(patches[k].bezier);
     patch.smooth_sides = patches[k].smooth_sides;
+    patch.stand_in = patches[k].stand_in;
     patch.u = {static_cast<double>(k), static_cast<double>(k + 1)};
     patch.face = face;
     patches_.push_back(std::move(patch));
