@@ -18,6 +18,9 @@ constexpr double least_length = 0.1;
 constexpr double rounded = 1e-6;
 /// Contacts whose distance falls to less than this share between two rulings are about to merge.
 constexpr double merging_share = 0.25;
+/// Rates per share of the length, relative to the chord, below which the length falls with its
+/// square: one half, where others are one. In an A3 end contacts' are one too, those of n two.
+constexpr double touching_share = 0.7;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
@@ -42,6 +45,18 @@ bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
     if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
   }
   return false;
+}
+
+/// The rulings' length falls with the square of the way to the end: by its derivatives in m, with
+/// respect to its share, the longer one is twice as far from the end as it is.
+bool touches(const Ruling& end, const Ruling& longer, const MovingRuling& m) {
+  double along = glm::dot(longer.n - end.n, m.dn);
+  double chord = square(longer.n - end.n);
+  for (std::size_t i = 0; i < 2; ++i) {
+    along += glm::dot(longer.point[i] - end.point[i], m.dx[i]);
+    chord += square(longer.point[i] - end.point[i]);
+  }
+  return along < touching_share * chord && along > (1 - touching_share) * chord;
 }
 
 }  // namespace
@@ -168,6 +183,7 @@ void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
   m.at = CommonSupport(system_.geometry(), longer);
   length_ = glm::length(m.at.d());
+  if (find_slope(m, 1) && touches(end, longer, m)) power_ = 2;
   polynomial_.add(0, state(end.n, parameters(end.contact[0]), parameters(end.contact[1])));
   if (!find_slope(m, 1) || bends(end, longer, m)) {
     // Too far from the end, or too close to it for the tangent: straight.
@@ -202,9 +218,9 @@ bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
   return system_.settle(m.at, equation) && is_near(start, m);
 }
 
-/// The ruling of r times the longer one's length.
+/// The ruling whose length is the longer one's times r, or its square.
 bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
-  const double length = r * length_;
+  const double length = std::pow(r, power_) * length_;
   const MovingRuling start = m;
   const auto equation = [&](const CommonSupport& at) { return distance_equation(at, length); };
   if (system_.solve(m.at, equation) && is_near(start, m)) return true;
@@ -231,11 +247,12 @@ bool RulingsBetween::find_speed(MovingRuling& m) const {
   return true;
 }
 
-/// Derivatives with respect to the share r of the length.
+/// Derivatives with respect to r, the share of the length or its root.
 bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
   const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
   if (!t) return false;
-  m.move(*t, r * length_ * length_ / glm::dot(m.at.d(), t->x[0] - t->x[1]));
+  const double squared = std::pow(r, 2 * power_ - 1) * length_ * length_;
+  m.move(*t, power_ * squared / glm::dot(m.at.d(), t->x[0] - t->x[1]));
   return true;
 }
 

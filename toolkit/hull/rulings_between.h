@@ -93,6 +93,7 @@ class RulingsBetween {
   bool lies_flat_ = false;
   int free_end_ = -1;      // at which the contacts merge
   double length_ = 0;      // of the ruling at the other one
+  int power_ = 1;          // of the share in which the length falls towards the end
   Polynomial polynomial_;  // in s, or in the length's share
 };
 
