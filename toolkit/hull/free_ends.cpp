@@ -646,8 +646,8 @@ class Polish {
     const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
     const double start = along_v(side) ? c.v : c.u;
     auto t = root_near(curvature, start, reach);
-    // The parabolic curve may touch the border instead: the ends of two separating curves.
-    if (!t) t = touch_near(curvature, start, reach);
+    // The parabolic curve may touch an edge instead: the end of two separating curves.
+    if (!t && near_.kind == Kind::border) t = touch_near(curvature, start, reach);
     if (t) keep(border_end(geometry_, c, side, *t));
   }
 

@@ -62,6 +62,7 @@ class OutlineCheck {
   void add_borders_of(int face, std::vector<Border>& borders) const;
   double distance(const dvec3& p, const NearestPoint& points,
                   const std::vector<Border>& borders) const;
+  std::optional<dvec3> point_near(int source, const dvec2& uv, const NearestPoint& curves) const;
   double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
   void check_tracks();
   using SideJet = std::function<SourceJet(double)>;
@@ -271,6 +272,18 @@ void OutlineCheck::check_ruling_ends(const Curve& curve, const Face& scroll) {
   raise(off_, best);
 }
 
+/// The source's point with these parameters. Patches that are no neighbours may have them too, of
+/// these points that which is nearest to the curves.
+std::optional<dvec3> OutlineCheck::point_near(int source, const dvec2& uv,
+                                              const NearestPoint& curves) const {
+  std::optional<dvec3> best;
+  for (const SourcePlace& place : geometry_.places(source, uv)) {
+    const dvec3 x = geometry_.jet(source, place).x + geometry_.origin();
+    if (!best || curves.distance(x) < curves.distance(*best)) best = x;
+  }
+  return best;
+}
+
 void OutlineCheck::check_patch(std::size_t f) {
   const Face& face = hull_.faces[f];
   if (face.regions.empty()) faults_.add("regions", at("faces", f) + "a patch without regions");
@@ -294,9 +307,9 @@ void OutlineCheck::check_free_stretches(std::size_t f) {
   }
   const NearestPoint curves(points);
   const auto check = [&](const dvec2& uv) {
-    const std::vector<SourcePlace> places = geometry_.places(face.source, uv);
-    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
-    raise(off_, curves.distance(geometry_.jet(face.source, places[0]).x + geometry_.origin()));
+    const std::optional<dvec3> x = point_near(face.source, uv, curves);
+    if (!x) return raise(off_, std::numeric_limits<double>::infinity());
+    raise(off_, curves.distance(*x));
   };
   for (const RegionOutline& region : outlines_.regions()) {
     if (region.face != int(f)) continue;
@@ -323,11 +336,10 @@ void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) 
     const std::size_t next = (k + 1) % loop.uv.size();
     const OutlineStretch stretch = outlines_.stretch(face.source, loop.uv[k], loop.uv[next]);
     const bool on_border = stretch.kind == OutlineStretch::Kind::border;
-    const std::vector<SourcePlace> places = geometry_.places(face.source, loop.uv[k]);
-    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
-    const dvec3 x = geometry_.jet(face.source, places[0]).x + geometry_.origin();
-    own.push_back(x);
-    if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(x));
+    const std::optional<dvec3> x = point_near(face.source, loop.uv[k], curves);
+    if (!x) return raise(off_, std::numeric_limits<double>::infinity());
+    own.push_back(*x);
+    if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(*x));
     if (on_border) borders.push_back({face.source, stretch});
     last_on_border = on_border;
   }
