@@ -18,8 +18,8 @@ constexpr double least_length = 0.1;
 constexpr double rounded = 1e-6;
 /// Contacts whose distance falls to less than this share between two rulings are about to merge.
 constexpr double merging_share = 0.25;
-/// Rates per share of the length, relative to the chord, below which the length falls with its
-/// square: one half, where others are one. In an A3 end contacts' are one too, those of n two.
+/// Rates per share of the length, relative to the chord, below which the length falls with the
+/// square of the way: one half, where others are one.
 constexpr double touching_share = 0.7;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
@@ -47,9 +47,14 @@ bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
   return false;
 }
 
-/// The rulings' length falls with the square of the way to the end: by its derivatives in m, with
-/// respect to its share, the longer one is twice as far from the end as it is.
+/// Where a surface's parabolic curve touches an edge, the rulings' length falls with the square of
+/// the way to the end: by its derivatives in m, with respect to its share, the longer one is half
+/// as far from the end as it is.
 bool touches(const Ruling& end, const Ruling& longer, const MovingRuling& m) {
+  const SourceKind first = longer.contact[0].kind;
+  const SourceKind other = longer.contact[1].kind;
+  if (std::min(first, other) != SourceKind::face || std::max(first, other) != SourceKind::edge)
+    return false;
   double along = glm::dot(longer.n - end.n, m.dn);
   double chord = square(longer.n - end.n);
   for (std::size_t i = 0; i < 2; ++i) {
