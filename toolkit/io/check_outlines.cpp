@@ -14,6 +14,9 @@ using Curve = HullDocument::Curve;
 using DirectedCurve = HullDocument::DirectedCurve;
 using Face = HullDocument::Face;
 
+/// Share of the distance within which points are one below which they are the same but for rounding.
+constexpr double listed_share = 1e-4;
+
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 std::string at(const char* list, std::size_t i) {
@@ -36,6 +39,7 @@ class OutlineCheck {
         outlines_(outlines),
         hull_(geometry.hull()),
         tolerance_(tolerance),
+        listed_(listed_share * tolerance),
         faults_(faults) {}
   double run();
 
@@ -77,6 +81,7 @@ class OutlineCheck {
   const DocumentOutlines& outlines_;
   const HullDocument& hull_;
   double tolerance_;
+  double listed_;  ///< a point is one of those listed; else what lies between them is asked
   HullFaults& faults_;
   double off_ = 0;
 };
@@ -214,7 +219,7 @@ void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
   for (const dvec3& p : contacts) {
     double off = distance(p, curves, others);
     for (const int edge : edges) {
-      if (off > tolerance_) off = std::min(off, distance_to_edge(edge, p));
+      if (off > listed_) off = std::min(off, distance_to_edge(edge, p));
     }
     raise(off_, off);
   }
@@ -251,7 +256,7 @@ void OutlineCheck::add_borders_of(int face, std::vector<Border>& borders) const 
 double OutlineCheck::distance(const dvec3& p, const NearestPoint& points,
                               const std::vector<Border>& borders) const {
   double best = points.distance(p);
-  for (std::size_t b = 0; b < borders.size() && best > tolerance_; ++b) {
+  for (std::size_t b = 0; b < borders.size() && best > listed_; ++b) {
     best = std::min(best, distance_to_border(borders[b].source, borders[b].stretch, p));
   }
   return best;
@@ -475,7 +480,7 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
       polygon.push_back((*side)(double(i) / parts).x + geometry_.origin());
     }
     for (std::size_t i = 0; i < along.size(); ++i) {
-      if (off[i] <= tolerance_) continue;
+      if (off[i] <= listed_) continue;
       off[i] = std::min(off[i], closest_on_curve(geometry_.local(along[i]), 0, 1, *side).distance);
     }
   }
