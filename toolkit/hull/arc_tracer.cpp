@@ -64,6 +64,7 @@ class Trace {
   Pace surpassed(const CommonSupport& next, const Contact& winner);
   bool ends_in_line(const Contact& winner);
   bool ends_widened();
+  void settle_flat_ends();
   Pace exchange(const ElementChange& event);
   Pace advance();
   void begin_piece(const Ruling& first);
@@ -247,13 +248,33 @@ bool Trace::ends_in_line(const Contact& winner) {
   return true;
 }
 
+/// Puts the arc's last contacts on borders of their elements that are so near that, the elements
+/// being flat there, the direction does not tell them from where they are.
+void Trace::settle_flat_ends() {
+  Ruling& last = arc_.pieces.back().rulings.back();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact border = snapped(geometry_, last.contact[i], same_contact);
+    const std::optional<Contact> own = expressed_in(geometry_, border, last.contact[i]);
+    if (!own) continue;
+    const ContactJet j = geometry_.jet(*own);
+    const auto is_level = [&](const dvec3& dx) {
+      return std::abs(glm::dot(dx, last.n)) <= geometry_.tie() * glm::length(dx);
+    };
+    if (!is_level(j.dx[0]) || !is_level(j.dx[1])) continue;
+    last.contact[i] = *own;
+    last.point[i] = j.x;
+  }
+}
+
 /// Where a contact has changed its element: ends the arc if beyond the two another one is in line
 /// with them from there on.
 bool Trace::ends_widened() {
   const std::optional<CommonSupport> wide = widened(geometry_, point_.query(), point_.at);
   if (!wide) return false;
+  settle_flat_ends();
   arc_.n = point_.at.n;
-  arc_.contacts = {point_.at.contact[0], point_.at.contact[1], wide->contact[0], wide->contact[1]};
+  const Ruling& last = arc_.pieces.back().rulings.back();
+  arc_.contacts = {last.contact[0], last.contact[1], wide->contact[0], wide->contact[1]};
   return true;
 }
 

@@ -410,8 +410,8 @@ double join_reach(const ContactGeometry& geometry, const Contact& c, const Conta
   const Contact border = at_exit(c, exit);
   const std::optional<Contact> over = beyond(geometry, border, exit);
   if (!over || over->kind != SourceKind::face) return 0;
-  const double kink = glm::length(
-      glm::cross(unit_normal(geometry, border), unit_normal(geometry, *over)));
+  const double kink =
+      glm::length(glm::cross(unit_normal(geometry, border), unit_normal(geometry, *over)));
   const ContactJet j = geometry.jet(border);
   const dvec3& across = j.dx[along_v(side) ? 0 : 1];
   const double curvature =

@@ -36,6 +36,8 @@ constexpr double noise_step = 1e-8;
 constexpr double difference = 1e-5;
 /// Gauss curvature, in the scene's frame, below which its extremum along a border is zero.
 constexpr double least_touch = 1e-12;
+/// How far from a double root Newton's method ends.
+constexpr double double_root = 1e-6;
 /// How far rounding may put a root beyond the border on which it lies.
 constexpr double parameter_slack = 1e-11;
 /// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
@@ -645,9 +647,13 @@ class Polish {
   void on_border(const Contact& c, Side side) {
     const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
     const double start = along_v(side) ? c.v : c.u;
-    auto t = root_near(curvature, start, reach);
-    // The parabolic curve may touch an edge instead: the end of two separating curves.
-    if (!t && near_.kind == Kind::border) t = touch_near(curvature, start, reach);
+    std::optional<double> t = root_near(curvature, start, reach);
+    if (near_.kind == Kind::border) {
+      // The parabolic curve may touch the edge: the end of two separating curves. Newton's method
+      // on a double root leaves half of the digits.
+      const std::optional<double> touch = touch_near(curvature, start, reach);
+      if (touch && (!t || std::abs(*touch - *t) < double_root)) t = touch;
+    }
     if (t) keep(border_end(geometry_, c, side, *t));
   }
 

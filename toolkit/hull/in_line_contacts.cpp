@@ -104,8 +104,7 @@ std::vector<Contact> around_line(const ContactGeometry& geometry,
     for (const Gain& g : line) {
       const auto hides = [&](const Gain& a, const Gain& b) {
         const double share = (b.place - a.place) / (g.place - a.place);
-        return b.height <=
-               (1 - share) * a.height + share * g.height + least_gain * geometry.tie();
+        return b.height <= (1 - share) * a.height + share * g.height + least_gain * geometry.tie();
       };
       while (chain.size() > 1 && hides(chain[chain.size() - 2], chain.back())) chain.pop_back();
       chain.push_back(g);

@@ -132,7 +132,12 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
-  if (merged(from) == merged(to)) {
+  touches_ =
+      merged(from) != merged(to) && touch(merged(from) ? from : to, merged(from) ? to : from);
+  if (touches_) {
+    fit();
+    refine();
+  } else if (merged(from) == merged(to)) {
     nearly_merges_ = nearly_merge();
     lies_flat_ = system.geometry().tie() > support_tie &&
                  (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
@@ -142,6 +147,14 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     free_end_ = merged(from) ? 0 : 1;
     fit_free_end(merged(from) ? from : to, merged(from) ? to : from);
   }
+}
+
+/// The longer one's length falls towards the end with the square of the way.
+bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
+  MovingRuling m;
+  m.at = CommonSupport(system_.geometry(), longer);
+  length_ = glm::length(m.at.d());
+  return find_slope(m, 1) && touches(end, longer, m);
 }
 
 /// Along a chord that is little more than their approach.
@@ -158,7 +171,7 @@ void RulingsBetween::fit() {
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
-    if (!is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
+    if (!merged(*end) && !is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
       polynomial_.add(s, place(m), rate(m));
     } else {
       polynomial_.add(s, place(m));
@@ -188,7 +201,6 @@ void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
   m.at = CommonSupport(system_.geometry(), longer);
   length_ = glm::length(m.at.d());
-  if (find_slope(m, 1) && touches(end, longer, m)) power_ = 2;
   polynomial_.add(0, state(end.n, parameters(end.contact[0]), parameters(end.contact[1])));
   if (!find_slope(m, 1) || bends(end, longer, m)) {
     // Too far from the end, or too close to it for the tangent: straight.
@@ -223,9 +235,9 @@ bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
   return system_.settle(m.at, equation) && is_near(start, m);
 }
 
-/// The ruling whose length is the longer one's times r, or its square.
+/// The ruling of r times the longer one's length.
 bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
-  const double length = std::pow(r, power_) * length_;
+  const double length = r * length_;
   const MovingRuling start = m;
   const auto equation = [&](const CommonSupport& at) { return distance_equation(at, length); };
   if (system_.solve(m.at, equation) && is_near(start, m)) return true;
@@ -252,12 +264,11 @@ bool RulingsBetween::find_speed(MovingRuling& m) const {
   return true;
 }
 
-/// Derivatives with respect to r, the share of the length or its root.
+/// Derivatives with respect to the share r of the length.
 bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
   const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
   if (!t) return false;
-  const double squared = std::pow(r, 2 * power_ - 1) * length_ * length_;
-  m.move(*t, power_ * squared / glm::dot(m.at.d(), t->x[0] - t->x[1]));
+  m.move(*t, r * length_ * length_ / glm::dot(m.at.d(), t->x[0] - t->x[1]));
   return true;
 }
 
@@ -265,7 +276,8 @@ bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
 bool RulingsBetween::is_near(const MovingRuling& start, const MovingRuling& m) const {
   if (merges() && glm::dot(start.at.d(), m.at.d()) <= 0) return false;
   // Any two contacts in one point are a solution.
-  if (!merges() && glm::length(m.at.d()) < least_length * shorter_) return false;
+  const double least = touches_ ? glm::length(start.at.d()) : shorter_;
+  if (!merges() && glm::length(m.at.d()) < least_length * least) return false;
   const double limit = std::max(correction_share * correction_share * square_, rounded * rounded);
   return square(m.at.n - start.at.n) + square(m.at.jet[0].x - start.at.jet[0].x) +
              square(m.at.jet[1].x - start.at.jet[1].x) <=

@@ -14,7 +14,8 @@ using Curve = HullDocument::Curve;
 using DirectedCurve = HullDocument::DirectedCurve;
 using Face = HullDocument::Face;
 
-/// Share of the distance within which points are one below which they are the same but for rounding.
+/// Share of the distance within which points are one below which they are the same but for
+/// rounding.
 constexpr double listed_share = 1e-4;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
