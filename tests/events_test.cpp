@@ -351,6 +351,7 @@ TEST(Events, ParabolicCurveTouchingABorder) {
     EXPECT_EQ(ends, 2);
     const BoundaryFacts facts = boundary_facts(scene, hull, 300);
     EXPECT_TRUE(facts.sound()) << facts;
+    EXPECT_LE(measures_of(scene, hull).accuracy, 1e-9);
   }
 }
 

@@ -42,7 +42,7 @@ class RulingsBetween {
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
   /// to, or far from the origin one of them lies flat.
-  bool is_smoother() const { return merges() || nearly_merges_ || lies_flat_; }
+  bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
   /// The ruling at s, which may leave [0, 1] by a little, but not beyond a free end. None if
   /// Newton's method does not converge to one near the interpolated one. Next to a free end the
   /// derivatives are the interpolation's.
