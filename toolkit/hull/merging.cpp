@@ -343,6 +343,10 @@ std::optional<FreeEnd> Merging::end_ahead(const Approach& a) const {
       twice.contact[i].v = std::clamp(twice.contact[i].v + ahead.y, 0.0, 1.0);
     }
     exact = exact_end(twice);
+    if (exact) {
+      const dvec3 x = geometry_.point(exact->contact);
+      if (point_.length_along(exact->n, x, x) < 1.5 * std::abs(a.linear())) exact.reset();
+    }
   }
   // On an edge that a parabolic curve touches it lies twice as far ahead as the distance tells.
   const double reach = (a.smooth ? 2 : 3) * std::abs(a.linear());
