@@ -69,8 +69,7 @@ class Trace {
   Pace advance();
   void begin_piece(const Ruling& first);
   bool is_sound() const;
-  void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(in_elements(ruling)); }
-  Ruling in_elements(Ruling ruling) const;
+  void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(ruling); }
 
   Pace ended(TracedArc::End end) {
     arc_.end = end;
@@ -173,21 +172,6 @@ void Trace::begin_piece(const Ruling& first) {
   lenient_ = false;
   push(first);
   changes_.begin();
-}
-
-/// The ruling with contacts that are hardly beyond their elements put on their borders.
-Ruling Trace::in_elements(Ruling ruling) const {
-  for (std::size_t i = 0; i < 2; ++i) {
-    Contact c = ruling.contact[i];
-    c.u = std::clamp(c.u, 0.0, 1.0);
-    c.v = std::clamp(c.v, 0.0, 1.0);
-    if (c.u == ruling.contact[i].u && c.v == ruling.contact[i].v) continue;
-    const dvec3 x = geometry_.point(c);
-    if (glm::distance(x, ruling.point[i]) > same_contact) continue;
-    ruling.contact[i] = c;
-    ruling.point[i] = x;
-  }
-  return ruling;
 }
 
 /// All numbers are finite: Newton's method may end in anything on surfaces without tangent planes.
@@ -371,12 +355,7 @@ Trace::Pace Trace::advance() {
   idle_ = moved ? 0 : idle_ + 1;
   if (idle_ > idle_limit) return lost("a separating curve stays on a border");
   point_.at = *next;
-  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
-  if (moved) {
-    push(point_.at.ruling());
-  } else if (event && rulings.size() > 1) {
-    rulings.back() = in_elements(point_.at.ruling());  // which is hardly beyond it
-  }
+  if (moved) push(point_.at.ruling());
   has_moved_ = has_moved_ || moved;
   if (event) return exchange(*event);
   if (moved && !home_) {

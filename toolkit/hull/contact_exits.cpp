@@ -78,8 +78,6 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
-/// What rounding may put contacts over joins, many times over.
-constexpr double join_rounding = 1e-10;
 /// A contact whose parameter is so near to a collapsed side is at the pole.
 constexpr double pole_parameter = 1e-9;
 /// How near to a pole, as a parameter, a climb in the direction of its normal need not go on.
@@ -401,22 +399,6 @@ double exit_length(const ContactGeometry& geometry, const Contact& c, const Cont
       return glm::length(leaving(geometry, c, geometry.ends(c)[std::size_t(exit.index)]));
   }
   return 0;
-}
-
-double join_reach(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit,
-                  const dvec3& n) {
-  const Side side = all_sides[std::size_t(exit.index)];
-  if (geometry.patch(c).borders[std::size_t(side)].kind != BorderKind::smooth) return 0;
-  const Contact border = at_exit(c, exit);
-  const std::optional<Contact> over = beyond(geometry, border, exit);
-  if (!over || over->kind != SourceKind::face) return 0;
-  const double kink =
-      glm::length(glm::cross(unit_normal(geometry, border), unit_normal(geometry, *over)));
-  const ContactJet j = geometry.jet(border);
-  const dvec3& across = j.dx[along_v(side) ? 0 : 1];
-  const double curvature =
-      std::abs(glm::dot(along_v(side) ? j.dxx : j.dyy, n)) / glm::dot(across, across);
-  return join_rounding + (kink > 0 ? kink / curvature : 0);
 }
 
 bool leads_over_border(const ContactExit& exit) {

@@ -32,13 +32,6 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 /// moves the margin by is a length over it.
 double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
 
-/// How far, as a length, a contact at n may be beyond the side of its patch and yet not be told to
-/// have left it: by rounding, and where the tangent planes of the patches that meet in a smooth
-/// join differ by an angle, as far as it moves while n turns by as much. Zero where no smooth join
-/// is.
-double join_reach(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit,
-                  const dvec3& n);
-
 /// To the same point in another element, not into what an edge or a vertex bounds.
 bool leads_over_border(const ContactExit& exit);
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/facet_contacts.h"
-
 namespace taut {
 namespace {
 
@@ -78,7 +76,7 @@ std::optional<ElementChange> ElementChanges::first(const CommonSupport& next, do
   for (int i = 0; i < 2; ++i) {
     for (const ContactExit& exit : exits_[std::size_t(i)]) {
       const double after = margin(next, i, exit);
-      if (after >= -slack(i, exit) || stays(next, i, exit, after)) continue;
+      if (after >= -slack(i, exit)) continue;
       const double before = std::max(margin(point_.at, i, exit), 0.0);
       const double share = before / (before - after);
       std::optional<ElementChange> event = solved(next, share, i, exit);
@@ -103,18 +101,6 @@ double ElementChanges::slack(int contact, const ContactExit& exit) const {
   const double limit = std::max(margin_slack_limit, margin_noise_limit * geometry_.rounding());
   if (geometry_.rounding() >= limit * size) return limit;
   return std::max(margin_slack, geometry_.rounding() / size);
-}
-
-/// Whether a contact beyond a smooth join has not left its patch for certain: it runs along the
-/// join, up to rounding and to how far the kink that smooth joins may have puts it over. It is as
-/// high there as the join, to less than heights tie over.
-bool ElementChanges::stays(const CommonSupport& next, int contact, const ContactExit& exit,
-                           double after) const {
-  if (exit.kind != ContactExit::Kind::side) return false;
-  const Contact& c = next.contact[std::size_t(contact)];
-  const double beyond_join = -after * exit_length(geometry_, c, exit);
-  if (beyond_join > same_contact) return false;
-  return beyond_join <= join_reach(geometry_, c, exit, next.n);
 }
 
 std::pair<int, Side> ElementChanges::pole_crossed(const CommonSupport& next) const {

@@ -48,7 +48,6 @@ class ElementChanges {
   ElementChange change_here(int contact, const ContactExit& exit) const;
   bool precedes(const ElementChange& a, const ElementChange& b) const;
   double slack(int contact, const ContactExit& exit) const;
-  bool stays(const CommonSupport& next, int contact, const ContactExit& exit, double after) const;
 
   const ContactGeometry& geometry_;
   const ContactSystem& system_;
