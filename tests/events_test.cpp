@@ -259,6 +259,102 @@ TEST(Events, BoxesSideBySide) {
   expect_exact(one + shifted(one, {1, 0, 0}), {{0, 0, 6}, 0, 0, 12});
 }
 
+// ---- Contacts in line
+
+/// A convex arc in the plane z = 0 from (-1, 0) to (1, 0), below y = 0.
+struct Arc {
+  std::vector<dvec3> points;  ///< Bezier
+  double area = 0;            ///< between it and its chord
+
+  NurbsCurve curve(double z) const {
+    BezierCurve result;
+    for (const dvec3& p : points) result.points.emplace_back(p.x, p.y, z, 1);
+    return as_nurbs(result);
+  }
+  /// The sheet from z = 0 to z = 1.
+  NurbsSurface sheet() const {
+    BezierPatch result{int(points.size()) - 1, 1, {}};
+    for (const dvec3& p : points) {
+      for (const double z : {0.0, 1.0}) result.points.emplace_back(p.x, p.y, z, 1);
+    }
+    return as_nurbs(result);
+  }
+};
+
+/// A parabola; and a cubic whose curvature vanishes at its end, as that of natural splines does.
+std::vector<Arc> arcs() {
+  return {{{{-1, 0, 0}, {0, -2, 0}, {1, 0, 0}}, 4.0 / 3},
+          {{{-1, 0, 0}, {0, -2, 0}, {0.5, -1, 0}, {1, 0, 0}}, 1.5}};
+}
+
+/// The middle one of three equal spheres touches the scroll of the others all around.
+TEST(Events, SpheresInARow) {
+  const dvec3 along = skew_rotation() * dvec3(0, 0, 3);
+  const Shape row = ball(1, -along) + ball(1, dvec3(0.0)) + ball(1, along);
+  expect_exact(row, {{2, 1, 0}, 0, 0, 4 * pi / 3 + 6 * pi});
+}
+
+/// The middle one of three equal curves lies on the scroll between the others; two lids, and a flat
+/// side through the curves' ends.
+TEST(Events, CurvesInARow) {
+  for (const Arc& arc : arcs()) {
+    Shape row;
+    for (const double z : {0.0, 1.0, 2.0}) row.curves.push_back(arc.curve(z));
+    expect_exact(mapped(row, skew_rotation()), {{0, 1, 3}, unknown, 0, 2 * arc.area});
+  }
+}
+
+/// A sheet and a point in line with its last ruling: a lid, the flat side, and a facet of no area,
+/// where the sheet, the cone from the point and the edge of the flat side meet along one line.
+TEST(Events, PointInLineWithARuling) {
+  for (const Arc& arc : arcs()) {
+    for (const double side : {1.0, -1.0}) {
+      const Shape shape = {{arc.sheet()}, {}, {{side, 0, 2}}};
+      expect_exact(mapped(shape, skew_rotation()), {{0, 2, 3}, unknown, 0, 4 * arc.area / 3});
+    }
+  }
+}
+
+// ---- A parabolic curve that touches a border
+
+/// z = F(u) G(v), both positive and convex, G least in the middle, F flat at u = 0: the parabolic
+/// curve touches the border there in its middle, whose plane supports the sheet from below. Two
+/// curves end in it, one from either side.
+TEST(Events, ParabolicCurveTouchingABorder) {
+  const std::array<double, 4> f = {2, 1.5, 1, 1.2};
+  const std::array<double, 3> g = {1, 0, 1};
+  BezierPatch sheet{3, 2, {}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      sheet.points.emplace_back(double(i) / 3, double(j) / 2, f[i] * g[j], 1);
+    }
+  }
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Scene scene = make_scene(mapped(Shape{{as_nurbs(sheet)}, {}, {}}, turn));
+    const Hull hull = precise_hull(scene, {.relative = 1e-2, .threads = 1, .progress = {}});
+    ASSERT_NE(hull.boundary, nullptr);
+    expect_complete(*hull.boundary);
+    const dvec3 middle = hull.boundary->frame.to_frame(turn * dvec3(0, 0.5, 1));
+    const dvec3 normal = turn * glm::normalize(dvec3(-0.75, 0, -1));
+    int ends = 0;
+    for (const SeparatingArc& arc : hull.boundary->arcs) {
+      for (const std::size_t e : {0U, 1U}) {
+        if (arc.closed || arc.facet[e] >= 0) continue;
+        const Ruling& r =
+            e == 0 ? arc.pieces.front().rulings.front() : arc.pieces.back().rulings.back();
+        if (glm::distance(r.point[0], middle) > 1e-3) continue;
+        EXPECT_LT(glm::distance(r.point[0], middle), 1e-10);
+        EXPECT_LT(glm::distance(r.n, normal), 1e-9);
+        ++ends;
+      }
+    }
+    EXPECT_EQ(ends, 2);
+    const BoundaryFacts facts = boundary_facts(scene, hull, 300);
+    EXPECT_TRUE(facts.sound()) << facts;
+    EXPECT_LE(measures_of(scene, hull).accuracy, 1e-9);
+  }
+}
+
 // ---- Tips, open borders, flat faces
 
 /// All directions of a fan belong to each tip; the surface itself is the hull.

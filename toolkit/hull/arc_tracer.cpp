@@ -10,6 +10,7 @@
 #include "taut/hull/curve_point.h"
 #include "taut/hull/element_changes.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/in_line_contacts.h"
 #include "taut/hull/merging.h"
 
 namespace taut {
@@ -35,6 +36,7 @@ constexpr int step_limit = 4000;
 constexpr double stuck_share = 0.01;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
+constexpr int bisection_limit = 60;
 
 class Trace {
  public:
@@ -60,6 +62,9 @@ class Trace {
   bool ends_merged();
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
+  bool ends_in_line(const Contact& winner);
+  bool ends_widened();
+  void settle_flat_ends();
   Pace exchange(const ElementChange& event);
   Pace advance();
   void begin_piece(const Ruling& first);
@@ -92,6 +97,7 @@ class Trace {
   ElementChanges changes_;
   double step_ = first_step;
   int idle_ = 0;
+  bool has_moved_ = false;
   bool lenient_ = false;  ///< borders that this piece crosses in places not found are rounding
   TracedArc arc_;
 };
@@ -195,8 +201,70 @@ std::optional<Trace::Pace> Trace::near_merging() {
   return std::nullopt;
 }
 
+/// A contact that surpasses the two has been between them in line: ends the arc where it leaves the
+/// element that it has been in.
+bool Trace::ends_in_line(const Contact& winner) {
+  const std::optional<Contact> third = between_in_line(geometry_, point_.at, winner);
+  if (!third) return false;
+  const auto stays = [&](const CommonSupport& s) {
+    const std::optional<Contact> c = between_in_line(geometry_, s, *third);
+    return c && same_element(*c, *third);
+  };
+  CommonSupport last = point_.at;
+  double low = 0;
+  double high = step_;
+  for (int k = 0; k < bisection_limit && high - low > margin_slack; ++k) {
+    const double middle = 0.5 * (low + high);
+    const std::optional<CommonSupport> s = point_.stepped(middle);
+    if (!s) return false;
+    if (stays(*s)) last = *s;
+    (stays(*s) ? low : high) = middle;
+  }
+  // It surpasses them from within its element, or what it changes into has done so before.
+  if (high == step_ || !point_.supports(last)) return false;
+  if (low > plane_slack) {
+    push(last.ruling());
+  } else {  // where the trace stands already
+    last = point_.at;
+  }
+  arc_.n = last.n;
+  arc_.contacts = {last.contact[0], last.contact[1], *between_in_line(geometry_, last, *third)};
+  return true;
+}
+
+/// Puts the arc's last contacts on borders of their elements that are so near that, the elements
+/// being flat there, the direction does not tell them from where they are.
+void Trace::settle_flat_ends() {
+  Ruling& last = arc_.pieces.back().rulings.back();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact border = snapped(geometry_, last.contact[i], same_contact);
+    const std::optional<Contact> own = expressed_in(geometry_, border, last.contact[i]);
+    if (!own) continue;
+    const ContactJet j = geometry_.jet(*own);
+    const auto is_level = [&](const dvec3& dx) {
+      return std::abs(glm::dot(dx, last.n)) <= geometry_.tie() * glm::length(dx);
+    };
+    if (!is_level(j.dx[0]) || !is_level(j.dx[1])) continue;
+    last.contact[i] = *own;
+    last.point[i] = j.x;
+  }
+}
+
+/// Where a contact has changed its element: ends the arc if beyond the two another one is in line
+/// with them from there on.
+bool Trace::ends_widened() {
+  const std::optional<CommonSupport> wide = widened(geometry_, point_.query(), point_.at);
+  if (!wide) return false;
+  settle_flat_ends();
+  arc_.n = point_.at.n;
+  const Ruling& last = arc_.pieces.back().rulings.back();
+  arc_.contacts = {last.contact[0], last.contact[1], wide->contact[0], wide->contact[1]};
+  return true;
+}
+
 /// A contact surpasses the two at `next`: ends the arc in the plane of the three.
 Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
+  if (ends_in_line(winner)) return ended(TracedArc::End::plane);
   std::optional<CommonSupport> plane = common_plane(system_, point_.query(), next, winner);
   if (plane) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -227,9 +295,12 @@ Trace::Pace Trace::exchange(const ElementChange& event) {
   const auto i = std::size_t(event.contact);
   const std::optional<Contact> over = beyond(geometry_, point_.at.contact[i], event.exit);
   if (!over) return lost("a separating curve has no next element");
+  const bool other_kind = over->kind != point_.at.contact[i].kind;
   point_.at.contact[i] = *over;
   point_.at.evaluate(geometry_);
+  if (other_kind && has_moved_ && ends_widened()) return ended(TracedArc::End::plane);
   if (!point_.settle()) return lost("a separating curve has no tangent");
+  point_.head_into(i);
   begin_piece(point_.at.ruling());
   step_ = std::max(0.5 * step_, shortest_step);
   return Pace::on;
@@ -285,6 +356,7 @@ Trace::Pace Trace::advance() {
   if (idle_ > idle_limit) return lost("a separating curve stays on a border");
   point_.at = *next;
   if (moved) push(point_.at.ruling());
+  has_moved_ = has_moved_ || moved;
   if (event) return exchange(*event);
   if (moved && !home_) {
     home_ = point_.at;

@@ -12,6 +12,8 @@ namespace {
 constexpr double border_slack = 1e-9;
 /// How far contacts may leave their elements by rounding.
 constexpr double parameter_slack = 1e-9;
+/// A direction that turns by less, relative to the motion of (n, x_0, x_1), stands still.
+constexpr double still_turn = 1e-6;
 /// Where rulings are looked for between the last one and a free end.
 constexpr std::array<double, 5> merging_shares = {0.1, 0.3, 0.5, 0.7, 0.9};
 
@@ -104,6 +106,22 @@ bool CurvePoint::settle() {
   const std::optional<CurveTangent> again = system_.tangent(at, before);
   if (again) tangent = *again;
   return again.has_value();
+}
+
+void CurvePoint::head_into(std::size_t contact) {
+  if (glm::length(tangent.n) > still_turn) return;
+  const Contact& c = at.contact[contact];
+  for (const ContactExit& exit : exits(geometry_, c)) {
+    if (!leads_over_border(exit)) continue;
+    const LinearEquation e = exit_margin(geometry_, at, int(contact), exit);
+    if (e.residual > 0 || glm::dot(e.parameter[contact], tangent.parameter[contact]) >= 0) continue;
+    for (std::size_t i = 0; i < 2; ++i) {
+      tangent.parameter[i] = -tangent.parameter[i];
+      tangent.x[i] = -tangent.x[i];
+    }
+    tangent.n = -tangent.n;
+    return;
+  }
 }
 
 double CurvePoint::border_distance() const {

@@ -54,6 +54,9 @@ class CurvePoint {
   /// join, as one of the patch into which its region extends. Sets the tangent anew; false if there
   /// is none.
   bool settle();
+  /// Turns the tangent into the element of the contact, which has just come over its border, where
+  /// the direction stands still at first: the element is flat there, and tells no sense.
+  void head_into(std::size_t contact);
 
   /// The two contacts support the model.
   bool supports(const CommonSupport& s) const;

@@ -6,6 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/in_line_contacts.h"
 #include "taut/hull/outline.h"
 #include "taut/hull/planar_hull.h"
 
@@ -112,6 +113,8 @@ class ContactSet {
     double reach;
   };
   std::optional<FacetContacts> outline() const;
+  bool is_line() const;
+  FacetContacts line() const;
   std::vector<Probe> probes(const FacetContacts& f) const;
   std::optional<Contact> found(const dvec3& towards);
 
@@ -126,10 +129,28 @@ class ContactSet {
   std::vector<dvec3> points_;
 };
 
+bool ContactSet::is_line() const {
+  dvec3 far = points_.front();
+  for (const dvec3& x : points_) {
+    if (glm::distance(x, points_.front()) > glm::distance(far, points_.front())) far = x;
+  }
+  return std::all_of(points_.begin(), points_.end(),
+                     [&](const dvec3& x) { return is_in_line(points_.front(), far, x); });
+}
+
+/// The facet of no area that contacts in line make.
+FacetContacts ContactSet::line() const {
+  FacetContacts f;
+  f.contacts = around_line(geometry_, contacts_, n_);
+  for (const Contact& c : f.contacts) f.points.push_back(geometry_.point(c));
+  return f;
+}
+
 std::optional<FacetContacts> ContactSet::outline() const {
   if (curves_.empty()) {
     FacetContacts f{contacts_, points_, {}};
-    return points_.size() < 3 ? f : corners_only(f, n_);
+    if (points_.size() < 3) return f;
+    return is_line() ? line() : corners_only(f, n_);
   }
   std::vector<dvec2> points;
   points.reserve(points_.size());

@@ -34,6 +34,10 @@ constexpr double converged_step = 1e-14;
 constexpr double noise_step = 1e-8;
 /// Of central difference quotients: their error slows Newton's method by its square.
 constexpr double difference = 1e-5;
+/// Gauss curvature, in the scene's frame, below which its extremum along a border is zero.
+constexpr double least_touch = 1e-12;
+/// How far from a double root Newton's method ends.
+constexpr double double_root = 1e-6;
 /// How far rounding may put a root beyond the border on which it lies.
 constexpr double parameter_slack = 1e-11;
 /// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
@@ -95,6 +99,16 @@ std::optional<double> root_near(const Function& f, double start, double reach) {
     last = length;
   }
   return std::nullopt;
+}
+
+/// Where the function touches zero: at an extremum that is one up to rounding.
+template <class Function>
+std::optional<double> touch_near(const Function& f, double start, double reach) {
+  const auto slope = [&](double t) {
+    return (f(t + difference) - f(t - difference)) / (2 * difference);
+  };
+  const std::optional<double> t = root_near(slope, start, reach);
+  return t && std::abs(f(*t)) <= least_touch ? t : std::nullopt;
 }
 
 double sample(int k) { return double(k) / samples_along; }
@@ -632,7 +646,14 @@ class Polish {
   }
   void on_border(const Contact& c, Side side) {
     const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
-    const auto t = root_near(curvature, along_v(side) ? c.v : c.u, reach);
+    const double start = along_v(side) ? c.v : c.u;
+    std::optional<double> t = root_near(curvature, start, reach);
+    if (near_.kind == Kind::border) {
+      // The parabolic curve may touch the edge: the end of two separating curves. Newton's method
+      // on a double root leaves half of the digits.
+      const std::optional<double> touch = touch_near(curvature, start, reach);
+      if (touch && (!t || std::abs(*touch - *t) < double_root)) t = touch;
+    }
     if (t) keep(border_end(geometry_, c, side, *t));
   }
 

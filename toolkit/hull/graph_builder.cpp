@@ -112,8 +112,40 @@ void GraphBuilder::settle_in(const FacetNode& node, std::size_t side, int end, R
   }
 }
 
+/// Gives the ruling, with which an arc ends in a free end, the place of an arc that ends there
+/// already: they differ by rounding.
+void GraphBuilder::settle_in_end(int arc, Ruling& r) const {
+  for (std::size_t k = 0; k < graph_.arcs.size(); ++k) {
+    const SeparatingArc& other = graph_.arcs[k];
+    for (const std::size_t e : {0U, 1U}) {
+      if (int(k) == arc || other.closed || other.facet[e] >= 0) continue;
+      const Ruling& known =
+          e == 0 ? other.pieces.front().rulings.front() : other.pieces.back().rulings.back();
+      if (glm::distance(known.n, r.n) > rounded_contact ||
+          glm::distance(known.point[0], r.point[0]) > rounded_contact) {
+        continue;
+      }
+      for (std::size_t i = 0; i < 2; ++i) {
+        for (const Contact& from : known.contact) {
+          const std::optional<Contact> c = expressed_in(geometry_, from, r.contact[i]);
+          if (!c) continue;
+          r.contact[i] = *c;
+          r.point[i] = known.point[0];
+          break;
+        }
+      }
+      r.n = known.n;
+      return;
+    }
+  }
+}
+
 void GraphBuilder::connect(int arc, int end, int node) {
-  if (node == free_end) return;
+  if (node == free_end) {
+    std::vector<ArcPiece>& own = graph_.arcs[std::size_t(arc)].pieces;
+    settle_in_end(arc, end == 0 ? own.front().rulings.front() : own.back().rulings.back());
+    return;
+  }
   FacetNode& own = graph_.nodes[std::size_t(node)];
   if (own.is_crossing()) {
     connect_crossing(arc, end, node);

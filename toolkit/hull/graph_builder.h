@@ -78,6 +78,7 @@ class GraphBuilder {
   int side_of(int node, const dvec3& first, const dvec3& second) const;
   bool is_end_known(const std::vector<ArcPiece>& pieces) const;
   void settle_in(const FacetNode& node, std::size_t side, int end, Ruling& r) const;
+  void settle_in_end(int arc, Ruling& r) const;
   static bool meets_corner(const FacetNode& node, const Ruling& r);
   static int add_corner(FacetNode& node, const Ruling& r, int end);
   void connect_crossing(int arc, int end, int node);

@@ -333,7 +333,24 @@ std::optional<FreeEnd> Merging::end_ahead(const Approach& a) const {
     straight.n = point_.at.n - a.linear() * point_.tangent.n;
     exact = exact_end(straight);
   }
-  if (exact && !is_ahead(*exact, 2 * std::abs(a.linear()))) exact.reset();
+  if (!exact && !a.smooth) {
+    // Where a parabolic curve touches an edge, the distance falls with the square of the way.
+    Ruling twice = point_.at.ruling();
+    twice.n = glm::normalize(twice.n - 2 * a.linear() * point_.tangent.n);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec2 ahead = -2 * a.linear() * point_.tangent.parameter[i];
+      twice.contact[i].u = std::clamp(twice.contact[i].u + ahead.x, 0.0, 1.0);
+      twice.contact[i].v = std::clamp(twice.contact[i].v + ahead.y, 0.0, 1.0);
+    }
+    exact = exact_end(twice);
+    if (exact) {
+      const dvec3 x = geometry_.point(exact->contact);
+      if (point_.length_along(exact->n, x, x) < 1.5 * std::abs(a.linear())) exact.reset();
+    }
+  }
+  // On an edge that a parabolic curve touches it lies twice as far ahead as the distance tells.
+  const double reach = (a.smooth ? 2 : 3) * std::abs(a.linear());
+  if (exact && !is_ahead(*exact, reach)) exact.reset();
   return exact;
 }
 

@@ -18,6 +18,9 @@ constexpr double least_length = 0.1;
 constexpr double rounded = 1e-6;
 /// Contacts whose distance falls to less than this share between two rulings are about to merge.
 constexpr double merging_share = 0.25;
+/// Rates per share of the length, relative to the chord, below which the length falls with the
+/// square of the way: one half, where others are one.
+constexpr double touching_share = 0.6;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
@@ -42,6 +45,23 @@ bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
     if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
   }
   return false;
+}
+
+/// Where a surface's parabolic curve touches an edge, the rulings' length falls with the square of
+/// the way to the end: by its derivatives in m, with respect to its share, the longer one is half
+/// as far from the end as it is.
+bool touches(const Ruling& end, const Ruling& longer, const MovingRuling& m) {
+  const SourceKind first = longer.contact[0].kind;
+  const SourceKind other = longer.contact[1].kind;
+  if (std::min(first, other) != SourceKind::face || std::max(first, other) != SourceKind::edge)
+    return false;
+  double along = glm::dot(longer.n - end.n, m.dn);
+  double chord = square(longer.n - end.n);
+  for (std::size_t i = 0; i < 2; ++i) {
+    along += glm::dot(longer.point[i] - end.point[i], m.dx[i]);
+    chord += square(longer.point[i] - end.point[i]);
+  }
+  return along < touching_share * chord && along > (1 - touching_share) * chord;
 }
 
 }  // namespace
@@ -112,7 +132,12 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
-  if (merged(from) == merged(to)) {
+  touches_ =
+      merged(from) != merged(to) && touch(merged(from) ? from : to, merged(from) ? to : from);
+  if (touches_) {
+    fit();
+    refine();
+  } else if (merged(from) == merged(to)) {
     nearly_merges_ = nearly_merge();
     lies_flat_ = system.geometry().tie() > support_tie &&
                  (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
@@ -122,6 +147,14 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     free_end_ = merged(from) ? 0 : 1;
     fit_free_end(merged(from) ? from : to, merged(from) ? to : from);
   }
+}
+
+/// The longer one's length falls towards the end with the square of the way.
+bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
+  MovingRuling m;
+  m.at = CommonSupport(system_.geometry(), longer);
+  length_ = glm::length(m.at.d());
+  return find_slope(m, 1) && touches(end, longer, m);
 }
 
 /// Along a chord that is little more than their approach.
@@ -138,7 +171,7 @@ void RulingsBetween::fit() {
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
-    if (!is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
+    if (!merged(*end) && !is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
       polynomial_.add(s, place(m), rate(m));
     } else {
       polynomial_.add(s, place(m));
@@ -243,7 +276,8 @@ bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
 bool RulingsBetween::is_near(const MovingRuling& start, const MovingRuling& m) const {
   if (merges() && glm::dot(start.at.d(), m.at.d()) <= 0) return false;
   // Any two contacts in one point are a solution.
-  if (!merges() && glm::length(m.at.d()) < least_length * shorter_) return false;
+  const double least = touches_ ? glm::length(start.at.d()) : shorter_;
+  if (!merges() && glm::length(m.at.d()) < least_length * least) return false;
   const double limit = std::max(correction_share * correction_share * square_, rounded * rounded);
   return square(m.at.n - start.at.n) + square(m.at.jet[0].x - start.at.jet[0].x) +
              square(m.at.jet[1].x - start.at.jet[1].x) <=

@@ -28,7 +28,9 @@ struct MovingRuling {
 /// (n, point 0, point 1), that divides the chord in the ratio s. Where the two contacts merge at
 /// one end (a ruling of length zero) it is the one whose length is s or 1 - s times the longer
 /// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
-/// A3 end, m +- rho e; a B3 end, linear). Newton's method starts from Hermite's interpolation.
+/// A3 end, m +- rho e; a B3 end, linear). Where a parabolic curve touches an edge their distance
+/// falls with the square of the way, and it is the chord's share there as well. Newton's method
+/// starts from Hermite's interpolation.
 class RulingsBetween {
  public:
   /// @pre the two have the same elements; all outlive it
@@ -40,7 +42,7 @@ class RulingsBetween {
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
   /// to, or far from the origin one of them lies flat.
-  bool is_smoother() const { return merges() || nearly_merges_ || lies_flat_; }
+  bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
   /// The ruling at s, which may leave [0, 1] by a little, but not beyond a free end. None if
   /// Newton's method does not converge to one near the interpolated one. Next to a free end the
   /// derivatives are the interpolation's.
@@ -72,6 +74,7 @@ class RulingsBetween {
   static State rate(const MovingRuling& m);
 
   bool nearly_merge() const;
+  bool touch(const Ruling& end, const Ruling& longer);
   void fit();
   void refine();
   bool is_noise(const CommonSupport& s) const;
@@ -93,6 +96,7 @@ class RulingsBetween {
   bool lies_flat_ = false;
   int free_end_ = -1;      // at which the contacts merge
   double length_ = 0;      // of the ruling at the other one
+  bool touches_ = false;   // ... and their distance falls with the square of the way there
   Polynomial polynomial_;  // in s, or in the length's share
 };
 

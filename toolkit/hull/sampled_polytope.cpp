@@ -13,6 +13,9 @@
 namespace taut {
 namespace {
 
+/// Neighbours of slivers that are asked for a direction, one after the other.
+constexpr int sliver_limit = 8;
+
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
  public:
@@ -44,6 +47,7 @@ class Sampler {
   dvec3 scaled(const dvec3& point) const { return scene_.frame().scale * point; }
 
   void begin(std::vector<Sample> samples, const std::vector<dvec3>& points);
+  dvec3 direction_of(int facet) const;
   void find_planes();
   void bound_vertices();
   bool refine();
@@ -84,6 +88,31 @@ void Sampler::begin(std::vector<Sample> samples, const std::vector<dvec3>& point
   hull_.add(all, options_.progress);
 }
 
+/// The facet's normal; of a sliver, with corners in line but for rounding, that of the neighbour
+/// across its longest side. A certificate needs no more than directions about each vertex, and a
+/// sliver's own means nothing.
+dvec3 Sampler::direction_of(int facet) const {
+  const double rounding = scene_.frame().length_to_frame(8 * vertex_rounding(scene_));
+  int f = facet;
+  for (int k = 0; k < sliver_limit; ++k) {
+    const PointHull::Facet& own = hull_.facet(f);
+    std::size_t longest = 0;
+    double length = 0;
+    for (std::size_t side = 0; side < 3; ++side) {
+      const double own_length =
+          glm::distance(hull_.points()[std::size_t(own.vertex[side])],
+                        hull_.points()[std::size_t(own.vertex[(side + 1) % 3])]);
+      if (own_length <= length) continue;
+      length = own_length;
+      longest = side;
+    }
+    const dvec3 normal = own.side.normal();
+    if (glm::length(normal) > rounding * length) return unit(normal);
+    f = own.neighbor[longest];
+  }
+  return unit(hull_.facet(facet).side.normal());
+}
+
 /// Queries the supporting plane of every facet that has none yet, in parallel; each query starts
 /// from the contact of the vertex whose own direction is closest.
 void Sampler::find_planes() {
@@ -100,7 +129,7 @@ void Sampler::find_planes() {
       options_.progress.check();
       const PointHull::Facet& facet = hull_.facet(wanted[k]);
       Plane& plane = planes_[std::size_t(wanted[k])];
-      plane.n = unit(facet.side.normal());
+      plane.n = direction_of(wanted[k]);
       const Sample* nearest = nullptr;
       for (const int v : facet.vertex) {
         const Sample& s = samples_[std::size_t(v)];

@@ -16,6 +16,7 @@
 #include "taut/hull/free_end_seeds.h"
 #include "taut/hull/free_ends.h"
 #include "taut/hull/graph_builder.h"
+#include "taut/hull/in_line_contacts.h"
 #include "taut/hull/partings.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/supporting_poles.h"
@@ -81,6 +82,7 @@ class GraphTracer {
   void part_beside(const FreeEnd& end);
   void search_cells(const std::vector<CulledCell>& cells);
   void trace(const CommonSupport& seed);
+  void trace_both_ways(const CommonSupport& seed);
   void trace_waiting();
   void trace_from(int node, std::size_t side);
   int node_of(const dvec3& n, const std::vector<Contact>& contacts);
@@ -375,8 +377,18 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
   return true;
 }
 
-/// Traces the curve through a seed, both ways unless it closes.
+/// Traces the curve through a seed, from the first to the last of contacts in line.
 void GraphTracer::trace(const CommonSupport& seed) {
+  const std::optional<CommonSupport> wide = widened(geometry_, query_, seed);
+  if (!wide) {
+    trace_both_ways(seed);
+  } else if (!built_.is_traced(*wide)) {
+    trace_both_ways(*wide);
+  }
+}
+
+/// Both ways unless it closes.
+void GraphTracer::trace_both_ways(const CommonSupport& seed) {
   // In a facet itself the curve, if there is one, leads one way only.
   const auto lost = [&](const char* reason) {
     if (is_facet(seed)) {

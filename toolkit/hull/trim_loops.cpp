@@ -53,6 +53,17 @@ double position(const dvec2& p) {
   return std::fmod(std::abs(at - corner) < same_parameter ? corner : at, 4.0);
 }
 
+/// Gives meetings that are in one place the same position: where curves touch the border in a
+/// common end, rounding does not tell which comes first.
+void join_places(std::vector<Sheet::Meeting>& meetings) {
+  std::sort(meetings.begin(), meetings.end(),
+            [](const auto& a, const auto& b) { return a.position < b.position; });
+  for (std::size_t k = 1; k < meetings.size(); ++k) {
+    const double before = meetings[k - 1].position;
+    if (meetings[k].position - before < same_parameter) meetings[k].position = before;
+  }
+}
+
 constexpr std::array<Side, 4> around = {Side::v0, Side::u1, Side::v1, Side::u0};
 
 /// The border's stretch between two positions of one side, in either direction.
@@ -228,6 +239,7 @@ void Trimmer::add_border(const Sheet& sheet, double from, double to, Loop& loop)
 
 void Trimmer::trim(Sheet& sheet) {
   auto& meetings = sheet.meetings;
+  join_places(meetings);
   const double sense = sheet.sign;
   std::sort(meetings.begin(), meetings.end(), [&](const auto& a, const auto& b) {
     return a.position != b.position ? sense * a.position < sense * b.position

@@ -21,9 +21,9 @@ constexpr double long_ruling = 1e-2;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-/// Which of a scroll's rulings are looked at where no face is told; and where on a ruling it is
-/// looked whether it lies on a face.
-constexpr std::array<double, 3> quarters = {0.25, 0.5, 0.75};
+/// Which of a scroll's rulings are looked at where no face is told, and near its ends: it may lie
+/// on two faces, one after the other; and where on a ruling it is looked whether it lies on a face.
+constexpr std::array<double, 5> quarters = {0.1, 0.25, 0.5, 0.75, 0.9};
 constexpr std::array<double, 5> along_ruling = {0, 0.25, 0.5, 0.75, 1};
 
 /// The ruled faces of a model, as a document without hull.

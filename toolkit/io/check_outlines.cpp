@@ -14,6 +14,10 @@ using Curve = HullDocument::Curve;
 using DirectedCurve = HullDocument::DirectedCurve;
 using Face = HullDocument::Face;
 
+/// Share of the distance within which points are one below which they are the same but for
+/// rounding.
+constexpr double listed_share = 1e-4;
+
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 std::string at(const char* list, std::size_t i) {
@@ -36,6 +40,7 @@ class OutlineCheck {
         outlines_(outlines),
         hull_(geometry.hull()),
         tolerance_(tolerance),
+        listed_(listed_share * tolerance),
         faults_(faults) {}
   double run();
 
@@ -62,6 +67,7 @@ class OutlineCheck {
   void add_borders_of(int face, std::vector<Border>& borders) const;
   double distance(const dvec3& p, const NearestPoint& points,
                   const std::vector<Border>& borders) const;
+  std::optional<dvec3> point_near(int source, const dvec2& uv, const NearestPoint& curves) const;
   double distance_to_border(int source, const OutlineStretch& stretch, const dvec3& p) const;
   void check_tracks();
   using SideJet = std::function<SourceJet(double)>;
@@ -76,6 +82,7 @@ class OutlineCheck {
   const DocumentOutlines& outlines_;
   const HullDocument& hull_;
   double tolerance_;
+  double listed_;  ///< a point is one of those listed; else what lies between them is asked
   HullFaults& faults_;
   double off_ = 0;
 };
@@ -213,7 +220,7 @@ void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
   for (const dvec3& p : contacts) {
     double off = distance(p, curves, others);
     for (const int edge : edges) {
-      if (off > tolerance_) off = std::min(off, distance_to_edge(edge, p));
+      if (off > listed_) off = std::min(off, distance_to_edge(edge, p));
     }
     raise(off_, off);
   }
@@ -250,7 +257,7 @@ void OutlineCheck::add_borders_of(int face, std::vector<Border>& borders) const 
 double OutlineCheck::distance(const dvec3& p, const NearestPoint& points,
                               const std::vector<Border>& borders) const {
   double best = points.distance(p);
-  for (std::size_t b = 0; b < borders.size() && best > tolerance_; ++b) {
+  for (std::size_t b = 0; b < borders.size() && best > listed_; ++b) {
     best = std::min(best, distance_to_border(borders[b].source, borders[b].stretch, p));
   }
   return best;
@@ -269,6 +276,18 @@ void OutlineCheck::check_ruling_ends(const Curve& curve, const Face& scroll) {
     }
   }
   raise(off_, best);
+}
+
+/// The source's point with these parameters. Patches that are no neighbours may have them too, of
+/// these points that which is nearest to the curves.
+std::optional<dvec3> OutlineCheck::point_near(int source, const dvec2& uv,
+                                              const NearestPoint& curves) const {
+  std::optional<dvec3> best;
+  for (const SourcePlace& place : geometry_.places(source, uv)) {
+    const dvec3 x = geometry_.jet(source, place).x + geometry_.origin();
+    if (!best || curves.distance(x) < curves.distance(*best)) best = x;
+  }
+  return best;
 }
 
 void OutlineCheck::check_patch(std::size_t f) {
@@ -294,9 +313,9 @@ void OutlineCheck::check_free_stretches(std::size_t f) {
   }
   const NearestPoint curves(points);
   const auto check = [&](const dvec2& uv) {
-    const std::vector<SourcePlace> places = geometry_.places(face.source, uv);
-    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
-    raise(off_, curves.distance(geometry_.jet(face.source, places[0]).x + geometry_.origin()));
+    const std::optional<dvec3> x = point_near(face.source, uv, curves);
+    if (!x) return raise(off_, std::numeric_limits<double>::infinity());
+    raise(off_, curves.distance(*x));
   };
   for (const RegionOutline& region : outlines_.regions()) {
     if (region.face != int(f)) continue;
@@ -323,11 +342,10 @@ void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) 
     const std::size_t next = (k + 1) % loop.uv.size();
     const OutlineStretch stretch = outlines_.stretch(face.source, loop.uv[k], loop.uv[next]);
     const bool on_border = stretch.kind == OutlineStretch::Kind::border;
-    const std::vector<SourcePlace> places = geometry_.places(face.source, loop.uv[k]);
-    if (places.empty()) return raise(off_, std::numeric_limits<double>::infinity());
-    const dvec3 x = geometry_.jet(face.source, places[0]).x + geometry_.origin();
-    own.push_back(x);
-    if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(x));
+    const std::optional<dvec3> x = point_near(face.source, loop.uv[k], curves);
+    if (!x) return raise(off_, std::numeric_limits<double>::infinity());
+    own.push_back(*x);
+    if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(*x));
     if (on_border) borders.push_back({face.source, stretch});
     last_on_border = on_border;
   }
@@ -463,7 +481,7 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
       polygon.push_back((*side)(double(i) / parts).x + geometry_.origin());
     }
     for (std::size_t i = 0; i < along.size(); ++i) {
-      if (off[i] <= tolerance_) continue;
+      if (off[i] <= listed_) continue;
       off[i] = std::min(off[i], closest_on_curve(geometry_.local(along[i]), 0, 1, *side).distance);
     }
   }

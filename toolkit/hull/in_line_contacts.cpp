@@ -1,0 +1,120 @@
+#include "taut/hull/in_line_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/hull/contact_exits.h"
+#include "taut/hull/facet_contacts.h"
+
+namespace taut {
+namespace {
+
+/// Turn of the direction, in radians, by which contacts beyond others in line show.
+constexpr double line_turn = 1e-6;
+/// The same to a side of the line: contacts that move gain half of its square times their radius of
+/// curvature, or more.
+constexpr double aside_turn = 1e-4;
+/// Gains that are no larger, in units of what heights tie over, are rounding.
+constexpr double least_gain = 8;
+
+/// A contact beyond the one at `end`, farther along, in line with it, and as high.
+std::optional<Contact> beyond_in_line(const ContactGeometry& geometry, SupportQuery& query,
+                                      const dvec3& n, const Contact& end, const dvec3& along) {
+  const dvec3 x = geometry.point(end);
+  const Support top = query(glm::normalize(n + line_turn * along), end);
+  if (glm::dot(top.point - x, along) <= same_contact) return std::nullopt;
+  const std::optional<Contact> c = climbed(geometry, at_rest(geometry, top.contact, n), n);
+  if (!c) return std::nullopt;
+  const dvec3 off = geometry.point(*c) - x;
+  if (glm::dot(off, along) <= same_contact || glm::dot(off, n) < -geometry.tie() ||
+      !is_in_line(x, x + along, x + off)) {
+    return std::nullopt;
+  }
+  return c;
+}
+
+/// A contact of a line, seen from beside.
+struct Gain {
+  std::size_t contact;
+  double place;   ///< along the line
+  double height;  ///< in a direction to the side
+};
+
+}  // namespace
+
+bool is_in_line(const dvec3& a, const dvec3& b, const dvec3& x) {
+  return glm::length(glm::cross(x - a, unit(b - a))) <= same_contact;
+}
+
+std::optional<CommonSupport> widened(const ContactGeometry& geometry, SupportQuery& query,
+                                     const CommonSupport& s) {
+  const dvec3 along = unit(s.d());
+  const std::optional<Contact> first = beyond_in_line(geometry, query, s.n, s.contact[0], along);
+  const std::optional<Contact> last = beyond_in_line(geometry, query, s.n, s.contact[1], -along);
+  if (!first && !last) return std::nullopt;
+  CommonSupport wide;
+  wide.n = s.n;
+  wide.add(geometry, first.value_or(s.contact[0]));
+  wide.add(geometry, last.value_or(s.contact[1]));
+  return wide;
+}
+
+std::optional<Contact> between_in_line(const ContactGeometry& geometry, const CommonSupport& s,
+                                       const Contact& winner) {
+  std::optional<Contact> c = climbed(geometry, winner, s.n);
+  if (!c) return std::nullopt;
+  // Where an element is flat climbs end before its border.
+  c = snapped(geometry, *c, same_contact);
+  const dvec3 x = geometry.point(*c);
+  const dvec3 along = unit(s.d());
+  const double place = glm::dot(x - s.jet[1].x, along);
+  if (glm::dot(x - s.jet[1].x, s.n) < -geometry.tie() || place <= same_contact ||
+      place >= glm::length(s.d()) - same_contact || !is_in_line(s.jet[0].x, s.jet[1].x, x)) {
+    return std::nullopt;
+  }
+  return c;
+}
+
+std::vector<Contact> around_line(const ContactGeometry& geometry,
+                                 const std::vector<Contact>& contacts, const dvec3& n) {
+  const dvec3 x = geometry.point(contacts.front());
+  dvec3 along(0.0);
+  for (const Contact& c : contacts) {
+    const dvec3 off = geometry.point(c) - x;
+    if (glm::length(off) > glm::length(along)) along = off;
+  }
+  along = unit(along);
+  std::vector<Contact> result;
+  for (const double sense : {1.0, -1.0}) {
+    const dvec3 aside = glm::normalize(n + aside_turn * glm::cross(sense * along, n));
+    std::vector<Gain> line;
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const double place = sense * glm::dot(geometry.point(contacts[k]) - x, along);
+      const bool known = std::any_of(line.begin(), line.end(), [&](const Gain& g) {
+        return std::abs(g.place - place) <= same_contact;
+      });
+      if (known) continue;
+      const Contact moved = climbed(geometry, contacts[k], aside).value_or(contacts[k]);
+      line.push_back({k, place, glm::dot(geometry.point(moved), aside)});
+    }
+    std::stable_sort(line.begin(), line.end(),
+                     [](const Gain& a, const Gain& b) { return a.place < b.place; });
+    // The upper outline.
+    std::vector<Gain> chain;
+    for (const Gain& g : line) {
+      const auto hides = [&](const Gain& a, const Gain& b) {
+        const double share = (b.place - a.place) / (g.place - a.place);
+        return b.height <= (1 - share) * a.height + share * g.height + least_gain * geometry.tie();
+      };
+      while (chain.size() > 1 && hides(chain[chain.size() - 2], chain.back())) chain.pop_back();
+      chain.push_back(g);
+    }
+    // The last one begins the way back.
+    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      result.push_back(contacts[chain[k].contact]);
+    }
+  }
+  return result;
+}
+
+}  // namespace taut
