@@ -247,6 +247,31 @@ LoopMatrix loop_to_bezier(const Far::PatchTable& table,
   return (m * 48.0).array().round() / 48.0;
 }
 
+/// Of OpenSubdiv's quartic Gregory triangle: of each corner itself, the points next to it on the
+/// sides that begin and that end there, and two for the one inside that is next to it, those for
+/// the same two sides; then the sides' middle points.
+constexpr int gregory_points = 18;
+
+/// The quartic triangle with the Gregory triangle's borders. It has its tangent planes, too, along
+/// sides between regular corners; between others the two points inside are averaged.
+std::vector<dvec3> quartic_of_gregory(const std::array<dvec3, gregory_points>& net,
+                                      const std::array<bool, 3>& regular) {
+  std::array<dvec3, 3> inside;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const std::size_t last = (k + 2) % 3;
+    const dvec3& begins = net[5 * k + 3];
+    const dvec3& ends = net[5 * k + 4];
+    const bool one = regular[k] && regular[next] != regular[last];
+    inside[k] = !one ? 0.5 * (begins + ends) : regular[next] ? begins : ends;
+  }
+  return {net[0],  net[1],    net[15],   net[7], net[5],  //
+          net[2],  inside[0], inside[1], net[6],          //
+          net[17], inside[2], net[16],                    //
+          net[11], net[12],                               //
+          net[10]};
+}
+
 /// Sheets of faces that meet in edges that are no manifold, parted there and in the ends of these:
 /// infinitely sharp as they are, each sheet has its own boundary along them.
 class Sheets {
@@ -371,7 +396,9 @@ struct CageLevel::Topology {
 
   std::unique_ptr<Far::PatchTable> patch_table() const {
     Far::PatchTableFactory::Options patches(0);
-    patches.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_BSPLINE_BASIS);
+    patches.SetEndCapType(scheme == CageScheme::loop
+                              ? Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS
+                              : Far::PatchTableFactory::Options::ENDCAP_BSPLINE_BASIS);
     patches.useInfSharpPatch = true;
     patches.useSingleCreasePatch = false;
     patches.generateLegacySharpCornerPatches = false;
@@ -412,6 +439,19 @@ struct CageLevel::Topology {
     for (int f = 0; f < base.GetNumFaces(); ++f) {
       const int size = base.GetFaceVertices(f).size();
       result.insert(result.end(), size == regular ? 1 : to_size(size), f);
+    }
+    return result;
+  }
+
+  /// Of a triangle: the corners about which the surface is a box spline.
+  std::array<bool, 3> regular_corners(int face) const {
+    const Far::TopologyLevel base = level();
+    const auto vertices = base.GetFaceVertices(face);
+    std::array<bool, 3> result = {};
+    for (int k = 0; k < 3; ++k) {
+      const int v = vertices[k];
+      const int valence = base.GetVertexEdges(v).size();
+      result[to_size(k)] = base.IsVertexBoundary(v) ? valence == 4 : valence == 6;
     }
     return result;
   }
@@ -505,6 +545,12 @@ std::vector<CellPatch> CageLevel::patches() const {
           net[to_size(k)] = vertices[k] < 0 ? dvec3(0.0) : points[to_size(vertices[k])].x;
         }
         patch.points = bezier_net(net, param.GetBoundary());
+        continue;
+      }
+      if (vertices.size() == gregory_points) {
+        std::array<dvec3, gregory_points> net;
+        for (int k = 0; k < gregory_points; ++k) net[to_size(k)] = points[to_size(vertices[k])].x;
+        patch.points = quartic_of_gregory(net, topology.regular_corners(face));
         continue;
       }
       const Far::PatchTable::PatchHandle handle{array, i, i * loop_points};
