@@ -1,0 +1,299 @@
+#include "taut/containment/hull_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "taut/bounds/scene_content.h"
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Directions that a projection tries, and facets that a branch and bound replaces, before they
+/// settle for what they have. Usual are five and a hundred.
+constexpr int projection_limit = 64;
+constexpr int facet_limit = 3000;
+
+/// Turns, one to the other, of the two searches: a point may look inside to the one and outside to
+/// the other only within rounding.
+constexpr int turn_limit = 4;
+
+/// Directions after which a point that none of them separates is left to the other search.
+constexpr int failure_limit = 12;
+
+/// Contacts this near to each other, in the scene's frame, are one.
+constexpr double same_point = 1e-13;
+
+/// A step by less than this angle changes x . n - h(n) by less than its rounding.
+constexpr double converged_angle = 1e-8;
+
+/// A gap that no query can close.
+constexpr double least_gap = 2 * support_slack;
+
+/// Rounding of points in the scene's frame, where coordinates are at most about two.
+constexpr double point_rounding = 16 * rounding_unit;
+
+}  // namespace
+
+HullDistance::HullDistance(const Scene& scene, const SupportPolytope& start)
+    : scene_(scene), start_(start), query_(scene), polytope_(start) {}
+
+/// Queries a direction, and takes what it tells of the distance.
+HullDistance::Atom HullDistance::ask(const dvec3& n, const Contact& hint) {
+  const Support s = query_(n, hint);
+  const double height = glm::dot(x_, n);
+  if (height - s.h > range_.value) {
+    range_.value = height - s.h;
+    best_n_ = n;
+    best_contact_ = s.contact;
+  }
+  range_.lower = std::max(range_.lower, height - s.h_bound - rounding_);
+  return atom({n, s.contact});
+}
+
+HullDistance::Atom HullDistance::atom(const Sample& sample) const {
+  Atom a;
+  a.contact = sample.contact;
+  a.curved.n = sample.n;
+  a.curved.point = scene_.content().frame_point(sample.contact);
+  a.offset = a.curved.point - x_;
+  if (const auto h = support_hessian(scene_, sample.contact, sample.n)) {
+    a.curved.hessian = *h;
+    a.has_hessian = true;
+  }
+  return a;
+}
+
+bool HullDistance::done() const {
+  if (goal_.tolerance >= 0 && (range_.lower > goal_.tolerance || range_.upper < -goal_.tolerance)) {
+    return true;
+  }
+  return range_.upper - range_.value <= std::max(goal_.accuracy, least_gap);
+}
+
+/// Newton's step if it is wanted and there is one, else towards x.
+dvec3 HullDistance::next_direction(const NearestInSimplex& nearest, const dvec3& n,
+                                   bool& newton) const {
+  if (newton) {
+    std::vector<CurvedContact> contacts;
+    for (int k = 0; k < nearest.size; ++k) {
+      const Atom& a = atoms_[std::size_t(nearest.carrier[std::size_t(k)])];
+      newton = newton && a.has_hessian;
+      contacts.push_back(a.curved);
+      contacts.back().weight = nearest.weight[std::size_t(k)];
+    }
+    if (newton) {
+      if (const auto next = projection_step(contacts, x_, n)) return *next;
+    }
+    newton = false;
+  }
+  return -unit(nearest.point);
+}
+
+/// The contact of the same element that supports in another direction, as far as the element goes.
+HullDistance::Atom HullDistance::moved(const Atom& a, const dvec3& n) {
+  if (a.contact.kind == SourceKind::vertex) {
+    Atom same = a;
+    same.curved.n = n;
+    return same;
+  }
+  const Scene::Content& content = scene_.content();
+  const SceneInstance& instance = content.instances[std::size_t(a.contact.instance)];
+  const ScenePart& part = content.part_of(a.contact.instance);
+  polish_.take(part.elements[std::size_t(content.element(a.contact))],
+               instance.rotated ? n * instance.rotation : n);
+  Contact contact = a.contact;
+  const PolishedSupport top = polish_.polish({contact.u, contact.v});
+  contact.u = top.uv.x;
+  contact.v = top.uv.y;
+  return atom({n, contact});
+}
+
+NearestInSimplex HullDistance::nearest_atom_simplex() const {
+  std::vector<dvec3> offsets;
+  for (const Atom& a : atoms_) offsets.push_back(a.offset);
+  return nearest_in_simplex(offsets);
+}
+
+/// Takes a contact that was found in direction n to those that carry the nearest point. After
+/// Newton's step these go with the direction, where that brings them nearer.
+NearestInSimplex HullDistance::take(Atom found, const dvec3& n, const NearestInSimplex& nearest,
+                                    bool newton) {
+  std::vector<Atom> carriers;
+  for (int k = 0; k < nearest.size; ++k) {
+    carriers.push_back(atoms_[std::size_t(nearest.carrier[std::size_t(k)])]);
+  }
+  if (newton) {
+    atoms_ = {found};
+    for (const Atom& c : carriers) {
+      Atom there = moved(c, n);
+      const bool known = std::any_of(atoms_.begin(), atoms_.end(), [&](const Atom& a) {
+        return glm::distance(a.curved.point, there.curved.point) < same_point;
+      });
+      if (!known) atoms_.push_back(std::move(there));
+    }
+    const NearestInSimplex next = nearest_atom_simplex();
+    if (next.contains_origin || glm::length(next.point) < glm::length(nearest.point)) return next;
+  }
+  atoms_ = std::move(carriers);
+  atoms_.push_back(std::move(found));
+  return nearest_atom_simplex();
+}
+
+/// Seeks the direction that separates x from the hull, or supports where x is next to the boundary.
+void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
+  atoms_.clear();
+  for (const Sample& s : near) atoms_.push_back(atom(s));
+  dvec3 n = n0;
+  if (atoms_.empty()) atoms_.push_back(ask(n, {}));
+  NearestInSimplex nearest = nearest_atom_simplex();
+  bool newton = true;
+  bool stalled = false;  // Newton's method has given all it can
+  int failures = 0;
+  for (int step = 0; step < projection_limit; ++step) {
+    if (nearest.contains_origin) return;
+    const double length = glm::length(nearest.point);
+    range_.upper = std::min(range_.upper, length + rounding_ + point_rounding);
+    if (done() || length == 0) return;
+    newton = newton && !stalled;
+    const dvec3 next = next_direction(nearest, n, newton);
+    const double before = range_.value;
+    Atom found = ask(next, atoms_[std::size_t(nearest.carrier[0])].contact);
+    if (done()) return;
+    const bool better = range_.value > before;
+    const bool turned = glm::length(next - n) > converged_angle;
+    nearest = take(std::move(found), next, nearest, newton);
+    stalled = newton && !turned && glm::length(nearest.point) > 0.5 * length;
+    // Next to the boundary but not outside: the other search has to prove it.
+    if (range_.value <= 0 && (stalled || ++failures > failure_limit)) return;
+    if (!newton && !better && glm::length(nearest.point) >= length) return;
+    newton = !newton || better || !turned;
+    if (better || !turned) n = next;
+  }
+}
+
+double HullDistance::height_rounding(int facet) const {
+  const PlaneSide& side = polytope_.hull.facet(facet).side;
+  return side.determinant_bound() / glm::length(side.normal());
+}
+
+void HullDistance::push(int facet) {
+  const PlaneSide& side = polytope_.hull.facet(facet).side;
+  const double height = side.determinant(x_) / glm::length(side.normal());
+  heap_.push_back({height, facet, stamps_[std::size_t(facet)]});
+  std::push_heap(heap_.begin(), heap_.end());
+}
+
+void HullDistance::take_created() {
+  stamps_.resize(polytope_.hull.facets().size(), 0);
+  for (const int f : polytope_.hull.replaced()) ++stamps_[std::size_t(f)];
+  for (const int f : polytope_.hull.created()) {
+    ++stamps_[std::size_t(f)];
+    push(f);
+  }
+}
+
+bool HullDistance::insert(const Sample& sample, const dvec3& point, int facet) {
+  if (!polytope_.hull.insert(point, facet)) return false;
+  polytope_.samples.push_back(sample);
+  take_created();
+  return true;
+}
+
+/// What the projection has found, and support points about the best direction as near to it as its
+/// distance asks for: a triangle of them is a facet between x and the boundary.
+void HullDistance::insert_seeds() {
+  const auto insert_anywhere = [&](const Sample& sample, const dvec3& point) {
+    const auto& facets = polytope_.hull.facets();
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      if (!facets[f].alive || facets[f].side.side(point) != Sign::positive) continue;
+      insert(sample, point, int(f));
+      return;
+    }
+  };
+  for (const Atom& a : atoms_) insert_anywhere({a.curved.n, a.contact}, a.curved.point);
+  if (best_contact_.instance < 0) return;
+  const double angle = std::sqrt(std::clamp(-range_.value, least_gap, 1e-2));
+  const auto tangents = tangent_frame(best_n_);
+  const dvec3 n = best_n_;
+  const Contact hint = best_contact_;
+  insert_anywhere({n, hint}, scene_.content().frame_point(hint));
+  for (const double turn : {0.3, 2.4, 4.5}) {
+    const dvec3 m = unit(n + angle * (std::cos(turn) * tangents[0] + std::sin(turn) * tangents[1]));
+    const Atom a = ask(m, hint);
+    insert_anywhere({m, a.contact}, a.curved.point);
+  }
+}
+
+/// Replaces the facet nearest to x until it is as near as the boundary.
+void HullDistance::expand() {
+  polytope_ = start_;
+  stamps_.assign(polytope_.hull.facets().size(), 0);
+  heap_.clear();
+  for (std::size_t f = 0; f < stamps_.size(); ++f) {
+    if (polytope_.hull.facets()[f].alive) push(int(f));
+  }
+  insert_seeds();
+  for (int step = 0; step < facet_limit; ++step) {
+    const auto is_stale = [&](const Nearest& top) {
+      return stamps_[std::size_t(top.facet)] != top.stamp ||
+             !polytope_.hull.facet(top.facet).alive;
+    };
+    while (is_stale(heap_.front())) {
+      std::pop_heap(heap_.begin(), heap_.end());
+      heap_.pop_back();
+    }
+    const Nearest top = heap_.front();
+    const double upper =
+        top.height + height_rounding(top.facet) + rounding_ + point_rounding;
+    if (top.height <= 0) range_.upper = std::min(range_.upper, upper);
+    if (done() || range_.lower > 0) return;
+    const PointHull::Facet& facet = polytope_.hull.facet(top.facet);
+    const dvec3 n = unit(facet.side.normal());
+    const Sample* nearest = nullptr;
+    for (const int v : facet.vertex) {
+      const Sample& s = polytope_.samples[std::size_t(v)];
+      if (nearest == nullptr || glm::dot(s.n, n) > glm::dot(nearest->n, n)) nearest = &s;
+    }
+    const Atom found = ask(n, nearest->contact);
+    if (range_.lower > 0) return;
+    if (!insert({n, found.contact}, found.curved.point, top.facet)) return;
+  }
+}
+
+DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
+                                       std::span<const Sample> near, const dvec3& n) {
+  x_ = x;
+  goal_ = goal;
+  rounding_ = 8 * rounding_unit * (glm::length(x) + 2);
+  range_ = {-infinity, -infinity, infinity};
+  best_contact_ = {};
+  dvec3 start = n == dvec3(0.0) ? unit(x) : n;
+  if (start == dvec3(0.0)) start = {0, 0, 1};
+  project(near, start);
+  const bool solid = start_.hull.dimension() == 3;
+  for (int turn = 0; turn < turn_limit && !done() && solid && !(range_.lower > 0); ++turn) {
+    expand();
+    if (done() || !(range_.lower > 0)) break;
+    project(std::array{Sample{best_n_, best_contact_}}, best_n_);
+  }
+  if (goal.tolerance < 0) polish();
+  return range_;
+}
+
+/// Inside, the best of the directions tried is as good as the bounds asked for; on a smooth surface
+/// Newton's method makes it exact.
+void HullDistance::polish() {
+  for (int step = 0; step < 2 && best_contact_.instance >= 0; ++step) {
+    const Atom a = atom({best_n_, best_contact_});
+    if (!a.has_hessian) return;
+    const auto next = projection_step(std::array{a.curved}, x_, best_n_);
+    if (!next) return;
+    ask(*next, best_contact_);
+  }
+}
+
+}  // namespace taut
