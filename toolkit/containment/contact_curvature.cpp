@@ -10,8 +10,8 @@
 namespace taut {
 namespace {
 
-/// A parameter closer to its end, and a slope against its tangent's length, that are as good as none
-/// for a step that queries check anyway.
+/// A parameter closer to its end, and a slope against its tangent's length, that are as good as
+/// none for a step that queries check anyway.
 constexpr double at_end = 1e-12;
 constexpr double no_slope = 1e-9;
 /// A determinant of B smaller than this share of its diagonal's product is that of a flat contact.
@@ -116,9 +116,8 @@ std::vector<CurvedContact> distinct(std::span<const CurvedContact> contacts, con
     same->weight = weight;
   }
   if (kept.size() > 3) {
-    std::sort(kept.begin(), kept.end(), [](const CurvedContact& a, const CurvedContact& b) {
-      return a.weight > b.weight;
-    });
+    std::sort(kept.begin(), kept.end(),
+              [](const CurvedContact& a, const CurvedContact& b) { return a.weight > b.weight; });
     kept.resize(3);
   }
   return kept;

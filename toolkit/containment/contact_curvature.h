@@ -24,9 +24,9 @@ struct CurvedContact {
   }
 };
 
-/// Derivative of the contact's point where the direction n in which it supports turns: with the free
-/// parameters' tangents J and B = d^2 (x . n), it is -J B^-1 J^T (a vertex, and parameters that
-/// press against an end, do not move). None where B is not negative definite, or hardly.
+/// Derivative of the contact's point where the direction n in which it supports turns: with the
+/// free parameters' tangents J and B = d^2 (x . n), it is -J B^-1 J^T (a vertex, and parameters
+/// that press against an end, do not move). None where B is not negative definite, or hardly.
 std::optional<dmat3> support_hessian(const Scene& scene, const Contact& contact, const dvec3& n);
 
 /// Newton's step, from the direction n, for a direction in which x . n - h(n) is stationary and all

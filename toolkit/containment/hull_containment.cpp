@@ -20,8 +20,11 @@ namespace {
 /// a finer one more to copy for each point.
 constexpr double start_relative = 1e-2;
 
-/// Facets whose tetrahedron with the middle is so thin that weights of points in it would be rounded
-/// by more prove nothing.
+/// Its points are farther from each other than this, in the scene's frame.
+constexpr double same_start_point = 1e-7;
+
+/// Facets whose tetrahedron with the middle is so thin that weights of points in it would be
+/// rounded by more prove nothing.
 constexpr double worst_weight_rounding = 1e-3;
 
 /// Beyond this many sizes of the scene the hull is a point, as far as distances can tell.
@@ -37,17 +40,26 @@ bool is_finite(const dvec3& x) {
 /// A facet of the mesh, in the scene's frame.
 struct MeshFacet {
   Triangle vertex;
-  dvec3 n;             ///< unit
-  double outer;        ///< no point of the model is higher
-  dmat3 weights;       ///< of the corners in x - middle
-  double least_weight; ///< from which on they are positive in spite of rounding
+  dvec3 n;              ///< unit
+  double outer;         ///< no point of the model is higher
+  dmat3 weights;        ///< of the corners in x - middle
+  double least_weight;  ///< from which on they are positive in spite of rounding
 };
 
+/// The polytope of samples, without those that repeat another but for rounding: slivers between
+/// them would bound nothing.
 SupportPolytope support_polytope(const Scene& scene, const std::vector<Sample>& samples) {
-  Box box{dvec3(-2.0), dvec3(2.0)};
-  SupportPolytope polytope{PointHull(box), samples};
+  SupportPolytope polytope{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}};
   std::vector<dvec3> points;
-  for (const Sample& s : samples) points.push_back(scene.content().frame_point(s.contact));
+  for (const Sample& s : samples) {
+    const dvec3 x = scene.content().frame_point(s.contact);
+    const bool repeated = std::any_of(points.begin(), points.end(), [&](const dvec3& other) {
+      return glm::distance(other, x) < same_start_point;
+    });
+    if (repeated) continue;
+    points.push_back(x);
+    polytope.samples.push_back(s);
+  }
   polytope.hull.add(points);
   return polytope;
 }
@@ -259,7 +271,8 @@ SignedDistance HullContainment::Content::measure(const dvec3& point, HullDistanc
   const dvec3 x = to_frame(point);
   const double scale = scene.frame().scale;
   const double size = glm::dot(x, unit(x));
-  if (size > far_away) return {size / scale, size * (1 - 1e-15) / scale, size * (1 + 1e-15) / scale};
+  if (size > far_away)
+    return {size / scale, size * (1 - 1e-15) / scale, size * (1 + 1e-15) / scale};
   int facet = -1;
   by_mesh(x, facet);
   const DistanceRange range = search(distance, x, facet, {accuracy, -1});

@@ -47,19 +47,19 @@ struct ContainmentCounts {
 ///
 /// Points far from the boundary are decided by a mesh of certified distance: Embree proposes the
 /// facet through which the ray from the middle leaves, and in double precision either the facet's
-/// supporting plane has the point outside (no point of the model is beyond it), or the tetrahedron of
-/// the middle and the facet's corners, which are support points, has it inside. All others are
+/// supporting plane has the point outside (no point of the model is beyond it), or the tetrahedron
+/// of the middle and the facet's corners, which are support points, has it inside. All others are
 /// decided by the exact support function (hull_distance.h). So an answer other than `on` is proven,
 /// whatever Embree says.
 ///
-/// A flat hull (planar, a segment, a point) has no inside. Where surfaces stand for the limit surface
-/// of a cage, answers hold for these (Model::deviation_bound tells what that may change).
+/// A flat hull (planar, a segment, a point) has no inside. Where surfaces stand for the limit
+/// surface of a cage, answers hold for these (Model::deviation_bound tells what that may change).
 ///
 /// Immutable, safe to query concurrently. Same bits for any number of threads.
 class HullContainment {
  public:
-  /// The scene must outlive it. @throws InvalidInput if a tolerance is no number or mesh_relative is
-  /// not positive, BackendError if Embree fails, Cancelled
+  /// The scene must outlive it. @throws InvalidInput if a tolerance is no number or mesh_relative
+  /// is not positive, BackendError if Embree fails, Cancelled
   explicit HullContainment(const Scene& scene, const HullContainmentOptions& options = {});
   ~HullContainment();
   HullContainment(HullContainment&&) noexcept;

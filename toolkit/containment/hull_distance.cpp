@@ -30,6 +30,9 @@ constexpr double same_point = 1e-13;
 /// A step by less than this angle changes x . n - h(n) by less than its rounding.
 constexpr double converged_angle = 1e-8;
 
+/// Next to the boundary distances are sought to this share of themselves.
+constexpr double near_share = 0.05;
+
 /// A gap that no query can close.
 constexpr double least_gap = 2 * support_slack;
 
@@ -71,7 +74,8 @@ bool HullDistance::done() const {
   if (goal_.tolerance >= 0 && (range_.lower > goal_.tolerance || range_.upper < -goal_.tolerance)) {
     return true;
   }
-  return range_.upper - range_.value <= std::max(goal_.accuracy, least_gap);
+  const double share = near_share * std::abs(range_.value);
+  return range_.upper - range_.value <= std::max(std::min(goal_.accuracy, share), least_gap);
 }
 
 /// Newton's step if it is wanted and there is one, else towards x.
@@ -175,15 +179,33 @@ void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
   }
 }
 
-double HullDistance::height_rounding(int facet) const {
-  const PlaneSide& side = polytope_.hull.facet(facet).side;
-  return side.determinant_bound() / glm::length(side.normal());
+/// The facet's normal from its two shorter sides, which are exact but for one rounding each, so
+/// that their product is off by a few rounding units of theirs.
+HullDistance::FacetPlane HullDistance::plane(int facet) const {
+  const std::array<int, 3>& vertex = polytope_.hull.facet(facet).vertex;
+  std::array<dvec3, 3> corner, side;
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = polytope_.hull.point(vertex[k]);
+  for (std::size_t k = 0; k < 3; ++k) side[k] = corner[(k + 2) % 3] - corner[(k + 1) % 3];
+  // side[k] lies opposite to corner k.
+  std::size_t longest = 0;
+  std::size_t nearest = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (glm::length(side[k]) > glm::length(side[longest])) longest = k;
+    if (glm::distance(corner[k], x_) < glm::distance(corner[nearest], x_)) nearest = k;
+  }
+  const dvec3& a = side[(longest + 1) % 3];
+  const dvec3& b = side[(longest + 2) % 3];
+  const dvec3 n = glm::cross(a, b);
+  const double length = glm::length(n);
+  if (!(length > 0)) return {dvec3(0.0), infinity, infinity};
+  const double turn = 8 * rounding_unit * glm::length(a) * glm::length(b) / length;
+  const dvec3 from = x_ - corner[nearest];
+  return {n / length, glm::dot(from, n) / length, (turn + 4 * rounding_unit) * glm::length(from)};
 }
 
 void HullDistance::push(int facet) {
-  const PlaneSide& side = polytope_.hull.facet(facet).side;
-  const double height = side.determinant(x_) / glm::length(side.normal());
-  heap_.push_back({height, facet, stamps_[std::size_t(facet)]});
+  const FacetPlane p = plane(facet);
+  heap_.push_back({p.height + p.rounding, facet, stamps_[std::size_t(facet)]});
   std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -239,28 +261,33 @@ void HullDistance::expand() {
   insert_seeds();
   for (int step = 0; step < facet_limit; ++step) {
     const auto is_stale = [&](const Nearest& top) {
-      return stamps_[std::size_t(top.facet)] != top.stamp ||
-             !polytope_.hull.facet(top.facet).alive;
+      return stamps_[std::size_t(top.facet)] != top.stamp || !polytope_.hull.facet(top.facet).alive;
     };
     while (is_stale(heap_.front())) {
       std::pop_heap(heap_.begin(), heap_.end());
       heap_.pop_back();
     }
     const Nearest top = heap_.front();
-    const double upper =
-        top.height + height_rounding(top.facet) + rounding_ + point_rounding;
-    if (top.height <= 0) range_.upper = std::min(range_.upper, upper);
-    if (done() || range_.lower > 0) return;
     const PointHull::Facet& facet = polytope_.hull.facet(top.facet);
-    const dvec3 n = unit(facet.side.normal());
-    const Sample* nearest = nullptr;
-    for (const int v : facet.vertex) {
-      const Sample& s = polytope_.samples[std::size_t(v)];
-      if (nearest == nullptr || glm::dot(s.n, n) > glm::dot(nearest->n, n)) nearest = &s;
+    const FacetPlane own = plane(top.facet);
+    std::array<dvec3, 3> offsets;
+    std::size_t nearest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = std::size_t(facet.vertex[k]);
+      offsets[k] = polytope_.hull.points()[v] - x_;
+      facet_samples_[k] = polytope_.samples[v];
+      if (glm::dot(facet_samples_[k].n, own.n) > glm::dot(facet_samples_[nearest].n, own.n)) {
+        nearest = k;
+      }
     }
-    const Atom found = ask(n, nearest->contact);
+    // Where x is not in the polytope its distance from any facet bounds that from the hull.
+    const double upper =
+        top.height <= 0 ? top.height : glm::length(nearest_in_simplex(offsets).point);
+    range_.upper = std::min(range_.upper, upper + rounding_ + point_rounding);
+    if (done() || own.n == dvec3(0.0)) return;
+    const Atom found = ask(own.n, facet_samples_[nearest].contact);
     if (range_.lower > 0) return;
-    if (!insert({n, found.contact}, found.curved.point, top.facet)) return;
+    if (!insert({own.n, found.contact}, found.curved.point, top.facet)) return;
   }
 }
 
@@ -278,7 +305,7 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
   for (int turn = 0; turn < turn_limit && !done() && solid && !(range_.lower > 0); ++turn) {
     expand();
     if (done() || !(range_.lower > 0)) break;
-    project(std::array{Sample{best_n_, best_contact_}}, best_n_);
+    project(facet_samples_, best_n_);
   }
   if (goal.tolerance < 0) polish();
   return range_;

@@ -20,8 +20,8 @@ struct SupportPolytope {
 };
 
 /// What is asked about a point, in the scene's frame. A search ends when it has the distance to
-/// within `accuracy` or, where a tolerance is given, when it knows whether the point is farther from
-/// the boundary than that.
+/// within `accuracy` or, where a tolerance is given, when it knows whether the point is farther
+/// from the boundary than that.
 struct DistanceGoal {
   double accuracy = 0;
   double tolerance = -1;  ///< negative: none
@@ -36,16 +36,16 @@ struct DistanceRange {
 
 /// Signed distances of points from the boundary of a scene's convex hull.
 ///
-/// With h the support function, the signed distance of x is max over unit n of x . n - h(n), outside
-/// and inside. So every support query gives a lower bound, and the convex hull of any support points
-/// an upper one: outside, by its distance; inside, since then the ball about x that lies in it lies
-/// in the hull.
+/// With h the support function, the signed distance of x is max over unit n of x . n - h(n),
+/// outside and inside. So every support query gives a lower bound, and the convex hull of any
+/// support points an upper one: outside, by its distance; inside, since then the ball about x that
+/// lies in it lies in the hull.
 ///
 /// Outside, the maximum is one of a concave function: projection_step() in turns with the step of
-/// Gilbert, Johnson and Keerthi (towards x from the nearest point of the simplex of contacts). Inside
-/// it has local maxima, which a branch and bound over the facets of the support points' polytope
-/// tells apart: the facet nearest to x is replaced by those to the support point in its normal's
-/// direction, until none can be nearer than the best direction found.
+/// Gilbert, Johnson and Keerthi (towards x from the nearest point of the simplex of contacts).
+/// Inside it has local maxima, which a branch and bound over the facets of the support points'
+/// polytope tells apart: the facet nearest to x is replaced by those to the support point in its
+/// normal's direction, until none can be nearer than the best direction found.
 ///
 /// Holds scratch memory, so use one object a thread; scene and polytope must outlive it.
 class HullDistance {
@@ -66,10 +66,16 @@ class HullDistance {
     dvec3 offset;  ///< of the point from x
   };
   struct Nearest {
-    double height;  ///< of x above the facet
+    double height;  ///< of x above the facet, at most
     int facet;
     int stamp;
     bool operator<(const Nearest& other) const { return height < other.height; }
+  };
+
+  struct FacetPlane {
+    dvec3 n;  ///< unit; zero where the facet is too thin to tell
+    double height;
+    double rounding;  ///< of the height
   };
 
   Atom ask(const dvec3& n, const Contact& hint);
@@ -85,8 +91,8 @@ class HullDistance {
   void insert_seeds();
   bool insert(const Sample& sample, const dvec3& point, int facet);
   void take_created();
+  FacetPlane plane(int facet) const;
   void push(int facet);
-  double height_rounding(int facet) const;
 
   const Scene& scene_;
   const SupportPolytope& start_;
@@ -104,6 +110,7 @@ class HullDistance {
   SupportPolytope polytope_;
   std::vector<int> stamps_;
   std::vector<Nearest> heap_;
+  std::array<Sample, 3> facet_samples_;  ///< of the facet that was looked at last
 };
 
 }  // namespace taut

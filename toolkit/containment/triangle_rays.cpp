@@ -19,8 +19,8 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 /// most when it is found in them (measured 3e-6 at ten times the box's size).
 constexpr double float_rounding = 1e-5;
 
-/// Nearer to a side than this share of a triangle, hits are doubtful (with random rays none is wrong
-/// for a thousandth; see the tests).
+/// Nearer to a side than this share of a triangle, hits are doubtful (with random rays none is
+/// wrong for a thousandth; see the tests).
 constexpr float doubtful_share = 1e-3F;
 
 /// A triangle whose normal is nearer to the ray's plane than this, as a cosine, hits are doubtful.
@@ -168,8 +168,8 @@ TriangleRays::TriangleRays(std::span<const dvec3> points, std::span<const Triang
   check(device, "geometry");
   RTCScene scene = embree_->scene.get();
   // Robust: no ray passes between two triangles that share a side.
-  rtcSetSceneFlags(scene, RTCSceneFlags(RTC_SCENE_FLAG_ROBUST |
-                                        RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(scene,
+                   RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   rtcAttachGeometry(scene, geometry.get());
   rtcCommitScene(scene);

@@ -13,7 +13,8 @@ namespace taut {
 using Triangle = std::array<int, 3>;
 
 /// Triangles in Embree's bounding volume hierarchy, normalised to a box of size one about the
-/// origin. Embree works in floats: what it finds proposes, and is to be decided in double precision.
+/// origin. Embree works in floats: what it finds proposes, and is to be decided in double
+/// precision.
 ///
 /// Immutable, safe to query concurrently.
 class TriangleRays {
