@@ -8,8 +8,8 @@
 
 #include "taut/bounds/scene_content.h"
 #include "taut/containment/hull_distance.h"
+#include "taut/containment/point_batches.h"
 #include "taut/containment/triangle_rays.h"
-#include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/sampled_start.h"
 
@@ -29,13 +29,10 @@ constexpr double worst_weight_rounding = 1e-3;
 
 /// Beyond this many sizes of the scene the hull is a point, as far as distances can tell.
 constexpr double far_away = 1e100;
+constexpr double far_share = 1e-15;
 
 constexpr std::size_t grain = 1024;
 constexpr std::size_t distance_grain = 16;
-
-bool is_finite(const dvec3& x) {
-  return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
-}
 
 /// A facet of the mesh, in the scene's frame.
 struct MeshFacet {
@@ -86,12 +83,8 @@ struct HullContainment::Content {
   void take_facets(const SampledPolytope& mesh, const std::vector<dvec3>& points);
   MeshFacet facet(const SampledPolytope& mesh, int f, const std::vector<dvec3>& points) const;
 
-  dvec3 to_frame(const dvec3& x) const;
+  dvec3 to_frame(const dvec3& x) const { return point_in_frame(scene.frame(), x); }
   std::optional<Location> by_mesh(const dvec3& x, int& facet) const;
-  DistanceRange search(HullDistance& distance, const dvec3& x, int facet,
-                       const DistanceGoal& goal) const;
-  Location locate(const dvec3& point, std::optional<HullDistance>& distance, long& searched) const;
-  SignedDistance measure(const dvec3& point, HullDistance& distance) const;
 };
 
 HullContainment::Content::Content(const Scene& its_scene, const HullContainmentOptions& its_options)
@@ -210,15 +203,6 @@ void HullContainment::Content::take_facets(const SampledPolytope& mesh,
   rays.emplace(points, triangles);
 }
 
-/// @throws InvalidInput if the point is not finite, or overflows there
-dvec3 HullContainment::Content::to_frame(const dvec3& x) const {
-  const dvec3 in_frame = scene.frame().to_frame(x);
-  if (!is_finite(x) || !is_finite(in_frame)) {
-    throw InvalidInput("a point is not finite, or too far from the model for doubles");
-  }
-  return in_frame;
-}
-
 /// What the mesh proves, and the facet in whose cone the point lies, -1 if that is not known.
 std::optional<Location> HullContainment::Content::by_mesh(const dvec3& x, int& facet) const {
   facet = -1;
@@ -243,98 +227,81 @@ std::optional<Location> HullContainment::Content::by_mesh(const dvec3& x, int& f
   return std::nullopt;
 }
 
-DistanceRange HullContainment::Content::search(HullDistance& distance, const dvec3& x, int facet,
-                                               const DistanceGoal& goal) const {
-  if (facet < 0) return distance(x, goal, {}, dvec3(0.0));
-  const MeshFacet& f = facets[std::size_t(facet)];
-  const std::array<Sample, 3> near = {samples[std::size_t(f.vertex[0])],
-                                      samples[std::size_t(f.vertex[1])],
-                                      samples[std::size_t(f.vertex[2])]};
-  return distance(x, goal, near, f.n);
-}
+/// Answers points one after the other.
+class HullContainment::Worker {
+ public:
+  explicit Worker(const Content& content) : content_(content) {}
 
-Location HullContainment::Content::locate(const dvec3& point, std::optional<HullDistance>& distance,
-                                          long& searched) const {
-  const dvec3 x = to_frame(point);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (x[axis] < box.lower[axis] || x[axis] > box.upper[axis]) return Location::outside;
+  Location locate(const dvec3& point) {
+    const dvec3 x = content_.to_frame(point);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (x[axis] < content_.box.lower[axis] || x[axis] > content_.box.upper[axis]) {
+        return Location::outside;
+      }
+    }
+    int facet = -1;
+    if (const auto known = content_.by_mesh(x, facet)) return *known;
+    const DistanceRange range = search(x, facet, {0, content_.on_tolerance});
+    return SignedDistance{range.value, range.lower, range.upper}.location(content_.on_tolerance);
   }
-  int facet = -1;
-  if (const auto known = by_mesh(x, facet)) return *known;
-  ++searched;
-  if (!distance) distance.emplace(scene, start);
-  const DistanceRange range = search(*distance, x, facet, {0, on_tolerance});
-  return SignedDistance{range.value, range.lower, range.upper}.location(on_tolerance);
-}
 
-SignedDistance HullContainment::Content::measure(const dvec3& point, HullDistance& distance) const {
-  const dvec3 x = to_frame(point);
-  const double scale = scene.frame().scale;
-  const double size = glm::dot(x, unit(x));
-  if (size > far_away)
-    return {size / scale, size * (1 - 1e-15) / scale, size * (1 + 1e-15) / scale};
-  int facet = -1;
-  by_mesh(x, facet);
-  const DistanceRange range = search(distance, x, facet, {accuracy, -1});
-  return {range.value / scale, range.lower / scale, range.upper / scale};
-}
+  SignedDistance distance(const dvec3& point) {
+    const dvec3 x = content_.to_frame(point);
+    const double scale = content_.scene.frame().scale;
+    const double size = glm::dot(x, unit(x));
+    if (size > far_away) {  // the hull is a point, as far as doubles can tell
+      return {size / scale, size * (1 - far_share) / scale, size * (1 + far_share) / scale};
+    }
+    int facet = -1;
+    content_.by_mesh(x, facet);
+    const DistanceRange range = search(x, facet, {content_.accuracy, -1});
+    return {range.value / scale, range.lower / scale, range.upper / scale};
+  }
+
+  ContainmentCounts counts() const { return {0, searched_, search_ ? search_->queries() : 0}; }
+
+ private:
+  DistanceRange search(const dvec3& x, int facet, const DistanceGoal& goal) {
+    ++searched_;
+    if (!search_) search_.emplace(content_.scene, content_.start);
+    if (facet < 0) return (*search_)(x, goal, {}, dvec3(0.0));
+    const MeshFacet& f = content_.facets[std::size_t(facet)];
+    const std::array<Sample, 3> near = {content_.samples[std::size_t(f.vertex[0])],
+                                        content_.samples[std::size_t(f.vertex[1])],
+                                        content_.samples[std::size_t(f.vertex[2])]};
+    return (*search_)(x, goal, near, f.n);
+  }
+
+  const Content& content_;
+  std::optional<HullDistance> search_;
+  long searched_ = 0;
+};
 
 HullContainment::HullContainment(const Scene& scene, const HullContainmentOptions& options)
     : content_(std::make_unique<const Content>(scene, options)) {}
 HullContainment::~HullContainment() = default;
 HullContainment::HullContainment(HullContainment&&) noexcept = default;
 
-Location HullContainment::locate(const dvec3& x) const {
-  std::optional<HullDistance> distance;
-  long searched = 0;
-  return content_->locate(x, distance, searched);
-}
+Location HullContainment::locate(const dvec3& x) const { return Worker(*content_).locate(x); }
 
 SignedDistance HullContainment::distance(const dvec3& x) const {
-  HullDistance distance(content_->scene, content_->start);
-  return content_->measure(x, distance);
+  return Worker(*content_).distance(x);
 }
 
 std::vector<Location> HullContainment::locate(std::span<const dvec3> points,
                                               ContainmentCounts* counts) const {
-  std::vector<Location> locations(points.size());
-  std::vector<ContainmentCounts> ranges((points.size() + grain - 1) / grain);
-  parallel_for(points.size(), grain, content_->options.threads,
-               [&](std::size_t begin, std::size_t end) {
-                 content_->options.progress.check();
-                 std::optional<HullDistance> distance;
-                 ContainmentCounts& own = ranges[begin / grain];
-                 own.points = long(end - begin);
-                 for (std::size_t i = begin; i < end; ++i) {
-                   locations[i] = content_->locate(points[i], distance, own.searched);
-                 }
-                 if (distance) own.support_queries = distance->queries();
-               });
-  if (counts != nullptr) {
-    for (const ContainmentCounts& own : ranges) *counts += own;
-  }
-  return locations;
+  return answer_points<Location>(
+      points, {grain, content_->options.threads, content_->options.progress}, counts,
+      [&] { return Worker(*content_); },
+      [](Worker& worker, const dvec3& x) { return worker.locate(x); });
 }
 
 std::vector<SignedDistance> HullContainment::distances(std::span<const dvec3> points,
                                                        ContainmentCounts* counts) const {
-  std::vector<SignedDistance> distances(points.size());
-  std::vector<ContainmentCounts> ranges((points.size() + distance_grain - 1) / distance_grain);
-  parallel_for(points.size(), distance_grain, content_->options.threads,
-               [&](std::size_t begin, std::size_t end) {
-                 HullDistance distance(content_->scene, content_->start);
-                 ContainmentCounts& own = ranges[begin / distance_grain];
-                 own.points = own.searched = long(end - begin);
-                 for (std::size_t i = begin; i < end; ++i) {
-                   content_->options.progress.check();
-                   distances[i] = content_->measure(points[i], distance);
-                 }
-                 own.support_queries = distance.queries();
-               });
-  if (counts != nullptr) {
-    for (const ContainmentCounts& own : ranges) *counts += own;
-  }
-  return distances;
+  return answer_points<SignedDistance>(
+      points, {distance_grain, content_->options.threads, content_->options.progress}, counts,
+      [&] { return Worker(*content_); },
+      [](Worker& worker, const dvec3& x) { return worker.distance(x); });
 }
 
 double HullContainment::on_tolerance() const {

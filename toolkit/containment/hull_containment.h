@@ -24,24 +24,6 @@ struct HullContainmentOptions {
   Progress progress;
 };
 
-/// Distances are sought until they are certified to this share of the diagonal.
-inline constexpr double default_distance_accuracy = 1e-12;
-
-/// What questions took.
-struct ContainmentCounts {
-  long points = 0;
-  /// Points that the exact search had to decide.
-  long searched = 0;
-  long support_queries = 0;
-
-  ContainmentCounts& operator+=(const ContainmentCounts& other) {
-    points += other.points;
-    searched += other.searched;
-    support_queries += other.support_queries;
-    return *this;
-  }
-};
-
 /// Tells whether points lie inside, on or outside a scene's convex hull, and how far from its
 /// boundary. The hull is the exact one, not a mesh of it.
 ///
@@ -70,8 +52,8 @@ class HullContainment {
   SignedDistance distance(const dvec3& x) const;
   /// @}
 
-  /// @name Many points, on the threads of the options @throws InvalidInput as above, Cancelled
-  /// `counts`, where given, is added to.
+  /// @name Many points, in their order, on the threads of the options
+  /// What it took is added to `counts`, where given. @throws InvalidInput as above, Cancelled
   /// @{
   std::vector<Location> locate(std::span<const dvec3> points,
                                ContainmentCounts* counts = nullptr) const;
@@ -86,6 +68,7 @@ class HullContainment {
 
  private:
   struct Content;
+  class Worker;
   std::unique_ptr<const Content> content_;
 };
 

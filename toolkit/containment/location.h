@@ -30,4 +30,22 @@ struct SignedDistance {
 /// Points within this share of the diagonal of a boundary are on it unless told otherwise.
 inline constexpr double default_on_tolerance = 1e-13;
 
+/// Distances are sought until they are certified to this share of the diagonal.
+inline constexpr double default_distance_accuracy = 1e-12;
+
+/// What questions took.
+struct ContainmentCounts {
+  long points = 0;
+  /// Points that the exact search had to decide.
+  long searched = 0;
+  long support_queries = 0;
+
+  ContainmentCounts& operator+=(const ContainmentCounts& other) {
+    points += other.points;
+    searched += other.searched;
+    support_queries += other.support_queries;
+    return *this;
+  }
+};
+
 }  // namespace taut
