@@ -73,7 +73,8 @@ std::string off_text(const taut::PolygonMesh& mesh) {
   return text.str();
 }
 
-const std::vector<std::string> commands = {"hull", "info", "support", "verify", "plugins"};
+const std::vector<std::string> commands = {"hull",     "info",   "support",
+                                           "contains", "verify", "plugins"};
 
 TEST_F(Cli, HelpBeginsWithExamples) {
   EXPECT_EQ(run("--help").exit_code, 0);

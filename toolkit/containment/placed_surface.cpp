@@ -163,6 +163,15 @@ PlacedSurface placed_surface(const Scene& scene) {
     ++surface.bodies;
   }
   surface.rounding = rounding_unit * (32 + 8 * frame.length_to_frame(reach));
+  std::vector<Box> boxes;
+  for (const PlacedPatch& patch : surface.patches) boxes.push_back(patch.box);
+  surface.patch_tree = BoxTree(boxes);
+  boxes.clear();
+  for (const PlacedTriangle& triangle : surface.triangles) {
+    boxes.emplace_back();
+    for (const dvec3& corner : triangle.corner) boxes.back().include(corner);
+  }
+  surface.triangle_tree = BoxTree(boxes);
   return surface;
 }
 

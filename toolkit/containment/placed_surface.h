@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "taut/bounds/scene.h"
+#include "taut/bounds/scene_content.h"
 #include "taut/containment/triangle_rays.h"
 #include "taut/surface/bezier.h"
 
@@ -27,6 +27,8 @@ struct PlacedSurface {
   std::vector<PlacedPatch> patches;
   std::vector<PlacedTriangle> triangles;
   int bodies = 0;
+  /// Over the boxes of either.
+  BoxTree patch_tree, triangle_tree;
   /// How far patches that are joined may be apart, and what rounding may do to points.
   double crack = 0;
   double rounding = 0;

@@ -20,6 +20,9 @@ constexpr double newton_end = 1e-14;
 /// A crossing is inside of its cell if it is farther from the sides than this share of the patch.
 constexpr double least_inset = 1e-12;
 
+/// Rounding of a share of the ray.
+constexpr double share_rounding = 1e-12;
+
 struct Range {
   double lower, upper;
 };
@@ -47,23 +50,52 @@ std::array<Range, 2> slopes(NetShape shape, const double* b) {
   return {u, v};
 }
 
-/// A line through the box, from x on, up to `margin`.
-bool may_meet(const Box& box, const dvec3& x, const dvec3& end, double margin) {
+/// Whether the segment may come nearer to the box than the margin.
+bool may_meet(const dvec3& center, const dvec3& half, const dvec3& x, const dvec3& end,
+              double margin) {
   double from = 0;
   double to = 1;
   for (int axis = 0; axis < 3; ++axis) {
+    const double reach = half[axis] + margin;
     const double d = end[axis] - x[axis];
-    double a = (box.lower[axis] - margin - x[axis]) / d;
-    double b = (box.upper[axis] + margin - x[axis]) / d;
+    const double offset = center[axis] - x[axis];
     if (d == 0) {
-      if (x[axis] < box.lower[axis] - margin || x[axis] > box.upper[axis] + margin) return false;
+      if (std::abs(offset) > reach) return false;
       continue;
     }
-    if (a > b) std::swap(a, b);
-    from = std::max(from, a - 1e-12);
-    to = std::min(to, b + 1e-12);
+    const double a = (offset - reach) / d;
+    const double b = (offset + reach) / d;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
   }
-  return from <= to;
+  return from <= to + share_rounding;
+}
+
+/// Calls visit with the items of all boxes that the segment may meet, until it returns false;
+/// whether it never did.
+template <class Visit>
+bool visit_boxes(const BoxTree& tree, const dvec3& x, const dvec3& end, double margin,
+                 Visit visit) {
+  if (tree.nodes.empty()) return true;
+  std::vector<int> open = {0};
+  while (!open.empty()) {
+    const BoxTree::Node& node = tree.nodes[std::size_t(open.back())];
+    open.pop_back();
+    if (!may_meet(node.center, node.half, x, end, margin)) continue;
+    if (node.count == 0) {
+      open.insert(open.end(), {node.first, node.first + 1});
+      continue;
+    }
+    for (int k = node.first; k < node.first + node.count; ++k) {
+      const auto i = std::size_t(k);
+      const dvec3 center(tree.center[0][i], tree.center[1][i], tree.center[2][i]);
+      const dvec3 half(tree.half[0][i], tree.half[1][i], tree.half[2][i]);
+      if (may_meet(center, half, x, end, margin) && !visit(std::size_t(tree.items[i]))) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -212,11 +244,10 @@ bool RayCrossings::count(const dvec3& x, const dvec3& direction) {
   across_ = tangent_frame(direction);
   odd_.assign(std::size_t(surface_.bodies), 0);
   const double margin = surface_.rounding + surface_.crack;
-  for (const PlacedPatch& patch : surface_.patches) {
-    if (may_meet(patch.box, x_, end_, margin) && !cross(patch)) return false;
-  }
-  return std::all_of(surface_.triangles.begin(), surface_.triangles.end(),
-                     [&](const PlacedTriangle& t) { return cross(t); });
+  const auto cross_patch = [&](std::size_t k) { return cross(surface_.patches[k]); };
+  const auto cross_triangle = [&](std::size_t k) { return cross(surface_.triangles[k]); };
+  return visit_boxes(surface_.patch_tree, x_, end_, margin, cross_patch) &&
+         visit_boxes(surface_.triangle_tree, x_, end_, margin, cross_triangle);
 }
 
 }  // namespace taut
