@@ -17,6 +17,9 @@ constexpr double no_slope = 1e-9;
 /// A determinant of B smaller than this share of its diagonal's product is that of a flat contact.
 constexpr double flat = 1e-9;
 
+/// What is added to curvatures, as a share of them, so that equations can be solved.
+constexpr double least_curvature = 1e-10;
+
 /// Longest step, as the tangent of its angle; Newton's method is local.
 constexpr double longest_step = 0.5;
 /// Contacts whose predictions differ by less than this share of what their points do are one.
@@ -172,8 +175,10 @@ std::optional<dvec3> projection_step(std::span<const CurvedContact> contacts, co
       m[row][1] = m[1][row] = d.y;
       m[row][4] = first_value - c.value_at(n);
     }
-    m[0][0] += height;
-    m[1][1] += height;
+    // Where all directions along a line are as good (on the axis of a cylinder), any will do.
+    const double regular = least_curvature * (std::abs(m[0][0]) + std::abs(m[1][1]));
+    m[0][0] += height + regular;
+    m[1][1] += height + regular;
     const dvec2 r = flat_part(x - first);
     m[0][4] = r.x;
     m[1][4] = r.y;

@@ -41,7 +41,7 @@ struct HullContainmentOptions {
 class HullContainment {
  public:
   /// The scene must outlive it. @throws InvalidInput if a tolerance is no number or mesh_relative
-  /// is not positive, BackendError if Embree fails, Cancelled
+  /// is not positive, BackendError or LimitExceeded if Embree fails, Cancelled
   explicit HullContainment(const Scene& scene, const HullContainmentOptions& options = {});
   ~HullContainment();
   HullContainment(HullContainment&&) noexcept;

@@ -24,8 +24,20 @@ constexpr int turn_limit = 4;
 /// Directions after which a point that none of them separates is left to the other search.
 constexpr int failure_limit = 12;
 
+/// Steps without any gain after which more are in vain.
+constexpr int idle_limit = 3;
+
 /// Contacts this near to each other, in the scene's frame, are one.
 constexpr double same_point = 1e-13;
+
+/// Nearer to a vertex of the polytope, in the scene's frame, points make nothing but slivers.
+constexpr double sliver = 1e-12;
+
+/// Farther outside than that, in the scene's frame, projections are the better search.
+constexpr double next_to_boundary = 1e-6;
+
+/// Newton steps that a distance is polished by.
+constexpr int polish_limit = 3;
 
 /// A step by less than this angle changes x . n - h(n) by less than its rounding.
 constexpr double converged_angle = 1e-8;
@@ -157,6 +169,7 @@ void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
   bool newton = true;
   bool stalled = false;  // Newton's method has given all it can
   int failures = 0;
+  int idle = 0;
   for (int step = 0; step < projection_limit; ++step) {
     if (nearest.contains_origin) return;
     const double length = glm::length(nearest.point);
@@ -173,7 +186,9 @@ void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
     stalled = newton && !turned && glm::length(nearest.point) > 0.5 * length;
     // Next to the boundary but not outside: the other search has to prove it.
     if (range_.value <= 0 && (stalled || ++failures > failure_limit)) return;
-    if (!newton && !better && glm::length(nearest.point) >= length) return;
+    const bool closer = glm::length(nearest.point) < length;
+    idle = newton || better || closer ? 0 : idle + 1;
+    if (idle > idle_limit) return;
     newton = !newton || better || !turned;
     if (better || !turned) n = next;
   }
@@ -229,6 +244,11 @@ bool HullDistance::insert(const Sample& sample, const dvec3& point, int facet) {
 /// distance asks for: a triangle of them is a facet between x and the boundary.
 void HullDistance::insert_seeds() {
   const auto insert_anywhere = [&](const Sample& sample, const dvec3& point) {
+    const auto& points = polytope_.hull.points();
+    const bool repeated = std::any_of(points.begin(), points.end(), [&](const dvec3& other) {
+      return glm::distance(other, point) < sliver;
+    });
+    if (repeated) return;
     const auto& facets = polytope_.hull.facets();
     for (std::size_t f = 0; f < facets.size(); ++f) {
       if (!facets[f].alive || facets[f].side.side(point) != Sign::positive) continue;
@@ -286,7 +306,11 @@ void HullDistance::expand() {
     range_.upper = std::min(range_.upper, upper + rounding_ + point_rounding);
     if (done() || own.n == dvec3(0.0)) return;
     const Atom found = ask(own.n, facet_samples_[nearest].contact);
-    if (range_.lower > 0) return;
+    if (range_.lower > 0 && range_.upper > next_to_boundary) return;
+    const bool repeated = std::any_of(facet.vertex.begin(), facet.vertex.end(), [&](int v) {
+      return glm::distance(polytope_.hull.point(v), found.curved.point) < sliver;
+    });
+    if (repeated) return;
     if (!insert({own.n, found.contact}, found.curved.point, top.facet)) return;
   }
 }
@@ -298,11 +322,12 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
   rounding_ = 8 * rounding_unit * (glm::length(x) + 2);
   range_ = {-infinity, -infinity, infinity};
   best_contact_ = {};
+  facet_samples_ = {};
   dvec3 start = n == dvec3(0.0) ? unit(x) : n;
   if (start == dvec3(0.0)) start = {0, 0, 1};
   project(near, start);
   const bool solid = start_.hull.dimension() == 3;
-  for (int turn = 0; turn < turn_limit && !done() && solid && !(range_.lower > 0); ++turn) {
+  for (int turn = 0; turn < turn_limit && solid && !done(); ++turn) {
     expand();
     if (done() || !(range_.lower > 0)) break;
     project(facet_samples_, best_n_);
@@ -311,15 +336,25 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
   return range_;
 }
 
-/// Inside, the best of the directions tried is as good as the bounds asked for; on a smooth surface
-/// Newton's method makes it exact.
+/// Inside, the best of the directions tried is as good as the bounds asked for; on smooth pieces
+/// Newton's method from the contacts of the last facet makes it exact.
 void HullDistance::polish() {
-  for (int step = 0; step < 2 && best_contact_.instance >= 0; ++step) {
-    const Atom a = atom({best_n_, best_contact_});
-    if (!a.has_hessian) return;
-    const auto next = projection_step(std::array{a.curved}, x_, best_n_);
+  if (best_contact_.instance < 0) return;
+  for (int step = 0; step < polish_limit; ++step) {
+    std::vector<CurvedContact> contacts;
+    const auto take = [&](const Atom& a) {
+      if (a.has_hessian) contacts.push_back(a.curved);
+    };
+    take(atom({best_n_, best_contact_}));
+    for (const Sample& s : facet_samples_) {
+      if (s.contact.instance >= 0) take(moved(atom(s), best_n_));
+    }
+    if (contacts.empty()) return;
+    const auto next = projection_step(contacts, x_, best_n_);
+    const double before = range_.value;
     if (!next) return;
     ask(*next, best_contact_);
+    if (!(range_.value > before)) return;
   }
 }
 

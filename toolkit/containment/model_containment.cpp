@@ -129,9 +129,11 @@ class ModelContainment::Worker {
     }
     ++searched_;
     const DistanceRange range = distance(x, {0, content_.on_tolerance}, -1, near);
-    if (!(range.lower > content_.on_tolerance)) return Location::on;
-    const auto inside = parity(x);
-    return inside ? located(any(*inside)) : Location::on;
+    if (range.lower > content_.on_tolerance) {
+      const auto inside = parity(x, -1);
+      return inside ? located(any(*inside)) : Location::on;
+    }
+    return is_inside_another(x) ? Location::inside : Location::on;
   }
 
   SignedDistance measure(const dvec3& point) {
@@ -208,12 +210,42 @@ class ModelContainment::Worker {
     return std::nullopt;
   }
 
-  std::optional<std::vector<char>> parity(const dvec3& x) {
+  /// The same of one body, or of all (-1), by rays through the surface itself.
+  std::optional<std::vector<char>> parity(const dvec3& x, int body) {
     Directions directions(x);
     for (int k = 0; k < ray_limit; ++k) {
-      if (crossings_.count(x, directions.next())) return crossings_.odd();
+      if (crossings_.count(x, directions.next(), body)) return crossings_.odd();
     }
     return std::nullopt;
+  }
+
+  /// Whether x, which lies on a body's surface, is inside another body.
+  bool is_inside_another(const dvec3& x) {
+    for (int body = 0; body < content_.surface.bodies && content_.surface.bodies > 1; ++body) {
+      const DistanceRange own = distance(x, {0, content_.on_tolerance}, body, infinity);
+      if (!(own.lower > content_.on_tolerance)) continue;
+      const auto inside = parity(x, body);
+      if (inside && any(*inside)) return true;
+    }
+    return false;
+  }
+
+  /// Which bodies x is in; none where it is on one, as far as rounding tells, and in no other.
+  std::optional<std::vector<char>> parity_by_bodies(const dvec3& x) {
+    const double doubt = 4 * (content_.surface.rounding + content_.surface.crack);
+    std::vector<char> inside(std::size_t(content_.surface.bodies), 0);
+    bool known = true;
+    for (int body = 0; body < content_.surface.bodies; ++body) {
+      std::optional<std::vector<char>> own;
+      if (distance(x, {0, doubt}, body, infinity).lower > doubt) own = parity(x, body);
+      if (own) {
+        inside[std::size_t(body)] = (*own)[std::size_t(body)];
+      } else {
+        known = false;
+      }
+    }
+    if (!known && !any(inside)) return std::nullopt;
+    return inside;
   }
 
   SignedDistance measure_in_frame(const dvec3& x) {
@@ -231,8 +263,7 @@ class ModelContainment::Worker {
       return {all.value, all.lower, all.upper};
     }
     if (near >= content_.near) inside = parity_by_embree(x);
-    const double doubt = 4 * (content_.surface.rounding + content_.surface.crack);
-    if (!inside && all.value > doubt) inside = parity(x);
+    if (!inside) inside = parity_by_bodies(x);
     if (!inside) return {0, -all.upper, all.upper};  // on the surface, for all that is known
     if (!any(*inside)) return {all.value, all.lower, all.upper};
     const bool alone = content_.surface.bodies == 1;

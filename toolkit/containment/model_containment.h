@@ -43,7 +43,7 @@ class ModelContainment {
  public:
   /// The scene must outlive it. @throws InvalidInput with the reason if the model is not closed
   /// (every side of a patch or polygon must be joined with exactly one other), has polygons that
-  /// are not planar, or an option is no number; BackendError if Embree fails
+  /// are not planar, or an option is no number; BackendError or LimitExceeded if Embree fails
   explicit ModelContainment(const Scene& scene, const ModelContainmentOptions& options = {});
   ~ModelContainment();
   ModelContainment(ModelContainment&&) noexcept;

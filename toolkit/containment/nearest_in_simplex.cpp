@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "taut/core/tolerances.h"
+
 namespace taut {
 namespace {
 
@@ -28,7 +30,9 @@ class Search {
   void offer(const dvec3& point, const std::array<int, 4>& carrier,
              const std::array<double, 4>& weight, int size) {
     const double norm2 = glm::dot(point, point);
-    if (!(norm2 < norm2_)) return;
+    // Of a triangle and its side the triangle, where rounding is all that makes a difference: its
+    // normal tells the direction, which the side only bounds.
+    if (!(norm2 < (size > best_.size ? 1 + 16 * rounding_unit : 1) * norm2_)) return;
     norm2_ = norm2;
     best_ = {point, carrier, weight, size, false};
   }

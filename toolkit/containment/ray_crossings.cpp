@@ -237,15 +237,18 @@ bool RayCrossings::cross(const PlacedTriangle& triangle) {
   return true;
 }
 
-bool RayCrossings::count(const dvec3& x, const dvec3& direction) {
+bool RayCrossings::count(const dvec3& x, const dvec3& direction, int body) {
   x_ = x;
   along_ = direction;
   end_ = x + 16.0 * direction;
   across_ = tangent_frame(direction);
   odd_.assign(std::size_t(surface_.bodies), 0);
   const double margin = surface_.rounding + surface_.crack;
-  const auto cross_patch = [&](std::size_t k) { return cross(surface_.patches[k]); };
-  const auto cross_triangle = [&](std::size_t k) { return cross(surface_.triangles[k]); };
+  const auto cross_one = [&](const auto& piece) {
+    return (body >= 0 && piece.body != body) || cross(piece);
+  };
+  const auto cross_patch = [&](std::size_t k) { return cross_one(surface_.patches[k]); };
+  const auto cross_triangle = [&](std::size_t k) { return cross_one(surface_.triangles[k]); };
   return visit_boxes(surface_.patch_tree, x_, end_, margin, cross_patch) &&
          visit_boxes(surface_.triangle_tree, x_, end_, margin, cross_triangle);
 }

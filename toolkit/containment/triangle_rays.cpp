@@ -45,8 +45,6 @@ const char* name_of(RTCError error) {
       return "invalid argument";
     case RTC_ERROR_INVALID_OPERATION:
       return "invalid operation";
-    case RTC_ERROR_OUT_OF_MEMORY:
-      return "out of memory";
     case RTC_ERROR_UNSUPPORTED_CPU:
       return "unsupported processor";
     case RTC_ERROR_CANCELLED:
@@ -59,6 +57,7 @@ const char* name_of(RTCError error) {
 /// @throws BackendError if Embree has failed since the last look
 void check(RTCDevice device, const char* step) {
   const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw LimitExceeded("Embree: out of memory");
   if (error != RTC_ERROR_NONE) {
     throw BackendError(std::string("Embree: ") + step + ": " + name_of(error));
   }
