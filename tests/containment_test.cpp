@@ -210,7 +210,7 @@ TEST(HullContainment, SizeAndPlaceDoNotMatter) {
     for (int k = 0; k < 100; ++k) {
       const dvec3 x = 3.0 * random_point(random);
       const double d = containment.distance(size * (turn * x) + shift).value;
-      EXPECT_NEAR(d / size, double(hull.distance(rvec3(x))), 5e-12) << size;
+      EXPECT_NEAR(d / size, double(hull.distance(rvec3(x))), 1e-11) << size;
     }
   }
 }

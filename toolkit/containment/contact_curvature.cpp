@@ -24,7 +24,7 @@ constexpr double least_curvature = 1e-10;
 constexpr double longest_step = 0.5;
 /// Contacts whose predictions differ by less than this share of what their points do are one.
 constexpr double same_contact = 0.25;
-constexpr double same_point = 1e-10;
+constexpr double same_point = 1e-7;
 /// Weights may be rounded below zero.
 constexpr double least_weight = -1e-6;
 

@@ -106,7 +106,7 @@ dvec3 HullDistance::next_direction(const NearestInSimplex& nearest, const dvec3&
     }
     newton = false;
   }
-  return -unit(nearest.point);
+  return -nearest.direction;
 }
 
 /// The contact of the same element that supports in another direction, as far as the element goes.
@@ -174,7 +174,7 @@ void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
     if (nearest.contains_origin) return;
     const double length = glm::length(nearest.point);
     range_.upper = std::min(range_.upper, length + rounding_ + point_rounding);
-    if (done() || length == 0) return;
+    if (done() || nearest.direction == dvec3(0.0)) return;
     newton = newton && !stalled;
     const dvec3 next = next_direction(nearest, n, newton);
     const double before = range_.value;

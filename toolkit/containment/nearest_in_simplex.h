@@ -9,7 +9,10 @@ namespace taut {
 
 /// The point of least norm in the convex hull of up to four points.
 struct NearestInSimplex {
+  /// In the convex hull but for four rounding units of the farthest point's distance.
   dvec3 point = dvec3(0.0);
+  /// Unit, towards it; across the triangle where it lies in one, also if the point is the origin.
+  dvec3 direction = dvec3(0.0);
   /// The points that carry it, by number, with their positive weights of sum one.
   std::array<int, 4> carrier = {-1, -1, -1, -1};
   std::array<double, 4> weight = {};
