@@ -17,8 +17,9 @@ constexpr double no_slope = 1e-9;
 /// A determinant of B smaller than this share of its diagonal's product is that of a flat contact.
 constexpr double flat = 1e-9;
 
-/// What is added to curvatures, as a share of them, so that equations can be solved.
-constexpr double least_curvature = 1e-10;
+/// What is added to curvatures, as a share of them, so that equations can be solved; of each step
+/// it leaves as much for the next one.
+constexpr double least_curvature = 1e-6;
 
 /// Longest step, as the tangent of its angle; Newton's method is local.
 constexpr double longest_step = 0.5;

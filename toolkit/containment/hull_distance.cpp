@@ -305,7 +305,9 @@ void HullDistance::expand() {
         top.height <= 0 ? top.height : glm::length(nearest_in_simplex(offsets).point);
     range_.upper = std::min(range_.upper, upper + rounding_ + point_rounding);
     if (done() || own.n == dvec3(0.0)) return;
+    const double before = range_.value;
     const Atom found = ask(own.n, facet_samples_[nearest].contact);
+    if (range_.value > before) best_samples_ = facet_samples_;
     if (range_.lower > 0 && range_.upper > next_to_boundary) return;
     const bool repeated = std::any_of(facet.vertex.begin(), facet.vertex.end(), [&](int v) {
       return glm::distance(polytope_.hull.point(v), found.curved.point) < sliver;
@@ -322,7 +324,7 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
   rounding_ = 8 * rounding_unit * (glm::length(x) + 2);
   range_ = {-infinity, -infinity, infinity};
   best_contact_ = {};
-  facet_samples_ = {};
+  best_samples_ = {};
   dvec3 start = n == dvec3(0.0) ? unit(x) : n;
   if (start == dvec3(0.0)) start = {0, 0, 1};
   project(near, start);
@@ -337,7 +339,7 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
 }
 
 /// Inside, the best of the directions tried is as good as the bounds asked for; on smooth pieces
-/// Newton's method from the contacts of the last facet makes it exact.
+/// Newton's method from the contacts of its facet makes it exact.
 void HullDistance::polish() {
   if (best_contact_.instance < 0) return;
   for (int step = 0; step < polish_limit; ++step) {
@@ -346,7 +348,7 @@ void HullDistance::polish() {
       if (a.has_hessian) contacts.push_back(a.curved);
     };
     take(atom({best_n_, best_contact_}));
-    for (const Sample& s : facet_samples_) {
+    for (const Sample& s : best_samples_) {
       if (s.contact.instance >= 0) take(moved(atom(s), best_n_));
     }
     if (contacts.empty()) return;

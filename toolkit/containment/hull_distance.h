@@ -111,6 +111,7 @@ class HullDistance {
   std::vector<int> stamps_;
   std::vector<Nearest> heap_;
   std::array<Sample, 3> facet_samples_;  ///< of the facet that was looked at last
+  std::array<Sample, 3> best_samples_;   ///< of the one whose normal is the best direction
 };
 
 }  // namespace taut

@@ -45,9 +45,9 @@ class Search {
     offer(point, unit(point), {a, b, -1, -1}, {1 - t, t, 0, 0}, 2);
   }
 
-  /// The foot of the origin on the triangle's plane, where it lies in the triangle: by least squares
-  /// in the two shorter sides, whose angle is the best to be had, and once more for what rounding has
-  /// left.
+  /// The foot of the origin on the triangle's plane, where it lies in the triangle: by least
+  /// squares in the two shorter sides, whose angle is the best to be had, and once more for what
+  /// rounding has left.
   void offer_triangle(int a, int b, int c) {
     const std::array<int, 3> corner = {a, b, c};
     const auto side = [&](std::size_t from, std::size_t to) {

@@ -19,9 +19,9 @@ class RayCrossings {
  public:
   explicit RayCrossings(const PlacedSurface& surface) : surface_(surface) {}
 
-  /// Whether the ray from x crosses the surface of each body, or of one alone, an odd number of times,
-  /// in odd(). False where there is a doubt; then another direction is to be tried. @pre |direction| = 1
-  /// within rounding, x within a few sizes of the frame and not on the surface
+  /// Whether the ray from x crosses the surface of each body, or of one alone, an odd number of
+  /// times, in odd(). False where there is a doubt; then another direction is to be tried. @pre
+  /// |direction| = 1 within rounding, x within a few sizes of the frame and not on the surface
   bool count(const dvec3& x, const dvec3& direction, int body = -1);
   const std::vector<char>& odd() const { return odd_; }
 

@@ -19,7 +19,8 @@ using Triangle = std::array<int, 3>;
 /// Immutable, safe to query concurrently.
 class TriangleRays {
  public:
-  /// @pre triangles not empty, coordinates finite @throws BackendError or LimitExceeded if Embree fails
+  /// @pre triangles not empty, coordinates finite @throws BackendError or LimitExceeded if Embree
+  /// fails
   TriangleRays(std::span<const dvec3> points, std::span<const Triangle> triangles);
   ~TriangleRays();
   TriangleRays(TriangleRays&&) noexcept;
