@@ -17,10 +17,6 @@ constexpr double no_slope = 1e-9;
 /// A determinant of B smaller than this share of its diagonal's product is that of a flat contact.
 constexpr double flat = 1e-9;
 
-/// What is added to curvatures, as a share of them, so that equations can be solved; of each step
-/// it leaves as much for the next one.
-constexpr double least_curvature = 1e-6;
-
 /// Longest step, as the tangent of its angle; Newton's method is local.
 constexpr double longest_step = 0.5;
 /// Contacts whose predictions differ by less than this share of what their points do are one.
@@ -145,7 +141,7 @@ std::optional<dmat3> support_hessian(const Scene& scene, const Contact& contact,
 }
 
 std::optional<dvec3> projection_step(std::span<const CurvedContact> contacts, const dvec3& x,
-                                     const dvec3& n) {
+                                     const dvec3& n, double regular) {
   std::vector<CurvedContact> active = distinct(contacts, n);
   const auto tangents = tangent_frame(n);
   const auto flat_part = [&](const dvec3& v) {
@@ -176,27 +172,26 @@ std::optional<dvec3> projection_step(std::span<const CurvedContact> contacts, co
       m[row][1] = m[1][row] = d.y;
       m[row][4] = first_value - c.value_at(n);
     }
-    // Where all directions along a line are as good (on the axis of a cylinder), any will do.
-    const double regular = least_curvature * (std::abs(m[0][0]) + std::abs(m[1][1]));
-    m[0][0] += height + regular;
-    m[1][1] += height + regular;
+    const double least = regular * (std::abs(m[0][0]) + std::abs(m[1][1]));
+    m[0][0] += height + least;
+    m[1][1] += height + least;
     const dvec2 r = flat_part(x - first);
     m[0][4] = r.x;
     m[1][4] = r.y;
     if (!solve<4>(m, count + 1)) return std::nullopt;
 
     double first_weight = 1;
-    double least = least_weight;
+    double lowest = least_weight;
     int out = -1;
     for (int i = 1; i < count; ++i) {
       const double weight = m[std::size_t(i + 1)][4];
       first_weight -= weight;
-      if (weight < least) {
-        least = weight;
+      if (weight < lowest) {
+        lowest = weight;
         out = i;
       }
     }
-    if (count > 1 && first_weight < least) out = 0;
+    if (count > 1 && first_weight < lowest) out = 0;
     if (out >= 0) {
       active.erase(active.begin() + out);
       continue;

@@ -36,8 +36,11 @@ std::optional<dmat3> support_hessian(const Scene& scene, const Contact& contact,
 /// which for one contact is the normal through x, for two the ruling and for three the plane of a
 /// facet nearest to it. Contacts that predict the same point are one; those whose weight becomes
 /// negative are left out. None where the step leads nowhere near.
+///
+/// `regular` is added to curvatures, as a share of them, for where all directions along a line are
+/// as good (on the axis of a cylinder); of each step it leaves as much for the next one.
 /// @pre one to four contacts
 std::optional<dvec3> projection_step(std::span<const CurvedContact> contacts, const dvec3& x,
-                                     const dvec3& n);
+                                     const dvec3& n, double regular = 1e-6);
 
 }  // namespace taut

@@ -20,9 +20,6 @@ namespace {
 /// a finer one more to copy for each point.
 constexpr double start_relative = 1e-2;
 
-/// Its points are farther from each other than this, in the scene's frame.
-constexpr double same_start_point = 1e-7;
-
 /// Facets whose tetrahedron with the middle is so thin that weights of points in it would be
 /// rounded by more prove nothing.
 constexpr double worst_weight_rounding = 1e-3;
@@ -42,24 +39,6 @@ struct MeshFacet {
   dmat3 weights;        ///< of the corners in x - middle
   double least_weight;  ///< from which on they are positive in spite of rounding
 };
-
-/// The polytope of samples, without those that repeat another but for rounding: slivers between
-/// them would bound nothing.
-SupportPolytope support_polytope(const Scene& scene, const std::vector<Sample>& samples) {
-  SupportPolytope polytope{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}};
-  std::vector<dvec3> points;
-  for (const Sample& s : samples) {
-    const dvec3 x = scene.content().frame_point(s.contact);
-    const bool repeated = std::any_of(points.begin(), points.end(), [&](const dvec3& other) {
-      return glm::distance(other, x) < same_start_point;
-    });
-    if (repeated) continue;
-    points.push_back(x);
-    polytope.samples.push_back(s);
-  }
-  polytope.hull.add(points);
-  return polytope;
-}
 
 }  // namespace
 
@@ -97,7 +76,7 @@ HullContainment::Content::Content(const Scene& its_scene, const HullContainmentO
   };
   on_tolerance = in_frame(options.on_tolerance, default_on_tolerance);
   accuracy = in_frame(options.accuracy, default_distance_accuracy);
-  const double margin = on_tolerance + 64 * rounding_unit;
+  const double margin = on_tolerance + 4 * contact_rounding(scene);
   box = {scene.frame().to_frame(scene.box().lower) - margin,
          scene.frame().to_frame(scene.box().upper) + margin};
   make_mesh();
@@ -211,7 +190,7 @@ std::optional<Location> HullContainment::Content::by_mesh(const dvec3& x, int& f
   const double distance = glm::length(from_middle);
   if (!(distance < far_away)) return Location::outside;
   const double rounding = 16 * rounding_unit * (2 + distance);
-  const double margin = on_tolerance + rounding;
+  const double margin = on_tolerance + rounding + contact_rounding(scene);
   if (distance < inner_radius - margin) return Location::inside;
   if (distance == 0) return std::nullopt;
   facet = rays->first_hit(middle, from_middle / distance);

@@ -30,6 +30,9 @@ constexpr int idle_limit = 3;
 /// Contacts this near to each other, in the scene's frame, are one.
 constexpr double same_point = 1e-13;
 
+/// Points of the polytope from which searches start are farther from each other than this.
+constexpr double same_start_point = 1e-7;
+
 /// Nearer to a vertex of the polytope, in the scene's frame, points make nothing but slivers.
 constexpr double sliver = 1e-12;
 
@@ -48,13 +51,45 @@ constexpr double near_share = 0.05;
 /// A gap that no query can close.
 constexpr double least_gap = 2 * support_slack;
 
-/// Rounding of points in the scene's frame, where coordinates are at most about two.
-constexpr double point_rounding = 16 * rounding_unit;
-
 }  // namespace
 
+SupportPolytope support_polytope(const Scene& scene, const std::vector<Sample>& samples) {
+  SupportPolytope polytope{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}};
+  std::vector<dvec3> points;
+  dvec3 sum(0.0);
+  for (const Sample& s : samples) {
+    const dvec3 x = scene.content().frame_point(s.contact);
+    const bool repeated = std::any_of(points.begin(), points.end(), [&](const dvec3& other) {
+      return glm::distance(other, x) < same_start_point;
+    });
+    if (repeated) continue;
+    points.push_back(x);
+    sum += x;
+    polytope.samples.push_back(s);
+  }
+  polytope.hull.add(points);
+  if (polytope.hull.dimension() < 3) return polytope;
+  polytope.middle = sum / double(points.size());
+  polytope.radius = infinity;
+  for (const PointHull::Facet& facet : polytope.hull.facets()) {
+    if (!facet.alive) continue;
+    const double height = facet.side.determinant(polytope.middle) + facet.side.determinant_bound();
+    polytope.radius = std::min(polytope.radius, -height / glm::length(facet.side.normal()));
+  }
+  polytope.radius = std::max(0.0, polytope.radius);
+  return polytope;
+}
+
 HullDistance::HullDistance(const Scene& scene, const SupportPolytope& start)
-    : scene_(scene), start_(start), query_(scene), polytope_(start) {}
+    : scene_(scene),
+      start_(start),
+      query_(scene),
+      point_rounding_(contact_rounding(scene)),
+      polytope_(start) {}
+
+double contact_rounding(const Scene& scene) {
+  return 16 * rounding_unit + scene.content().rounding;
+}
 
 /// Queries a direction, and takes what it tells of the distance.
 HullDistance::Atom HullDistance::ask(const dvec3& n, const Contact& hint) {
@@ -173,7 +208,7 @@ void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
   for (int step = 0; step < projection_limit; ++step) {
     if (nearest.contains_origin) return;
     const double length = glm::length(nearest.point);
-    range_.upper = std::min(range_.upper, length + rounding_ + point_rounding);
+    range_.upper = std::min(range_.upper, length + rounding_ + point_rounding_);
     if (done() || nearest.direction == dvec3(0.0)) return;
     newton = newton && !stalled;
     const dvec3 next = next_direction(nearest, n, newton);
@@ -270,6 +305,17 @@ void HullDistance::insert_seeds() {
   }
 }
 
+/// What the polytope, above none of whose facets x is higher than above the one with these corners,
+/// bounds the signed distance by. Inside, by that height. Outside, by the distance from the facet,
+/// or since a share h / (h + r) of the way to the middle, about which a ball of radius r lies in
+/// the polytope, leads into it.
+double HullDistance::distance_bound(double height, const std::array<dvec3, 3>& offsets) const {
+  if (height <= 0) return height;
+  const double share = height / (height + start_.radius);
+  return std::min(glm::length(nearest_in_simplex(offsets).point),
+                  share * glm::distance(x_, start_.middle));
+}
+
 /// Replaces the facet nearest to x until it is as near as the boundary.
 void HullDistance::expand() {
   polytope_ = start_;
@@ -300,10 +346,8 @@ void HullDistance::expand() {
         nearest = k;
       }
     }
-    // Where x is not in the polytope its distance from any facet bounds that from the hull.
-    const double upper =
-        top.height <= 0 ? top.height : glm::length(nearest_in_simplex(offsets).point);
-    range_.upper = std::min(range_.upper, upper + rounding_ + point_rounding);
+    const double upper = distance_bound(top.height, offsets);
+    range_.upper = std::min(range_.upper, upper + rounding_ + point_rounding_);
     if (done() || own.n == dvec3(0.0)) return;
     const double before = range_.value;
     const Atom found = ask(own.n, facet_samples_[nearest].contact);
@@ -342,21 +386,23 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
 /// Newton's method from the contacts of its facet makes it exact.
 void HullDistance::polish() {
   if (best_contact_.instance < 0) return;
-  for (int step = 0; step < polish_limit; ++step) {
-    std::vector<CurvedContact> contacts;
-    const auto take = [&](const Atom& a) {
-      if (a.has_hessian) contacts.push_back(a.curved);
-    };
-    take(atom({best_n_, best_contact_}));
-    for (const Sample& s : best_samples_) {
-      if (s.contact.instance >= 0) take(moved(atom(s), best_n_));
+  for (const double regular : {1e-6, 1e-11}) {
+    for (int step = 0; step < polish_limit; ++step) {
+      std::vector<CurvedContact> contacts;
+      const auto take = [&](const Atom& a) {
+        if (a.has_hessian) contacts.push_back(a.curved);
+      };
+      take(atom({best_n_, best_contact_}));
+      for (const Sample& s : best_samples_) {
+        if (s.contact.instance >= 0) take(moved(atom(s), best_n_));
+      }
+      if (contacts.empty()) return;
+      const auto next = projection_step(contacts, x_, best_n_, regular);
+      const double before = range_.value;
+      if (next) ask(*next, best_contact_);
+      if (!(range_.value > before)) break;
     }
-    if (contacts.empty()) return;
-    const auto next = projection_step(contacts, x_, best_n_);
-    const double before = range_.value;
-    if (!next) return;
-    ask(*next, best_contact_);
-    if (!(range_.value > before)) return;
+    if (done()) return;
   }
 }
 

@@ -17,7 +17,14 @@ namespace taut {
 struct SupportPolytope {
   PointHull hull;               ///< of no dimension below 3 where the scene is flat
   std::vector<Sample> samples;  ///< per point of the hull
+  /// A ball in the hull; of radius zero where that is not known.
+  dvec3 middle = dvec3(0.0);
+  double radius = 0;
 };
+
+/// The polytope of samples, without those that repeat another but for rounding: slivers between
+/// them would bound nothing.
+SupportPolytope support_polytope(const Scene& scene, const std::vector<Sample>& samples);
 
 /// What is asked about a point, in the scene's frame. A search ends when it has the distance to
 /// within `accuracy` or, where a tolerance is given, when it knows whether the point is farther
@@ -33,6 +40,10 @@ struct DistanceRange {
   double lower = 0;
   double upper = 0;
 };
+
+/// What rounding may do to a contact's point in the scene's frame, where coordinates are at most
+/// about two, and to its value in any direction.
+double contact_rounding(const Scene& scene);
 
 /// Signed distances of points from the boundary of a scene's convex hull.
 ///
@@ -92,6 +103,7 @@ class HullDistance {
   bool insert(const Sample& sample, const dvec3& point, int facet);
   void take_created();
   FacetPlane plane(int facet) const;
+  double distance_bound(double height, const std::array<dvec3, 3>& offsets) const;
   void push(int facet);
 
   const Scene& scene_;
@@ -101,6 +113,7 @@ class HullDistance {
 
   dvec3 x_ = dvec3(0.0);
   double rounding_ = 0;  ///< of x . n
+  double point_rounding_;
   DistanceGoal goal_;
   DistanceRange range_;
   dvec3 best_n_ = dvec3(0.0);
