@@ -123,6 +123,16 @@ std::vector<CurvedContact> distinct(std::span<const CurvedContact> contacts, con
   return kept;
 }
 
+/// Tangents at n, the first towards a second contact: the step along it is what makes both support,
+/// and rounding of it must not get into the step across, which may be all but free.
+std::array<dvec3, 2> step_frame(const std::vector<CurvedContact>& active, const dvec3& n) {
+  if (active.size() < 2) return tangent_frame(n);
+  const dvec3 between = active[1].point_at(n) - active[0].point_at(n);
+  const dvec3 along = unit(between - glm::dot(between, n) * n);
+  if (along == dvec3(0.0)) return tangent_frame(n);
+  return {along, glm::cross(n, along)};
+}
+
 }  // namespace
 
 std::optional<dmat3> support_hessian(const Scene& scene, const Contact& contact, const dvec3& n) {
@@ -143,12 +153,12 @@ std::optional<dmat3> support_hessian(const Scene& scene, const Contact& contact,
 std::optional<dvec3> projection_step(std::span<const CurvedContact> contacts, const dvec3& x,
                                      const dvec3& n, double regular) {
   std::vector<CurvedContact> active = distinct(contacts, n);
-  const auto tangents = tangent_frame(n);
-  const auto flat_part = [&](const dvec3& v) {
-    return dvec2(glm::dot(v, tangents[0]), glm::dot(v, tangents[1]));
-  };
   while (!active.empty()) {
     const int count = int(active.size());
+    const auto tangents = step_frame(active, n);
+    const auto flat_part = [&](const dvec3& v) {
+      return dvec2(glm::dot(v, tangents[0]), glm::dot(v, tangents[1]));
+    };
     double total = 0;
     for (const CurvedContact& c : active) total += c.weight;
     // (sum l_i H_i + (x . n - h) I) d + sum l'_i D_i = r,   D_i . d = h_0 - h_i.
