@@ -293,8 +293,8 @@ TEST(ModelContainment, PointsAndTolerancesThatAreNoneAreRefused) {
 TEST(ModelContainment, ThreadsDoNotMatter) {
   const Scene scene = make_scene(torus(2, 0.5));
   Random random(5);
-  std::vector<dvec3> points;
-  for (int k = 0; k < 1'000; ++k) points.push_back(3.0 * random_point(random));
+  std::vector<dvec3> points(1'000);
+  for (dvec3& x : points) x = 3.0 * random_point(random);
   const ModelContainment one(scene, {.threads = 1, .progress = {}});
   const ModelContainment many(scene, {.threads = 4, .progress = {}});
   EXPECT_EQ(one.locate(points), many.locate(points));

@@ -128,7 +128,8 @@ std::string why_not_closed(const Model& model) {
     const std::string name = part.name.empty() ? "" : printable(part.name) + ": ";
     if (!part.patches().empty()) surface = true;
     if (!part.polygons().empty()) surface = true;
-    for (std::string reason : {open_patches(part), open_polygons(part), bent_polygon(part)}) {
+    for (const std::string& reason :
+         {open_patches(part), open_polygons(part), bent_polygon(part)}) {
       if (!reason.empty()) return name + reason;
     }
   }

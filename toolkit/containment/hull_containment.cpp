@@ -170,7 +170,8 @@ void HullContainment::Content::take_facets(const SampledPolytope& mesh,
     return radius;
   };
   middle += 0.1 * radius_about(middle) * dvec3(0.3011, 0.5023, 0.7017);
-  const double rounding = 64 * rounding_unit;
+  const double rounding =
+      64 * rounding_unit + 4 * scene.frame().length_to_frame(vertex_rounding(scene));
   inner_radius = radius_about(middle) - rounding;
   if (!(inner_radius > on_tolerance)) return;  // as good as flat: all is left to searches
 

@@ -165,32 +165,34 @@ HullDistance::Atom HullDistance::moved(const Atom& a, const dvec3& n) {
 
 NearestInSimplex HullDistance::nearest_atom_simplex() const {
   std::vector<dvec3> offsets;
+  offsets.reserve(atoms_.size());
   for (const Atom& a : atoms_) offsets.push_back(a.offset);
   return nearest_in_simplex(offsets);
 }
 
 /// Takes a contact that was found in direction n to those that carry the nearest point. After
 /// Newton's step these go with the direction, where that brings them nearer.
-NearestInSimplex HullDistance::take(Atom found, const dvec3& n, const NearestInSimplex& nearest,
-                                    bool newton) {
+NearestInSimplex HullDistance::take(const Atom& found, const dvec3& n,
+                                    const NearestInSimplex& nearest, bool newton) {
   std::vector<Atom> carriers;
+  carriers.reserve(std::size_t(nearest.size) + 1);
   for (int k = 0; k < nearest.size; ++k) {
     carriers.push_back(atoms_[std::size_t(nearest.carrier[std::size_t(k)])]);
   }
   if (newton) {
     atoms_ = {found};
     for (const Atom& c : carriers) {
-      Atom there = moved(c, n);
+      const Atom there = moved(c, n);
       const bool known = std::any_of(atoms_.begin(), atoms_.end(), [&](const Atom& a) {
         return glm::distance(a.curved.point, there.curved.point) < same_point;
       });
-      if (!known) atoms_.push_back(std::move(there));
+      if (!known) atoms_.push_back(there);
     }
     const NearestInSimplex next = nearest_atom_simplex();
     if (next.contains_origin || glm::length(next.point) < glm::length(nearest.point)) return next;
   }
   atoms_ = std::move(carriers);
-  atoms_.push_back(std::move(found));
+  atoms_.push_back(found);
   return nearest_atom_simplex();
 }
 
@@ -213,11 +215,11 @@ void HullDistance::project(std::span<const Sample> near, const dvec3& n0) {
     newton = newton && !stalled;
     const dvec3 next = next_direction(nearest, n, newton);
     const double before = range_.value;
-    Atom found = ask(next, atoms_[std::size_t(nearest.carrier[0])].contact);
+    const Atom found = ask(next, atoms_[std::size_t(nearest.carrier[0])].contact);
     if (done()) return;
     const bool better = range_.value > before;
     const bool turned = glm::length(next - n) > converged_angle;
-    nearest = take(std::move(found), next, nearest, newton);
+    nearest = take(found, next, nearest, newton);
     stalled = newton && !turned && glm::length(nearest.point) > 0.5 * length;
     // Next to the boundary but not outside: the other search has to prove it.
     if (range_.value <= 0 && (stalled || ++failures > failure_limit)) return;

@@ -94,7 +94,8 @@ class HullDistance {
   bool done() const;
   Atom moved(const Atom& a, const dvec3& n);
   NearestInSimplex nearest_atom_simplex() const;
-  NearestInSimplex take(Atom found, const dvec3& n, const NearestInSimplex& nearest, bool newton);
+  NearestInSimplex take(const Atom& found, const dvec3& n, const NearestInSimplex& nearest,
+                        bool newton);
   void project(std::span<const Sample> near, const dvec3& n);
   dvec3 next_direction(const NearestInSimplex& nearest, const dvec3& n, bool& newton) const;
   void expand();

@@ -175,6 +175,11 @@ PlacedSurface placed_surface(const Scene& scene) {
   return surface;
 }
 
+double halving_rounding(const BezierPatch& patch, double size_u, double size_v) {
+  const double averages = -patch.degree_u * std::log2(size_u) - patch.degree_v * std::log2(size_v);
+  return 2 * rounding_unit * averages;
+}
+
 Tessellation tessellation(const Scene& scene, const PlacedSurface& surface, double tolerance,
                           std::size_t most_triangles) {
   Tessellation mesh;

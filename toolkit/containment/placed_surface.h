@@ -35,6 +35,11 @@ struct PlacedSurface {
 };
 PlacedSurface placed_surface(const Scene& scene);
 
+/// What rounding adds to the coefficients of a patch's net over a cell of that size, as a share of
+/// the largest: a unit for each of the averages that the halvings took (see certificate_rounding()
+/// of the support query), twice.
+double halving_rounding(const BezierPatch& patch, double size_u, double size_v);
+
 /// Triangles through points of a placed surface, patches first.
 struct Tessellation {
   std::vector<dvec3> points;

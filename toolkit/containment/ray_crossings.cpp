@@ -108,7 +108,9 @@ RayCrossings::Answer RayCrossings::look(const PlacedPatch& patch, const Cell& ce
   const double* ahead = d2 + size;
   double heaviest = 0;
   for (const dvec4& p : patch.bezier.points) heaviest = std::max(heaviest, p.w);
-  const double slack = (surface_.rounding + surface_.crack) * heaviest;
+  const double reach = 2 + glm::length(x_);
+  const double halving = reach * halving_rounding(patch.bezier, cell.size_u, cell.size_v);
+  const double slack = (surface_.rounding + halving + surface_.crack) * heaviest;
   for (const double* d : {d1, d2}) {
     const Range r = range(d, size);
     if (r.lower > slack || r.upper < -slack) return Answer::none;

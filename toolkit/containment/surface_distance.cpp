@@ -13,7 +13,10 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Cells that one point may take, after which the bounds found stand.
-constexpr int cell_limit = 50'000;
+constexpr int cell_limit = 20'000;
+
+/// Largest length of points in the scene's frame, about.
+constexpr double net_reach = 2;
 
 /// Cells larger than this share of a patch are looked through by Newton's method.
 constexpr double coarse_cell = 0.2;
@@ -22,7 +25,7 @@ constexpr double newton_end = 1e-15;
 
 /// Next to the surface distances are sought to this share of themselves, or to rounding.
 constexpr double near_share = 0.05;
-constexpr double least_gap = 256 * rounding_unit;
+constexpr double least_gap = 1024 * rounding_unit;
 
 double distance_to(const Box& box, const dvec3& x) {
   return glm::length(glm::max(dvec3(0.0), glm::max(box.lower - x, x - box.upper)));
@@ -114,7 +117,8 @@ void SurfaceDistance::push(const Cell& cell) {
     offer(euclidean(net[k]));
   }
   Cell bounded = cell;
-  bounded.lower = std::max(cell.lower, lower_bound(net, b.points.size()));
+  const double rounding = net_reach * halving_rounding(b, cell.size_u, cell.size_v);
+  bounded.lower = std::max(cell.lower, lower_bound(net, b.points.size()) - rounding);
   if (bounded.lower >= best_) return;
   heap_.push_back(bounded);
   std::push_heap(heap_.begin(), heap_.end());

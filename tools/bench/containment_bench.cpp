@@ -66,6 +66,7 @@ Count side_of_mesh(const PolygonMesh& polygons) {
   for (const dvec3& p : polygons.points) mesh->add_vertex({p.x, p.y, p.z});
   for (const std::vector<int>& polygon : polygons.polygons) {
     std::vector<Mesh::Vertex_index> corners;
+    corners.reserve(polygon.size());
     for (const int v : polygon) corners.emplace_back(Mesh::size_type(v));
     mesh->add_face(corners);
   }
@@ -108,6 +109,7 @@ void compare(const char* title, const std::vector<Program>& programs,
   }
   for (std::size_t k = 0; k < programs.size(); ++k) {
     std::vector<double> ratios;
+    ratios.reserve(std::size_t(runs));
     for (int run = 0; run < runs; ++run) {
       ratios.push_back(times[0][std::size_t(run)] / times[k][std::size_t(run)]);
     }

@@ -235,7 +235,7 @@ HullFile read_hull_file(const VerifyArguments& arguments, Console& console) {
 Verdict check(const HullFile& hull, Input& input, double relative, const VerifyOptions& options) {
   const double diagonal = input.scene().diagonal();
   const double accuracy = sample_accuracy * relative * diagonal;
-  const auto add = [](Verdict& verdict, std::vector<Check> more) {
+  const auto add = [](Verdict& verdict, const std::vector<Check>& more) {
     for (const Check& check : more) {
       verdict.is_hull = verdict.is_hull && (check.passed || !check.made);
       verdict.checks.push_back(check);
