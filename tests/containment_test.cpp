@@ -7,6 +7,7 @@
 
 #include "containment_checks.h"
 #include "error_checks.h"
+#include "taut/containment/contact_curvature.h"
 #include "taut/containment/hull_containment.h"
 #include "taut/containment/nearest_in_simplex.h"
 #include "taut/containment/triangle_rays.h"
@@ -225,6 +226,82 @@ TEST(HullContainment, CanBeCancelled) {
   const std::vector<dvec3> points(10, dvec3(0.0));
   EXPECT_THROW(containment.locate(points), Cancelled);
   EXPECT_THROW(HullContainment(scene, options), Cancelled);
+}
+
+/// Against differences of support points.
+TEST(ContactCurvature, IsTheDerivativeOfTheSupportPoint) {
+  Random random(14);
+  for (const Shape& shape : {ellipsoid(3, 2, 1), torus(2, 0.5), oloid(), box(1, 2, 3)}) {
+    const Scene scene = make_scene(mapped(shape, skew_rotation(), {1, 2, 3}));
+    SupportQuery query(scene);
+    int compared = 0;
+    for (int k = 0; k < 200; ++k) {
+      const dvec3 n = random_direction(random);
+      const dvec3 t = tangent_frame(n)[0];
+      constexpr double step = 1e-5;
+      const Support middle = query(n);
+      const Support before = query(unit(n - step * t), middle.contact);
+      const Support after = query(unit(n + step * t), middle.contact);
+      if (!same_element(before.contact, middle.contact)) continue;
+      if (!same_element(after.contact, middle.contact)) continue;
+      const auto hessian = support_hessian(scene, middle.contact, n);
+      ASSERT_TRUE(hessian);
+      const dvec3 expected = (after.point - before.point) / (2 * step);
+      EXPECT_NEAR(glm::distance(*hessian * t, expected), 0, 1e-4 * (1 + glm::length(expected)));
+      EXPECT_NEAR(glm::length(*hessian * n), 0, 1e-12);
+      ++compared;
+    }
+    EXPECT_GT(compared, 100);
+  }
+}
+
+TEST(ContactCurvature, ProjectionStepsSquareTheError) {
+  const Scene scene = make_scene(ellipsoid(3, 2, 1));
+  SupportQuery query(scene);
+  Random random(15);
+  for (int k = 0; k < 100; ++k) {
+    const dvec3 foot_normal = random_direction(random);
+    const dvec3 x = query(foot_normal).point + 0.3 * foot_normal;
+    dvec3 n = unit(foot_normal + 0.05 * random_point(random));
+    double error = glm::distance(n, foot_normal);
+    for (int step = 0; step < 5 && error > 1e-7; ++step) {
+      const Support s = query(n);
+      const CurvedContact contact{n, s.point, support_hessian(scene, s.contact, n).value(), 1};
+      const auto next = projection_step(std::array{contact}, x, n, 0);
+      ASSERT_TRUE(next);
+      n = *next;
+      EXPECT_LE(glm::distance(n, foot_normal), 10 * error * error);
+      error = glm::distance(n, foot_normal);
+    }
+    EXPECT_LE(error, 1e-7);
+  }
+}
+
+/// x beside the side of a capsule: the ruling of both contacts, whose weights tell where it is.
+TEST(ContactCurvature, ProjectionStepsFindTheRulingOfTwoContacts) {
+  const dvec3 a(0, 0, -1);
+  const dvec3 b(0, 0, 1);
+  const auto ball = [](const dvec3& middle, const dvec3& n) {
+    return CurvedContact{n, middle + n, dmat3(1.0) - glm::outerProduct(n, n), 0.5};
+  };
+  const dvec3 n = unit({0.3, 1, 0.1});
+  const dvec3 x(0.2, 1.7, 0.4);
+  dvec3 next = n;
+  for (int step = 0; step < 6; ++step) {
+    const auto found = projection_step(std::array{ball(a, next), ball(b, next)}, x, next, 0);
+    ASSERT_TRUE(found);
+    next = *found;
+  }
+  EXPECT_NEAR(glm::distance(next, unit({0.2, 1.7, 0})), 0, 1e-14);
+  // Beyond its end the other ball alone is nearest.
+  next = n;
+  for (int step = 0; step < 6; ++step) {
+    const auto found =
+        projection_step(std::array{ball(a, next), ball(b, next)}, {0.2, 1.7, 1.4}, next, 0);
+    ASSERT_TRUE(found);
+    next = *found;
+  }
+  EXPECT_NEAR(glm::distance(next, unit({0.2, 1.7, 0.4})), 0, 1e-14);
 }
 
 TEST(NearestInSimplex, LiesInTheSimplexAndNoCornerIsNearerToTheOrigin) {
