@@ -5,13 +5,13 @@
 // peers.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "taut/bounds/support_query.h"
@@ -177,9 +177,13 @@ int main(int argc, char** argv) {
   std::printf("the mesh has %zu faces\n", triangles.polygons.size());
   compare("farther than 1e-3 from the boundary", programs, far, runs);
   const std::vector<Program> alone(programs.begin(), programs.begin() + 1);
-  for (const double share : {1e-3, 1e-6, 1e-9, 1e-12}) {
-    const std::string title = "at " + std::to_string(int(std::log10(share))) + " decades from it";
-    compare(title.c_str(), alone, near_points(scene, share, count / 20), 1);
+  const std::vector<std::pair<const char*, double>> shares = {
+      {"at 1e-3 of the diagonal from it", 1e-3},
+      {"at 1e-6", 1e-6},
+      {"at 1e-9", 1e-9},
+      {"at 1e-12", 1e-12}};
+  for (const auto& [title, share] : shares) {
+    compare(title, alone, near_points(scene, share, count / 20), 1);
   }
   const std::vector<dvec3> some(far.begin(), far.begin() + std::ptrdiff_t(count / 100));
   const Program distances{"taut", [&](const std::vector<dvec3>& points) {
