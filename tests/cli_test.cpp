@@ -73,7 +73,8 @@ std::string off_text(const taut::PolygonMesh& mesh) {
   return text.str();
 }
 
-const std::vector<std::string> commands = {"hull", "info", "support", "verify", "plugins"};
+const std::vector<std::string> commands = {"hull",     "info",   "support",
+                                           "contains", "verify", "plugins"};
 
 TEST_F(Cli, HelpBeginsWithExamples) {
   EXPECT_EQ(run("--help").exit_code, 0);
@@ -368,6 +369,98 @@ TEST_F(Cli, SupportAnswersEachDirection) {
   EXPECT_EQ(json["support"][0]["h"], 3.15);
   EXPECT_GE(json["queries"]["support"], 3);
   EXPECT_TRUE(json["seconds"].contains("support"));
+}
+
+/// The lines of taut contains.
+std::vector<std::pair<std::string, double>> locations(const std::string& text) {
+  std::istringstream lines(text);
+  std::vector<std::pair<std::string, double>> answers;
+  std::string location;
+  for (double distance = 0; lines >> location >> distance;) {
+    answers.emplace_back(location, distance);
+  }
+  return answers;
+}
+
+TEST_F(Cli, ContainsAnswersEachPoint) {
+  plant("points", "# in, out\n0 0 1\n\n  0 0 3.65  # above\r\n0 0 3.15");
+  const Result result = run("contains " + teapot_ + " --points points");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto answers = locations(result.out);
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[0].first, "inside");
+  EXPECT_NEAR(answers[0].second, -1, 1e-11);
+  EXPECT_EQ(answers[1].first, "outside");
+  EXPECT_NEAR(answers[1].second, 0.5, 1e-11);
+  EXPECT_EQ(answers[2].first, "on");
+  EXPECT_NEAR(answers[2].second, 0, 1e-12);
+  EXPECT_EQ(run("contains " + teapot_ + " --points -", "cat points |").out, result.out);
+  EXPECT_EQ(run("contains " + teapot_ + " --points points --threads 1").out, result.out);
+  EXPECT_EQ(run("contains " + teapot_ + " --points points --on-tolerance 0.6").out.find("outside"),
+            std::string::npos);
+
+  const Json json = Json::parse(run("contains --json " + teapot_ + " --points points").out);
+  ASSERT_EQ(json["points"].size(), 3U);
+  EXPECT_EQ(json["points"][1]["location"], "outside");
+  EXPECT_LE(json["points"][1]["distance_bounds"][0], json["points"][1]["distance"]);
+  EXPECT_EQ(json["of"], "hull");
+  EXPECT_EQ(json["inside"], 1);
+  EXPECT_EQ(json["on"], 1);
+  EXPECT_EQ(json["outside"], 1);
+  EXPECT_GE(json["queries"]["support"], 3);
+  EXPECT_TRUE(json["seconds"].contains("contains"));
+}
+
+TEST_F(Cli, ContainsOfAModelNeedsAClosedOne) {
+  const std::string torus = TAUT_DATA "/torus.taut.json";
+  const std::string points = plant("p", "2 0 0\n0 0 0\n2.5 0 0\n");
+  const auto of_hull = locations(run("contains " + torus + " --points p").out);
+  const auto of_model = locations(run("contains " + torus + " --of model --points p").out);
+  ASSERT_EQ(of_hull.size(), 3U);
+  ASSERT_EQ(of_model.size(), 3U);
+  EXPECT_EQ(of_hull[1].first, "inside");
+  EXPECT_NEAR(of_hull[1].second, -0.5, 1e-11);
+  EXPECT_EQ(of_model[0].first, "inside");
+  EXPECT_NEAR(of_model[0].second, -0.5, 1e-11);
+  EXPECT_EQ(of_model[1].first, "outside");
+  EXPECT_NEAR(of_model[1].second, 1.5, 1e-11);
+  EXPECT_EQ(of_model[2].first, "on");
+  expect_failure("contains " + teapot_ + " --of model --points p", 4, "not closed");
+  expect_failure("contains " + teapot_ + " --of surface --points p", 2, "surface");
+  expect_failure("contains " + teapot_, 2, "--points");
+  expect_failure("contains " + teapot_ + " --points p --on-tolerance 0", 2, "on-tolerance");
+  expect_failure("contains " + teapot_ + " --points nowhere", 3, "nowhere: ");
+  expect_failure("contains " + teapot_ + " --points " + plant("b", "0 0 0\n1 2\n"), 3, "b:2: ");
+  expect_failure("contains " + teapot_ + " --points " + plant("i", "0 0 inf\n"), 4, "i:1: ");
+  expect_failure("contains - --points - --format off <" + plant("c.off", "OFF\n"), 2, "both");
+}
+
+TEST_F(Cli, VerifyAsksWhetherPointsAreContained) {
+  ASSERT_EQ(run("hull " + teapot_ + " -o hull.ply -o hull.hull.json --relative 1e-3").exit_code, 0);
+  const Json good = Json::parse(run("verify --json hull.ply --relative 1e-3 " + teapot_).out);
+  EXPECT_EQ(good["vertices_in_hull"], true);
+  EXPECT_LT(good["vertices_outside"], 1e-12);
+  EXPECT_EQ(good["model_points_in_mesh"], true);
+  EXPECT_GT(good["model_points_outside"], 1e-5);
+  EXPECT_LT(good["model_points_outside"], 1e-3);
+  const Json exact = Json::parse(run("verify --json hull.hull.json " + teapot_).out);
+  EXPECT_EQ(exact["points_on_hull"], true);
+  EXPECT_LT(exact["points_off_hull"], 1e-12);
+
+  // A vertex that is moved out by a hundredth, and a mesh that is too small by as much.
+  taut::PolygonMesh mesh = taut::read_mesh(path("hull.ply"));
+  const taut::PolygonMesh whole = mesh;
+  mesh.points[0] *= 1.05;
+  plant("out.off", off_text(mesh));
+  const Json out = Json::parse(run("verify --json out.off " + teapot_).out);
+  EXPECT_EQ(out["vertices_in_hull"], false);
+  EXPECT_GT(out["vertices_outside"], 1e-3);
+  mesh = whole;
+  for (taut::dvec3& p : mesh.points) p *= 0.98;
+  plant("small.off", off_text(mesh));
+  const Json small = Json::parse(run("verify --json small.off " + teapot_).out);
+  EXPECT_EQ(small["model_points_in_mesh"], false);
+  EXPECT_GT(small["model_points_outside"], 1e-3);
 }
 
 TEST_F(Cli, DirectionsErrorsNameTheLine) {

@@ -31,6 +31,7 @@ inline Command add_command(CLI::App& parent, const std::string& name, const std:
 Command add_hull(CLI::App& parent);
 Command add_info(CLI::App& parent);
 Command add_support(CLI::App& parent);
+Command add_contains(CLI::App& parent);
 Command add_verify(CLI::App& parent);
 Command add_plugins(CLI::App& parent);
 

@@ -86,12 +86,14 @@ std::vector<std::string_view> words(std::string_view line) {
   return found;
 }
 
-dvec3 parse_direction(const std::vector<std::string_view>& fields, const std::string& place) {
+/// Three finite numbers; `what` they are.
+dvec3 parse_vector(const std::vector<std::string_view>& fields, const std::string& place,
+                   const std::string& what) {
   if (fields.size() != 3) {
-    throw IoError(place + "a direction has three numbers, here are " + number(long(fields.size())) +
-                  " words");
+    throw IoError(place + "a " + what + " has three numbers, here are " +
+                  number(long(fields.size())) + " words");
   }
-  dvec3 direction(0.0);
+  dvec3 vector(0.0);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view field = fields[std::size_t(axis)];
     const auto value = parse_number(field);
@@ -99,23 +101,39 @@ dvec3 parse_direction(const std::vector<std::string_view>& fields, const std::st
     if (!std::isfinite(*value)) {
       throw InvalidInput(place + "'" + printable(field, 40) + "' is not finite");
     }
-    direction[axis] = *value;
+    vector[axis] = *value;
   }
-  if (direction == dvec3(0.0)) throw InvalidInput(place + "the zero vector is no direction");
-  return direction;
+  return vector;
+}
+
+/// Calls take with the vector of each line and its place.
+template <class Take>
+void read_vectors(const std::string& path, const std::stop_token& stop, const std::string& what,
+                  Take take) {
+  LineReader reader(path, stop);
+  std::string line;
+  while (reader.next(line)) {
+    const auto fields = words(line);
+    if (!fields.empty()) take(parse_vector(fields, reader.place(), what), reader.place());
+  }
 }
 
 }  // namespace
 
 std::vector<dvec3> read_directions(const std::string& path, const std::stop_token& stop) {
-  LineReader reader(path, stop);
   std::vector<dvec3> directions;
-  std::string line;
-  while (reader.next(line)) {
-    const auto fields = words(line);
-    if (!fields.empty()) directions.push_back(parse_direction(fields, reader.place()));
-  }
+  read_vectors(path, stop, "direction", [&](const dvec3& direction, const std::string& place) {
+    if (direction == dvec3(0.0)) throw InvalidInput(place + "the zero vector is no direction");
+    directions.push_back(direction);
+  });
   return directions;
+}
+
+std::vector<dvec3> read_points(const std::string& path, const std::stop_token& stop) {
+  std::vector<dvec3> points;
+  read_vectors(path, stop, "point",
+               [&](const dvec3& point, const std::string&) { points.push_back(point); });
+  return points;
 }
 
 }  // namespace taut::tool

@@ -14,4 +14,7 @@ namespace taut::tool {
 /// for a zero vector and for numbers that are not finite, Cancelled
 std::vector<dvec3> read_directions(const std::string& path, const std::stop_token& stop);
 
+/// The same of points, of which any that are finite will do.
+std::vector<dvec3> read_points(const std::string& path, const std::stop_token& stop);
+
 }  // namespace taut::tool

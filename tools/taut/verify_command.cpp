@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command.h"
+#include "contained_samples.h"
 #include "input.h"
 #include "standard_input.h"
 #include "taut/hull/verify.h"
@@ -22,6 +23,9 @@ namespace {
 constexpr double default_relative = 1e-4;
 /// Of exact hulls, which claim to be so.
 constexpr double default_exact_relative = 1e-12;
+
+/// Distances of points are found to this share of the tolerance.
+constexpr double sample_accuracy = 0.01;
 
 struct VerifyArguments {
   std::string hull;
@@ -113,6 +117,25 @@ std::vector<Check> checks(const HullVerification& found, double relative) {
   return all;
 }
 
+/// Of points of a mesh and of the model.
+std::vector<Check> checks(const ContainedSamples& found, double relative, double diagonal) {
+  const auto fraction = [&](double length) {
+    if (diagonal > 0) return length / diagonal;
+    return length > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  };
+  const double hull_outside = fraction(found.hull_outside);
+  const double model_outside = fraction(found.model_outside);
+  std::vector<Check> all = {{"vertices_in_hull", "vertices in the exact hull",
+                             "vertices lie outside the model's hull", hull_outside <= relative,
+                             "vertices_outside", hull_outside}};
+  if (found.model_points) {
+    all.push_back({"model_points_in_mesh", "points of the model inside",
+                   "points of the model lie outside", model_outside <= relative,
+                   "model_points_outside", model_outside});
+  }
+  return all;
+}
+
 /// What verify() says of either.
 struct Verdict {
   std::vector<Check> checks;
@@ -129,8 +152,7 @@ std::string measure_name(const Check& check) {
   if (key == "largest_violation") return "largest violation ";
   if (key == "euler") return "V - E + F = ";
   if (key == "uncovered") return "directions missed: ";
-  return key == "model_outside" || key == "mesh_outside" || key == "hull_outside" ? "outside by "
-                                                                                  : "off by ";
+  return key.ends_with("outside") && key != "patch_outside" ? "outside by " : "off by ";
 }
 
 std::string text_of(const Verdict& verdict) {
@@ -213,18 +235,36 @@ HullFile read_hull_file(const VerifyArguments& arguments, Console& console) {
 }
 
 Verdict check(const HullFile& hull, Input& input, double relative, const VerifyOptions& options) {
+  const double diagonal = input.scene().diagonal();
+  const double accuracy = sample_accuracy * relative * diagonal;
+  const auto add = [](Verdict& verdict, const std::vector<Check>& more) {
+    for (const Check& check : more) {
+      verdict.is_hull = verdict.is_hull && (check.passed || !check.made);
+      verdict.checks.push_back(check);
+    }
+  };
   if (!hull.exact) {
-    const double diagonal = input.scene().diagonal();
     const Verification found = verify(hull.mesh, input.scene(), options);
-    return {checks(found, relative, diagonal),
-            {},
-            relative,
-            found.directions,
-            found.is_hull(relative * diagonal)};
+    Verdict verdict{checks(found, relative, diagonal),
+                    {},
+                    relative,
+                    found.directions,
+                    found.is_hull(relative * diagonal)};
+    const ContainedSamples samples =
+        contained_samples(hull.mesh, input.scene(), accuracy, options.threads, options.progress);
+    add(verdict, checks(samples, relative, diagonal));
+    return verdict;
   }
   const HullVerification found = verify(*hull.exact, input.scene(), options);
   Verdict verdict{checks(found, relative), {}, relative, found.directions, found.is_hull(relative)};
   for (const HullFault& fault : found.faults) verdict.faults.push_back(fault.text);
+  if (!found.comparable) return verdict;
+  const ContainedSamples samples =
+      contained_samples(*hull.exact, input.scene(), accuracy, options.threads, options.progress);
+  const double off = std::max(samples.hull_outside, samples.hull_inside);
+  const double fraction = diagonal > 0 ? off / diagonal : off;
+  add(verdict, {{"points_on_hull", "points on the exact hull", "points are off the exact hull",
+                 fraction <= relative + found.rounding, "points_off_hull", fraction}});
   return verdict;
 }
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "taut/core/geometry.h"
+
+namespace taut {
+
+/// The point of least norm in the convex hull of up to four points.
+struct NearestInSimplex {
+  /// In the convex hull but for four rounding units of the farthest point's distance.
+  dvec3 point = dvec3(0.0);
+  /// Unit, towards it; across the triangle where it lies in one, also if the point is the origin.
+  dvec3 direction = dvec3(0.0);
+  /// The points that carry it, by number, with their positive weights of sum one.
+  std::array<int, 4> carrier = {-1, -1, -1, -1};
+  std::array<double, 4> weight = {};
+  int size = 0;
+  /// The four points are a tetrahedron with the origin strictly inside, up to rounding.
+  bool contains_origin = false;
+};
+
+/// Looks at all vertices, sides and faces; those of no area, up to underflow, are passed over.
+/// @pre 1 <= points.size() <= 4
+NearestInSimplex nearest_in_simplex(std::span<const dvec3> points);
+
+}  // namespace taut
