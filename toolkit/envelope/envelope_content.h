@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/envelope/contact_climb.h"
+#include "taut/envelope/envelope_images.h"
+#include "taut/envelope/gauss_triangles.h"
+#include "taut/envelope/offscreen_canvas.h"
+
+namespace taut {
+
+struct EnvelopeImages::Content {
+  explicit Content(const Scene& the_scene)
+      : scene(the_scene), geometry(the_scene), elements(the_scene.model()) {}
+
+  const Scene& scene;
+  ContactGeometry geometry;
+  ElementNumbers elements;
+  int size = 0;
+  int threads = 0;
+  EnvelopeStatistics statistics;
+  GaussTriangles triangles;
+  int first_filler = 0;              ///< of the triangles
+  std::vector<int> element_sources;  ///< per element
+  /// Per hemisphere: the element that is seen, and the triangle from which to climb to the contact.
+  std::array<std::vector<OffscreenCanvas::Pixel>, 2> images;
+
+  const OffscreenCanvas::Pixel& at(const EnvelopePixel& p) const {
+    return images[std::size_t(p.hemisphere)][std::size_t(p.row) * std::size_t(size) +
+                                             std::size_t(p.column)];
+  }
+  dvec3 direction(const EnvelopePixel& p) const {
+    return StereographicView{p.hemisphere, size}.direction_at(p.column, p.row);
+  }
+  /// In the middle of a triangle.
+  Contact start(std::uint32_t triangle) const;
+  ClimbedContact climbed(const EnvelopePixel& p) const {
+    return climb(geometry, start(at(p).triangle), direction(p));
+  }
+};
+
+}  // namespace taut

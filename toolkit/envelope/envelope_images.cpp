@@ -1,0 +1,302 @@
+#include "taut/envelope/envelope_images.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/error.h"
+#include "taut/core/parallel.h"
+#include "taut/core/stopwatch.h"
+#include "taut/envelope/envelope_content.h"
+#include "taut/hull/sampled_start.h"
+
+namespace taut {
+namespace {
+
+constexpr int smallest_size = 8;
+constexpr int largest_size = 16384;
+
+/// Values closer than this, in the scene's frame, are decided in double precision: four times what
+/// interpolation may be off (GaussTriangleOptions::value_tolerance) and depths round away.
+constexpr double decision_margin = 5e-5;
+
+/// How much lower fillers are drawn, in the scene's frame.
+constexpr double filler_bias = 1e-3;
+
+/// Fillers are at least so far from vertices and each other, in the scene's frame.
+constexpr double filler_distance = 1e-3;
+
+/// Triangles given to the canvas at once.
+constexpr std::size_t batch_size = 65536;
+
+/// Pixels' centres at the circle are 2 / size radians apart.
+GaussTriangleOptions triangle_options(int size) {
+  return {.direction_tolerance = 1.0 / size, .value_tolerance = 1e-5, .border_width = 3.0 / size};
+}
+
+/// Makes the two images.
+class Painter {
+ public:
+  Painter(EnvelopeImages::Content& content, const EnvelopeOptions& options)
+      : content_(content),
+        options_(options),
+        fineness_(triangle_options(options.size)),
+        canvas_(options.size) {
+    content_.statistics.driver = canvas_.driver();
+  }
+
+  void paint();
+
+ private:
+  using Vertex = OffscreenCanvas::Vertex;
+  using Layer = OffscreenCanvas::Layer;
+
+  void make_triangles();
+  void add_cells();
+  void find_sources();
+  void load(const StereographicView& view);
+  bool corners(const StereographicView& view, std::size_t triangle, Vertex* result) const;
+  void decide(Hemisphere hemisphere, Layer first, const Layer& second);
+  double value(float depth) const { return reach_ * (1 - 2 * double(depth)); }
+
+  EnvelopeImages::Content& content_;
+  const EnvelopeOptions& options_;
+  GaussTriangleOptions fineness_;
+  OffscreenCanvas canvas_;
+  double reach_ = 1;
+};
+
+void Painter::make_triangles() {
+  const auto count = std::size_t(content_.elements.count());
+  std::vector<GaussTriangles> own(count);
+  parallel_for(count, 16, options_.threads, [&](std::size_t begin, std::size_t end) {
+    options_.progress.check();
+    for (std::size_t k = begin; k < end; ++k) {
+      const Contact c = content_.elements.contact(int(k));
+      if (content_.geometry.is_repeated(c)) continue;
+      if (c.kind == SourceKind::face) {
+        add_face_triangles(content_.geometry, c, int(k), fineness_, own[k]);
+      } else if (c.kind == SourceKind::edge) {
+        add_edge_bands(content_.geometry, c, int(k), fineness_, own[k]);
+      }
+    }
+  });
+  for (GaussTriangles& triangles : own) content_.triangles.append(std::exchange(triangles, {}));
+  add_cells();
+}
+
+/// Cells of the model's vertices and, behind them, fillers: cells of support points.
+void Painter::add_cells() {
+  std::vector<CellPoint> points;
+  for (int k = 0; k < content_.elements.count(); ++k) {
+    const Contact c = content_.elements.contact(k);
+    if (c.kind != SourceKind::vertex || content_.geometry.is_repeated(c)) continue;
+    points.push_back({c, k, content_.geometry.point(c), 0});
+  }
+  const std::size_t vertices = points.size();
+  SupportQuery query(content_.scene);
+  for (const Sample& sample : sampled_start(content_.scene, query).samples) {
+    const Contact c = content_.geometry.canonical(sample.contact);
+    const dvec3 x = content_.geometry.point(c);
+    // What is a vertex but for rounding would make facets without directions.
+    const bool known = std::any_of(points.begin(), points.end(), [&](const CellPoint& p) {
+      return glm::distance(p.x, x) < filler_distance;
+    });
+    if (!known) points.push_back({c, content_.elements.number(c), x, filler_bias});
+  }
+  const std::vector<int> first = add_point_cells(points, fineness_, content_.triangles);
+  content_.first_filler =
+      vertices < first.size() ? first[vertices] : int(content_.triangles.triangles.size());
+}
+
+void Painter::find_sources() {
+  const Scene& scene = content_.scene;
+  for (int k = 0; k < content_.elements.count(); ++k) {
+    Contact c = content_.elements.contact(k);
+    // Inside of the element, whose borders may be others' sources.
+    if (c.kind != SourceKind::vertex) c.u = 0.5;
+    if (c.kind == SourceKind::face) c.v = 0.5;
+    content_.element_sources.push_back(scene.source(c).source);
+  }
+}
+
+/// A triangle as it is drawn; false if it is not in the image.
+bool Painter::corners(const StereographicView& view, std::size_t triangle, Vertex* result) const {
+  const GaussTriangles::Triangle& t = content_.triangles.triangles[triangle];
+  std::array<const GaussTriangles::Node*, 3> node{};
+  std::array<dvec2, 3> p{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    node[k] = &content_.triangles.nodes[std::size_t(t.node[k])];
+    // Directions with less are outside of the square (its corners have -1/3), also by a triangle.
+    if (view.pole() * node[k]->n.z < -0.75) return false;
+    p[k] = view.plane(node[k]->n);
+  }
+  const dvec2 lower = glm::min(p[0], glm::min(p[1], p[2]));
+  const dvec2 upper = glm::max(p[0], glm::max(p[1], p[2]));
+  if (lower.x > 1 || lower.y > 1 || upper.x < -1 || upper.y < -1) return false;
+  const auto bend = [&](std::size_t a, std::size_t b) {
+    // Where triangles could not be made fine, their interpolation says too little.
+    const double turn = glm::dot(node[a]->n, node[b]->n);
+    if (!t.smooth || turn < std::cos(2 * largest_turn)) return 0.0F;
+    return float(glm::dot(node[a]->n - node[b]->n, node[a]->x - node[b]->x));
+  };
+  const std::array<float, 3> bends = {bend(0, 1), bend(1, 2), bend(2, 0)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const dvec3& x = node[k]->x;
+    result[k] = {float(p[k].x),
+                 float(p[k].y),
+                 {float(x.x), float(x.y), float(x.z)},
+                 {k == 0 ? 1.0F : 0.0F, k == 1 ? 1.0F : 0.0F},
+                 {bends[0], bends[1], bends[2]},
+                 std::uint32_t(t.element),
+                 std::uint32_t(triangle)};
+  }
+  return true;
+}
+
+void Painter::load(const StereographicView& view) {
+  canvas_.begin(int(view.pole()), reach_);
+  const std::size_t count = content_.triangles.triangles.size();
+  std::vector<Vertex> vertices(3 * std::min(batch_size, count));
+  std::vector<char> seen(std::min(batch_size, count));
+  for (std::size_t first = 0; first < count; first += batch_size) {
+    options_.progress.check();
+    const std::size_t here = std::min(batch_size, count - first);
+    parallel_for(here, 1024, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        seen[k] = corners(view, first + k, &vertices[3 * k]) ? 1 : 0;
+      }
+    });
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < here; ++k) {
+      if (seen[k] == 0) continue;
+      if (kept != k) std::copy_n(vertices.begin() + std::ptrdiff_t(3 * k), 3,
+                                 vertices.begin() + std::ptrdiff_t(3 * kept));
+      ++kept;
+    }
+    canvas_.add({vertices.data(), 3 * kept});
+  }
+}
+
+/// Takes what was drawn, and where two contacts are as good as equal the better one.
+void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
+  const auto size = std::size_t(options_.size);
+  struct Counts {
+    long decided = 0, filled = 0, empty = 0;
+  };
+  std::vector<Counts> counts(size);
+  parallel_for(size, 4, options_.threads, [&](std::size_t begin, std::size_t end) {
+    options_.progress.check();
+    for (std::size_t row = begin; row < end; ++row) {
+      for (std::size_t column = 0; column < size; ++column) {
+        const std::size_t k = row * size + column;
+        OffscreenCanvas::Pixel& pixel = first.pixels[k];
+        if (pixel.element == OffscreenCanvas::nothing) {
+          ++counts[row].empty;
+          continue;
+        }
+        const bool close = second.pixels[k].element != OffscreenCanvas::nothing &&
+                           value(first.depths[k]) - value(second.depths[k]) <= decision_margin;
+        if (close) {
+          ++counts[row].decided;
+          const dvec3 n = content_.direction({hemisphere, int(column), int(row)});
+          const auto climbed = [&](std::uint32_t triangle) {
+            return climb(content_.geometry, content_.start(triangle), n);
+          };
+          const ClimbedContact a = climbed(pixel.triangle);
+          const ClimbedContact b = climbed(second.pixels[k].triangle);
+          const auto number = [&](const ClimbedContact& c) {
+            return content_.elements.number(c.contact);
+          };
+          // Of contacts that are one, the lower kind, which has the higher number.
+          const double tie = content_.geometry.tie();
+          const bool second_wins =
+              b.h > a.h + tie || (b.h >= a.h - tie && number(b) > number(a));
+          if (second_wins) pixel.triangle = second.pixels[k].triangle;
+          pixel.element = std::uint32_t(number(second_wins ? b : a));
+        }
+        if (int(pixel.triangle) >= content_.first_filler) ++counts[row].filled;
+      }
+    }
+  });
+  for (const Counts& c : counts) {
+    content_.statistics.decided_pixels += c.decided;
+    content_.statistics.filled_pixels += c.filled;
+    content_.statistics.empty_pixels += c.empty;
+  }
+  content_.images[std::size_t(hemisphere)] = std::move(first.pixels);
+}
+
+void Painter::paint() {
+  EnvelopeStatistics& statistics = content_.statistics;
+  options_.progress.update("triangles", 0);
+  Stopwatch watch;
+  make_triangles();
+  find_sources();
+  for (const GaussTriangles::Node& node : content_.triangles.nodes) {
+    reach_ = std::max(reach_, 1.01 * glm::length(node.x));
+  }
+  statistics.triangles = long(content_.triangles.triangles.size());
+  statistics.seconds_triangles = watch.seconds();
+  for (const Hemisphere hemisphere : hemispheres) {
+    options_.progress.update("draw", hemisphere == Hemisphere::north ? 0 : 0.5);
+    watch = Stopwatch();
+    load(StereographicView{hemisphere, options_.size});
+    Layer first = canvas_.draw_first();
+    const Layer second = canvas_.draw_second();
+    statistics.seconds_draw += watch.seconds();
+    watch = Stopwatch();
+    decide(hemisphere, std::move(first), second);
+    statistics.seconds_decide += watch.seconds();
+  }
+}
+
+}  // namespace
+
+Contact EnvelopeImages::Content::start(std::uint32_t triangle) const {
+  const GaussTriangles::Triangle& t = triangles.triangles[triangle];
+  Contact c = elements.contact(t.element);
+  dvec2 uv(0.0);
+  for (const int node : t.node) uv += triangles.nodes[std::size_t(node)].uv / 3.0;
+  c.u = std::clamp(uv.x, 0.0, 1.0);
+  c.v = std::clamp(uv.y, 0.0, 1.0);
+  return c;
+}
+
+EnvelopeImages::EnvelopeImages(const Scene& scene, const EnvelopeOptions& options) {
+  if (options.size < smallest_size || options.size > largest_size) {
+    throw InvalidInput("the size of envelope images must be " + std::to_string(smallest_size) +
+                       " .. " + std::to_string(largest_size) + " pixels");
+  }
+  auto content = std::make_unique<Content>(scene);
+  content->size = options.size;
+  content->threads = options.threads;
+  Painter(*content, options).paint();
+  content_ = std::move(content);
+}
+
+EnvelopeImages::~EnvelopeImages() = default;
+EnvelopeImages::EnvelopeImages(EnvelopeImages&&) noexcept = default;
+
+const Scene& EnvelopeImages::scene() const { return content_->scene; }
+int EnvelopeImages::size() const { return content_->size; }
+const EnvelopeStatistics& EnvelopeImages::statistics() const { return content_->statistics; }
+
+EnvelopePixel EnvelopeImages::pixel(const dvec3& n) const {
+  const Hemisphere hemisphere = hemisphere_of(n);
+  const dvec2 p = view(hemisphere).pixel(n);
+  const auto nearest = [&](double x) { return std::clamp(int(std::lround(x)), 0, size() - 1); };
+  return {hemisphere, nearest(p.x), nearest(p.y)};
+}
+
+int EnvelopeImages::source(const EnvelopePixel& p) const {
+  const std::uint32_t element = content_->at(p).element;
+  return element == OffscreenCanvas::nothing ? -1 : content_->element_sources[element];
+}
+
+Contact EnvelopeImages::contact(const EnvelopePixel& p) const {
+  return content_->climbed(p).contact;
+}
+
+}  // namespace taut

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "taut/hull/contact_geometry.h"
+
+namespace taut {
+
+/// Triangles over the sphere of directions whose corners are contacts: what envelope images are
+/// drawn from. Lengths in the scene's frame.
+struct GaussTriangles {
+  struct Node {
+    dvec3 n;   ///< unit
+    dvec3 x;   ///< the contact's point
+    dvec2 uv;  ///< and its parameters
+  };
+  struct Triangle {
+    int element = -1;  ///< number of the element (ElementNumbers)
+    std::array<int, 3> node = {-1, -1, -1};
+    /// The points are those that support the corners' directions, and values between them are
+    /// interpolated to third order; else n and x are unrelated, and x . n is a lower bound of h.
+    bool smooth = true;
+  };
+  std::vector<Node> nodes;
+  std::vector<Triangle> triangles;
+
+  int add_node(const Node& node) {
+    nodes.push_back(node);
+    return int(nodes.size()) - 1;
+  }
+  void add_triangle(int element, int a, int b, int c, bool smooth = true) {
+    triangles.push_back({element, {a, b, c}, smooth});
+  }
+  void append(const GaussTriangles& other);
+};
+
+/// Numbers through all patches, pieces and vertices of a scene's instances.
+class ElementNumbers {
+ public:
+  explicit ElementNumbers(const Model& model);
+
+  int count() const { return first_.back(); }
+  int number(const Contact& c) const;
+  /// Of that number, at parameters zero. @pre 0 <= number < count()
+  Contact contact(int number) const;
+
+ private:
+  const Part& part(std::size_t instance) const {
+    return model_->parts()[std::size_t(model_->instances()[instance].part)];
+  }
+
+  const Model* model_;
+  std::vector<int> first_;  ///< per instance, and the count
+};
+
+/// How fine the triangles are.
+struct GaussTriangleOptions {
+  /// Largest angle between a direction halfway and the mean of its neighbours', in radians.
+  double direction_tolerance = 5e-4;
+  /// Largest error of an interpolated value halfway, in the scene's frame.
+  double value_tolerance = 1e-5;
+  /// What is drawn along borders, against cracks between neighbours, reaches so far to either side,
+  /// in radians.
+  double border_width = 3e-3;
+};
+
+/// Largest angle between the directions at two corners of a triangle, in radians.
+inline constexpr double largest_turn = 0.12;
+
+/// The Gauss map of a patch: over an adaptive triangulation of its parameters, the normals Su x Sv
+/// and their opposites, each where the curvature lets a supporting plane touch; and along its sides
+/// narrow strips, so that no crack opens to a neighbour. Nothing of a ruled patch, whose points are
+/// extreme on its borders only.
+/// @pre kind face
+void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, int element,
+                        const GaussTriangleOptions& options, GaussTriangles& result);
+
+/// The directions in which planes touch a piece of an edge: to each point those orthogonal to the
+/// tangent, as far as the curve is bent away from them. Nothing of a straight piece.
+/// @pre kind edge
+void add_edge_bands(const ContactGeometry& geometry, const Contact& piece, int element,
+                    const GaussTriangleOptions& options, GaussTriangles& result);
+
+/// A point whose directions of support are to be filled.
+struct CellPoint {
+  Contact contact;
+  int element = -1;
+  dvec3 x;
+  /// Its values are lowered by this, so that it is seen only where nothing else is near.
+  double bias = 0;
+};
+
+/// The cells of points: to each that is extreme among them, the directions in which it is the
+/// farthest, a spherical polygon that is dual to the points' convex hull. Together they cover the
+/// sphere; cells overlap their neighbours by border_width. Points in a plane or on a line have
+/// cells that are lunes. Returns, for each point, the number of its first triangle.
+std::vector<int> add_point_cells(const std::vector<CellPoint>& points, const GaussTriangleOptions& options,
+                     GaussTriangles& result);
+
+}  // namespace taut

@@ -1,0 +1,185 @@
+#include "taut/envelope/pixel_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "taut/core/tolerances.h"
+
+namespace taut {
+namespace {
+
+/// Two contacts are on different branches if climbing from each towards the other's direction gains
+/// less than this share of what the chord between them gains: one, for branches that do not meet;
+/// at most a half, where the one goes on into the other.
+constexpr double bridging_share = 0.75;
+
+/// Chords that gain less, in the scene's frame, are no chords.
+constexpr double least_chord = 1e-13;
+
+constexpr int plane_steps = 6;
+
+/// Contacts of a hole are so far apart, in the scene's frame, and what supports in the middle is so
+/// far from their mean, as a share of their distance.
+constexpr double hole_size = 0.05;
+constexpr double hole_share = 0.4;
+
+bool share_node(const GaussTriangles::Triangle& a, const GaussTriangles::Triangle& b) {
+  return std::any_of(a.node.begin(), a.node.end(), [&](int node) {
+    return std::find(b.node.begin(), b.node.end(), node) != b.node.end();
+  });
+}
+
+dvec3 to_model(const EnvelopeImages::Content& content, const dvec3& x) {
+  return content.scene.frame().to_model(x);
+}
+
+/// Both triangles are of one element, side by side: what they show is one surface.
+bool are_neighbors(const EnvelopeImages::Content& content, const EnvelopePixel& p,
+                   const EnvelopePixel& q) {
+  const OffscreenCanvas::Pixel& a = content.at(p);
+  const OffscreenCanvas::Pixel& b = content.at(q);
+  if (a.element != b.element) return false;
+  if (a.triangle == b.triangle) return true;
+  if (content.elements.contact(int(a.element)).kind == SourceKind::vertex) return true;
+  const GaussTriangles::Triangle& s = content.triangles.triangles[a.triangle];
+  const GaussTriangles::Triangle& t = content.triangles.triangles[b.triangle];
+  return s.element == t.element && share_node(s, t);
+}
+
+dvec3 mean_direction(const EnvelopeImages::Content& content, std::span<const EnvelopePixel> pixels) {
+  dvec3 sum(0.0);
+  for (const EnvelopePixel& p : pixels) sum += content.direction(p);
+  return unit(sum);
+}
+
+/// The normal of the plane through the points of a polygon, on the side of n (Newell's).
+dvec3 plane_normal(const std::vector<ClimbedContact>& contacts, const dvec3& n) {
+  dvec3 sum(0.0);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const dvec3& a = contacts[k].x - contacts[0].x;
+    const dvec3& b = contacts[(k + 1) % contacts.size()].x - contacts[0].x;
+    sum += glm::cross(a, b);
+  }
+  const dvec3 normal = unit(sum);
+  return glm::dot(normal, n) < 0 ? -normal : normal;
+}
+
+EnvelopeTriplePoint triple_point(const EnvelopeImages::Content& content, const dvec3& n,
+                                 const std::vector<ClimbedContact>& contacts) {
+  EnvelopeTriplePoint result{n, {}, {}};
+  for (const ClimbedContact& c : contacts) {
+    result.contacts.push_back(c.contact);
+    result.points.push_back(to_model(content, c.x));
+  }
+  return result;
+}
+
+}  // namespace
+
+bool is_bridging(const EnvelopeImages::Content& content, const EnvelopePixel& p,
+                 const EnvelopePixel& q) {
+  if (are_neighbors(content, p, q)) return false;
+  const dvec3 m = content.direction(p);
+  const dvec3 n = content.direction(q);
+  const ClimbedContact a = content.climbed(p);
+  const ClimbedContact b = content.climbed(q);
+  const double chord = glm::dot(a.x - b.x, m - n);
+  if (!(chord > least_chord)) return false;
+  const double lost = (b.h - climb(content.geometry, a.place, n).h) +
+                      (a.h - climb(content.geometry, b.place, m).h);
+  return lost > bridging_share * chord;
+}
+
+EnvelopeCurvePoint curve_point(const EnvelopeImages::Content& content, const EnvelopePixel& p,
+                               const EnvelopePixel& q) {
+  const dvec3 m = content.direction(p);
+  const dvec3 n = content.direction(q);
+  ClimbedContact a = content.climbed(p);
+  ClimbedContact b = content.climbed(q);
+  EnvelopeCurvePoint result;
+  for (int step = 0; step < 3; ++step) {
+    const double at_m = glm::dot(a.x - b.x, m);
+    const double at_n = glm::dot(a.x - b.x, n);
+    const double t = at_m > at_n ? std::clamp(at_m / (at_m - at_n), 0.0, 1.0) : 0.5;
+    result.n = unit((1 - t) * m + t * n);
+    a = climb(content.geometry, a.place, result.n);
+    b = climb(content.geometry, b.place, result.n);
+  }
+  result.contact = {a.contact, b.contact};
+  result.point = {to_model(content, a.x), to_model(content, b.x)};
+  return result;
+}
+
+std::optional<EnvelopeTriplePoint> common_plane(const EnvelopeImages::Content& content,
+                                                std::span<const EnvelopePixel> pixels,
+                                                double reach) {
+  const dvec3 middle = mean_direction(content, pixels);
+  std::vector<ClimbedContact> contacts;
+  for (const EnvelopePixel& p : pixels) contacts.push_back(content.climbed(p));
+  // Three decide on the plane; further ones are on it, or belong to another one nearby.
+  const std::vector<ClimbedContact> first(contacts.begin(), contacts.begin() + 3);
+  std::vector<ClimbedContact> three = first;
+  dvec3 n = middle;
+  for (int step = 0; step < plane_steps; ++step) {
+    const dvec3 next = plane_normal(three, n);
+    if (next == dvec3(0.0) || glm::distance(next, middle) > reach) return std::nullopt;
+    const double moved = glm::distance(next, n);
+    n = next;
+    for (std::size_t k = 0; k < 3; ++k) {
+      three[k] = climb(content.geometry, three[k].place, n);
+    }
+    if (moved < 1e-14) break;
+  }
+  const double tie = 1e-9;
+  const auto on_plane = [&](const ClimbedContact& c) { return std::abs(c.h - three[0].h) < tie; };
+  if (!on_plane(three[1]) || !on_plane(three[2])) return std::nullopt;
+  for (std::size_t k = 3; k < contacts.size(); ++k) {
+    const ClimbedContact c = climb(content.geometry, contacts[k].place, n);
+    if (on_plane(c)) {
+      three.push_back(c);
+    } else if (c.h > three[0].h) {
+      return std::nullopt;
+    }
+  }
+  return triple_point(content, n, three);
+}
+
+std::optional<EnvelopeTriplePoint> plane_over_hole(const EnvelopeImages::Content& content,
+                                                   std::span<const EnvelopePixel> loop,
+                                                   double reach) {
+  const dvec3 middle = mean_direction(content, loop);
+  std::vector<ClimbedContact> contacts;
+  dvec3 mean(0.0);
+  for (const EnvelopePixel& p : loop) {
+    contacts.push_back(content.climbed(p));
+    mean += contacts.back().x / double(loop.size());
+  }
+  double farthest = 0;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      const double distance = glm::distance(contacts[k].x, contacts[i].x);
+      farthest = std::max(farthest, distance);
+      shortest = std::min(shortest, distance);
+    }
+  }
+  if (shortest < hole_size) return std::nullopt;
+  for (const ClimbedContact& c : contacts) {
+    const ClimbedContact inside = climb(content.geometry, c.place, middle);
+    if (glm::distance(inside.x, mean) < hole_share * farthest) return std::nullopt;
+  }
+  // Closer and closer about the direction of the plane, its contacts come near the curve.
+  dvec3 n = middle;
+  for (double share = 0.5; share > 1e-7; share *= 0.1) {
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const dvec3 beside = unit(n + share * (content.direction(loop[k]) - middle));
+      contacts[k] = climb(content.geometry, contacts[k].place, beside);
+    }
+    n = plane_normal(contacts, n);
+    if (n == dvec3(0.0) || glm::distance(n, middle) > reach) return std::nullopt;
+  }
+  return triple_point(content, n, contacts);
+}
+
+}  // namespace taut
