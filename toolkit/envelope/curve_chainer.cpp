@@ -11,9 +11,9 @@
 namespace taut {
 namespace {
 
-/// Points on the equator belong to the north image, however rounding puts them, where n.z is not
-/// below the opposite of this.
-constexpr double equator_rounding = 1e-7;
+/// The north image's curves go so far beyond the equator, in pixels, and the south image's begin
+/// there: those that run along the equator, as symmetric models have them, are in one image whole.
+constexpr double equator_overlap = 0.25;
 
 /// Ends of chains in the two images that are no farther apart are one, in pixels.
 constexpr double join_reach = 3;
@@ -81,7 +81,7 @@ void ImageChains::find_crossings() {
       const int p = c.side / 2;
       const int q = c.side % 2 == 0 ? p + 1 : p + grid_.size();
       c.point = curve_point(content_, grid_.pixel(p), grid_.pixel(q));
-      const bool north = c.point.n.z >= -equator_rounding;
+      const bool north = c.point.n.z >= -equator_overlap * 2 / content_.size;
       c.outside = north != (grid_.hemisphere() == Hemisphere::north);
     }
   });

@@ -9,6 +9,11 @@
 
 namespace taut {
 
+/// Images are drawn by so many pixels larger on all sides than they are shown, so that what lies on
+/// the circle where it touches the square is seen from both sides. Pixels there have columns and
+/// rows below zero, or from the size on.
+inline constexpr int image_margin = 4;
+
 struct EnvelopeImages::Content {
   explicit Content(const Scene& the_scene)
       : scene(the_scene), geometry(the_scene), elements(the_scene.model()) {}
@@ -25,9 +30,11 @@ struct EnvelopeImages::Content {
   /// Per hemisphere: the element that is seen, and the triangle from which to climb to the contact.
   std::array<std::vector<OffscreenCanvas::Pixel>, 2> images;
 
+  /// Of the images as they are drawn.
+  std::size_t side() const { return std::size_t(size + 2 * image_margin); }
   const OffscreenCanvas::Pixel& at(const EnvelopePixel& p) const {
-    return images[std::size_t(p.hemisphere)][std::size_t(p.row) * std::size_t(size) +
-                                             std::size_t(p.column)];
+    return images[std::size_t(p.hemisphere)][std::size_t(p.row + image_margin) * side() +
+                                             std::size_t(p.column + image_margin)];
   }
   dvec3 direction(const EnvelopePixel& p) const {
     return StereographicView{p.hemisphere, size}.direction_at(p.column, p.row);

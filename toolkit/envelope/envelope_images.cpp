@@ -15,7 +15,7 @@ namespace taut {
 namespace {
 
 constexpr int smallest_size = 8;
-constexpr int largest_size = 16384;
+constexpr int largest_size = 16000;
 
 /// Values closer than this, in the scene's frame, are decided in double precision: four times what
 /// interpolation may be off (GaussTriangleOptions::value_tolerance) and depths round away.
@@ -42,7 +42,8 @@ class Painter {
       : content_(content),
         options_(options),
         fineness_(triangle_options(options.size)),
-        canvas_(options.size) {
+        extent_(double(content.side()) / options.size),
+        canvas_(int(content.side())) {
     content_.statistics.driver = canvas_.driver();
   }
 
@@ -63,6 +64,7 @@ class Painter {
   EnvelopeImages::Content& content_;
   const EnvelopeOptions& options_;
   GaussTriangleOptions fineness_;
+  double extent_;  ///< of the images in the plane
   OffscreenCanvas canvas_;
   double reach_ = 1;
 };
@@ -128,13 +130,16 @@ bool Painter::corners(const StereographicView& view, std::size_t triangle, Verte
   std::array<dvec2, 3> p{};
   for (std::size_t k = 0; k < 3; ++k) {
     node[k] = &content_.triangles.nodes[std::size_t(t.node[k])];
-    // Directions with less are outside of the square (its corners have -1/3), also by a triangle.
+    // Directions with less are outside of the square, also by a triangle: its corners have -1/3,
+    // and -0.6 with the margins of the smallest image.
     if (view.pole() * node[k]->n.z < -0.75) return false;
     p[k] = view.plane(node[k]->n);
   }
   const dvec2 lower = glm::min(p[0], glm::min(p[1], p[2]));
   const dvec2 upper = glm::max(p[0], glm::max(p[1], p[2]));
-  if (lower.x > 1 || lower.y > 1 || upper.x < -1 || upper.y < -1) return false;
+  if (lower.x > extent_ || lower.y > extent_ || upper.x < -extent_ || upper.y < -extent_) {
+    return false;
+  }
   const auto bend = [&](std::size_t a, std::size_t b) {
     // Where triangles could not be made fine, their interpolation says too little.
     const double turn = glm::dot(node[a]->n, node[b]->n);
@@ -156,7 +161,7 @@ bool Painter::corners(const StereographicView& view, std::size_t triangle, Verte
 }
 
 void Painter::load(const StereographicView& view) {
-  canvas_.begin(int(view.pole()), reach_);
+  canvas_.begin(int(view.pole()), extent_, reach_);
   const std::size_t count = content_.triangles.triangles.size();
   std::vector<Vertex> vertices(3 * std::min(batch_size, count));
   std::vector<char> seen(std::min(batch_size, count));
@@ -181,7 +186,7 @@ void Painter::load(const StereographicView& view) {
 
 /// Takes what was drawn, and where two contacts are as good as equal the better one.
 void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
-  const auto size = std::size_t(options_.size);
+  const std::size_t size = content_.side();
   struct Counts {
     long decided = 0, filled = 0, empty = 0;
   };
@@ -200,7 +205,8 @@ void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
                            value(first.depths[k]) - value(second.depths[k]) <= decision_margin;
         if (close) {
           ++counts[row].decided;
-          const dvec3 n = content_.direction({hemisphere, int(column), int(row)});
+          const dvec3 n = content_.direction(
+              {hemisphere, int(column) - image_margin, int(row) - image_margin});
           const auto climbed = [&](std::uint32_t triangle) {
             return climb(content_.geometry, content_.start(triangle), n);
           };

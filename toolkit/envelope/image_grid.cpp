@@ -11,11 +11,11 @@ constexpr double seen_margin = 2.5;
 }  // namespace
 
 ImageGrid::ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere)
-    : hemisphere_(hemisphere), size_(content.size) {
+    : hemisphere_(hemisphere), size_(int(content.side())) {
   const auto count = std::size_t(size_) * std::size_t(size_);
   seen_.assign(count, 0);
   bridging_.assign(2 * count, 0);
-  const double radius = 0.5 * size_ + seen_margin;
+  const double radius = 0.5 * content.size + seen_margin;
   const auto inside = [&](int column, int row) {
     const dvec2 p(column + 0.5 - 0.5 * size_, row + 0.5 - 0.5 * size_);
     return glm::dot(p, p) <= radius * radius;
@@ -26,12 +26,12 @@ ImageGrid::ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphe
   parallel_for(std::size_t(size_), 4, content.threads, [&](std::size_t begin, std::size_t end) {
     for (int row = int(begin); row < int(end); ++row) {
       for (int column = 0; column < size_; ++column) {
-        const int p = number(column, row);
+        const int p = row * size_ + column;
         if (!inside(column, row) || !drawn(p)) continue;
         seen_[std::size_t(p)] = 1;
         const auto check = [&](int other_column, int other_row, SideNumber side) {
           if (other_column == size_ || other_row == size_) return;
-          const int q = number(other_column, other_row);
+          const int q = other_row * size_ + other_column;
           if (!inside(other_column, other_row) || !drawn(q)) return;
           bridging_[std::size_t(side)] = is_bridging(content, pixel(p), pixel(q)) ? 1 : 0;
         };

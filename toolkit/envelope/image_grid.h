@@ -17,10 +17,10 @@ class ImageGrid {
   ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere);
 
   Hemisphere hemisphere() const { return hemisphere_; }
+  /// Of the image as it is drawn.
   int size() const { return size_; }
-  int number(int column, int row) const { return row * size_ + column; }
   EnvelopePixel pixel(int number) const {
-    return {hemisphere_, number % size_, number / size_};
+    return {hemisphere_, number % size_ - image_margin, number / size_ - image_margin};
   }
   /// Near or inside of the circle.
   bool is_seen(int pixel) const { return seen_[std::size_t(pixel)] != 0; }

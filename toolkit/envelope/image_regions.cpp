@@ -19,7 +19,8 @@ class Regions {
   Regions(const EnvelopeImages::Content& content, const std::array<ImageGrid, 2>& grids)
       : content_(content),
         grids_(grids),
-        count_(content.size * content.size),
+        size_(grids[0].size()),
+        count_(size_ * size_),
         sets_(std::size_t(2 * count_)) {}
 
   std::vector<EnvelopeRegion> run() {
@@ -55,8 +56,8 @@ class Regions {
     };
     for (int p = 0; p < count_; ++p) {
       if (!grid.is_seen(p)) continue;
-      if (p % content_.size + 1 < content_.size) unite(p, p + 1, 2 * p);
-      if (p + content_.size < count_) unite(p, p + content_.size, 2 * p + 1);
+      if (p % size_ + 1 < size_) unite(p, p + 1, 2 * p);
+      if (p + size_ < count_) unite(p, p + size_, 2 * p + 1);
     }
   }
 
@@ -71,10 +72,10 @@ class Regions {
       const double r = glm::length(dvec2(pixel.column + 0.5, pixel.row + 0.5) - dvec2(radius));
       if (std::abs(r - radius) > equator_width) continue;
       const dvec2 place = view.pixel(content_.direction(pixel));
-      const int column = int(std::lround(place.x));
-      const int row = int(std::lround(place.y));
-      if (column < 0 || row < 0 || column >= content_.size || row >= content_.size) continue;
-      const int q = south.number(column, row);
+      const int column = int(std::lround(place.x)) + image_margin;
+      const int row = int(std::lround(place.y)) + image_margin;
+      if (column < 0 || row < 0 || column >= size_ || row >= size_) continue;
+      const int q = row * size_ + column;
       if (!south.is_seen(q) || source(north, p) != source(south, q)) continue;
       if (sets_.find(p) == sets_.find(q + count_)) continue;
       if (!is_bridging(content_, pixel, south.pixel(q))) sets_.unite(p, q + count_);
@@ -83,13 +84,12 @@ class Regions {
 
   /// How many pixels around are of the region too.
   int depth(const ImageGrid& grid, int p) {
-    const int size = content_.size;
     const int own = sets_.find(global(grid, p));
     for (int d = 1; d <= deepest; ++d) {
-      for (int row = p / size - d; row <= p / size + d; ++row) {
-        for (int column = p % size - d; column <= p % size + d; ++column) {
-          if (column < 0 || row < 0 || column >= size || row >= size) return d - 1;
-          const int q = grid.number(column, row);
+      for (int row = p / size_ - d; row <= p / size_ + d; ++row) {
+        for (int column = p % size_ - d; column <= p % size_ + d; ++column) {
+          if (column < 0 || row < 0 || column >= size_ || row >= size_) return d - 1;
+          const int q = row * size_ + column;
           if (!grid.is_seen(q) || sets_.find(global(grid, q)) != own) return d - 1;
         }
       }
@@ -114,6 +114,7 @@ class Regions {
 
   const EnvelopeImages::Content& content_;
   const std::array<ImageGrid, 2>& grids_;
+  int size_;
   int count_;
   DisjointSets sets_;
   std::vector<int> number_;  ///< per set

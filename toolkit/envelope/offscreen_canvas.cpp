@@ -174,12 +174,13 @@ layout(location = 1) in vec3 point_in;
 layout(location = 2) in vec2 b_in;
 layout(location = 3) in vec3 bend_in;
 layout(location = 4) in uvec2 name_in;
+uniform float extent;
 out vec3 point;
 out vec2 b;
 flat out vec3 bend;
 flat out uvec2 name;
 void main() {
-  gl_Position = vec4(place, 0.0, 1.0);
+  gl_Position = vec4(place / extent, 0.0, 1.0);
   point = point_in;
   b = b_in;
   bend = bend_in;
@@ -198,11 +199,12 @@ layout(location = 0) out uvec2 name_out;
 uniform float size;
 uniform float pole;
 uniform float reach;
+uniform float extent;
 uniform int second;
 uniform usampler2D first_names;
 void main() {
   if (second != 0 && texelFetch(first_names, ivec2(gl_FragCoord.xy), 0).x == name.x) discard;
-  vec2 p = 2.0 * gl_FragCoord.xy / size - 1.0;
+  vec2 p = extent * (2.0 * gl_FragCoord.xy / size - 1.0);
   float r2 = dot(p, p);
   vec3 n = vec3(2.0 * p, pole * (1.0 - r2)) / (1.0 + r2);
   float b2 = 1.0 - b.x - b.y;
@@ -228,6 +230,7 @@ class OffscreenCanvas::Context {
 
   std::string driver;
   int pole = 1;
+  double extent = 1;
   double reach = 1;
 
  private:
@@ -434,6 +437,7 @@ OffscreenCanvas::Layer OffscreenCanvas::Context::draw(bool second) {
   const auto at = [&](const char* name) { return gl_.GetUniformLocation(program_, name); };
   gl_.Uniform1f(at("size"), float(size_));
   gl_.Uniform1f(at("pole"), float(pole));
+  gl_.Uniform1f(at("extent"), float(extent));
   gl_.Uniform1f(at("reach"), float(reach));
   gl_.Uniform1i(at("second"), second ? 1 : 0);
   gl_.Uniform1i(at("first_names"), 0);
@@ -469,9 +473,10 @@ OffscreenCanvas::~OffscreenCanvas() = default;
 
 const std::string& OffscreenCanvas::driver() const { return context_->driver; }
 
-void OffscreenCanvas::begin(int pole, double reach) {
+void OffscreenCanvas::begin(int pole, double extent, double reach) {
   context_->clear_triangles();
   context_->pole = pole;
+  context_->extent = extent;
   context_->reach = reach;
 }
 

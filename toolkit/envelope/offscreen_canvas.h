@@ -18,7 +18,7 @@ namespace taut {
 /// affair (LP_NUM_THREADS) and changes no bit of the image.
 class OffscreenCanvas {
  public:
-  /// A corner of a triangle, in the plane -1 <= x, y <= 1.
+  /// A corner of a triangle, in the plane (StereographicView).
   struct Vertex {
     float x, y;
     /// The contact: its value in the direction n of a pixel is point . n.
@@ -55,9 +55,10 @@ class OffscreenCanvas {
   /// The driver and its version.
   const std::string& driver() const;
 
-  /// Takes away all triangles; those that follow are projected from the given pole (+1: the north
-  /// image, see StereographicView), and no value is farther than `reach` from zero.
-  void begin(int pole, double reach);
+  /// Takes away all triangles; those that follow are projected for the given pole (+1: the north
+  /// image, see StereographicView), of which the image shows -extent <= x, y <= extent, and no value
+  /// is farther than `reach` from zero.
+  void begin(int pole, double extent, double reach);
   /// Adds triangles, three vertices each.
   void add(std::span<const Vertex> vertices);
   /// Draws all triangles: at each pixel that of the largest value; among equal ones the first.

@@ -9,13 +9,14 @@
 namespace taut {
 namespace {
 
-/// Two contacts are on different branches if climbing from each towards the other's direction gains
-/// less than this share of what the chord between them gains: one, for branches that do not meet;
-/// at most a half, where the one goes on into the other.
-constexpr double bridging_share = 0.75;
+/// Two contacts are on different branches if climbing from each, in the other's direction, ends away
+/// from the other: together by more than this times their distance. It is two for branches that do
+/// not meet, and at most one where the one goes on into the other, whether climbing gets across the
+/// border between them or stops there.
+constexpr double bridging_share = 1.5;
 
-/// Chords that gain less, in the scene's frame, are no chords.
-constexpr double least_chord = 1e-13;
+/// Contacts no farther apart, in the scene's frame, are one.
+constexpr double least_distance = 1e-9;
 
 constexpr int plane_steps = 6;
 
@@ -84,11 +85,11 @@ bool is_bridging(const EnvelopeImages::Content& content, const EnvelopePixel& p,
   const dvec3 n = content.direction(q);
   const ClimbedContact a = content.climbed(p);
   const ClimbedContact b = content.climbed(q);
-  const double chord = glm::dot(a.x - b.x, m - n);
-  if (!(chord > least_chord)) return false;
-  const double lost = (b.h - climb(content.geometry, a.place, n).h) +
-                      (a.h - climb(content.geometry, b.place, m).h);
-  return lost > bridging_share * chord;
+  const double distance = glm::distance(a.x, b.x);
+  if (distance <= least_distance) return false;
+  const double missed = glm::distance(climb(content.geometry, a.place, n).x, b.x) +
+                        glm::distance(climb(content.geometry, b.place, m).x, a.x);
+  return missed > bridging_share * distance;
 }
 
 EnvelopeCurvePoint curve_point(const EnvelopeImages::Content& content, const EnvelopePixel& p,

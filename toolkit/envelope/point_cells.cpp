@@ -68,6 +68,24 @@ void add_triangle(const CellPoint& point, const dvec3& a, const dvec3& b, const 
   }
 }
 
+/// A strip along a side of a cell, against cracks to its neighbour.
+void add_strip(const CellPoint& point, const dvec3& a, const dvec3& b, double width,
+               GaussTriangles& result) {
+  if (glm::dot(a, b) < std::cos(cell_turn)) {
+    const dvec3 middle = unit(a + b);
+    add_strip(point, a, middle, width, result);
+    add_strip(point, middle, b, width, result);
+    return;
+  }
+  const dvec3 way = b - a;
+  const dvec3 along = glm::length(way) > 0 ? width * unit(way) : width * tangent_frame(a)[0];
+  const dvec3 across = glm::cross(a, along);
+  add_triangle(point, unit(a - along - across), unit(b + along - across),
+               unit(b + along + across), result);
+  add_triangle(point, unit(a - along - across), unit(b + along + across),
+               unit(a - along + across), result);
+}
+
 /// The whole sphere.
 void add_sphere(const CellPoint& point, GaussTriangles& result) {
   for (const double x : {-1.0, 1.0}) {
@@ -132,12 +150,10 @@ void PointCells::draw(const CellPoint& point, int vertex) {
   for (const dvec3& n : loop) middle += n;
   // About a half space the directions cancel.
   middle = glm::length(middle) > 0.1 ? unit(middle) : unit(point.x - inside_);
-  for (dvec3& n : loop) {
-    const dvec3 out = n - glm::dot(n, middle) * middle;
-    if (glm::length(out) > 0) n = unit(n + options_.border_width * unit(out));
-  }
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    add_triangle(point, middle, loop[k], loop[(k + 1) % loop.size()], result_);
+    const dvec3& next = loop[(k + 1) % loop.size()];
+    add_triangle(point, middle, loop[k], next, result_);
+    add_strip(point, loop[k], next, options_.border_width, result_);
   }
 }
 
