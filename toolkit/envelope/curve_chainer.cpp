@@ -15,19 +15,23 @@ namespace {
 /// there: those that run along the equator, as symmetric models have them, are in one image whole.
 constexpr double equator_overlap = 0.25;
 
-/// Ends of chains in the two images that are no farther apart are one, in pixels.
+/// Ends of chains in the two images, or where a curve is too faint to be followed (its two contacts
+/// nearly merge), are one if they are no farther apart, in pixels, and their contacts no farther
+/// than this share of the distance between the two.
 constexpr double join_reach = 3;
+constexpr double join_share = 0.75;
 
 /// A polyline through the sides of one image, or of both once they are joined.
 struct Chain {
   std::vector<EnvelopeCurvePoint> points;
   bool closed = false;
-  /// The first and the last point are where the curve leaves the image's hemisphere.
-  std::array<bool, 2> leaves = {false, false};
+  /// The first and the last point are in no triple point, where others end: the curve leaves the
+  /// image's hemisphere there, or the two contacts merge.
+  std::array<bool, 2> open = {false, false};
 
   void reverse() {
     std::reverse(points.begin(), points.end());
-    std::swap(leaves[0], leaves[1]);
+    std::swap(open[0], open[1]);
   }
   void exchange_sides() {
     for (EnvelopeCurvePoint& p : points) {
@@ -54,6 +58,7 @@ class ImageChains {
     std::array<int, 2> next = {-1, -1};         ///< numbers of crossings
     std::array<bool, 2> turned = {false, false};  ///< contact 0 is there contact 1
     int link_count = 0;
+    bool in_triple_point = false;
     bool used = false;
   };
 
@@ -125,7 +130,11 @@ void ImageChains::link_blocks() {
       if (grid_.bridges(block.side[k])) sides.push_back(k);
     }
     if (sides.size() == 2) link(block, sides[0], sides[1]);
-    if (sides.size() != 4) continue;
+    if (sides.size() < 3) continue;
+    for (const std::size_t side : sides) {
+      crossings_[std::size_t(number_.at(block.side[side]))].in_triple_point = true;
+    }
+    if (sides.size() == 3) continue;
     // Two surfaces in turn, which meet beyond what the image resolves: two curves.
     const auto meet = [&](std::size_t k) {
       return !is_bridging(content_, grid_.pixel(block.pixel[k]), grid_.pixel(block.pixel[k + 2]));
@@ -152,10 +161,11 @@ Chain ImageChains::walk(int start) {
     }
     const int way = c.next[0] == from && (from >= 0 || c.next[1] >= 0) ? 1 : 0;
     const int next = c.next[std::size_t(way)];
+    chain.open[1] = !c.in_triple_point;
     if (next < 0) return chain;
     const Crossing& other = crossings_[std::size_t(next)];
     if (other.outside) {
-      chain.leaves[1] = true;
+      chain.open[1] = true;
       return chain;
     }
     if (other.used) {
@@ -197,7 +207,8 @@ std::vector<Chain> ImageChains::run() {
       }
       if (!closed && inner_links(c) > 0) c.next[1] = -1;
       Chain chain = walk(int(k));
-      chain.leaves[0] = leaves;
+      chain.open[0] = !chain.closed && (leaves || !c.in_triple_point);
+      if (chain.closed) chain.open[1] = false;
       chains.push_back(std::move(chain));
     }
   }
@@ -210,7 +221,14 @@ double difference(const EnvelopeCurvePoint& a, const EnvelopeCurvePoint& b, bool
          glm::distance(a.point[1], b.point[turned ? 0 : 1]);
 }
 
-/// Joins chains where they pass from one image to the other.
+/// Two ends may be of one curve.
+bool agree(const EnvelopeCurvePoint& a, const EnvelopeCurvePoint& b) {
+  const double apart = std::max(glm::distance(a.point[0], a.point[1]),
+                                glm::distance(b.point[0], b.point[1]));
+  return std::min(difference(a, b, false), difference(a, b, true)) <= join_share * apart;
+}
+
+/// Joins chains where they pass from one image to the other, and over short gaps.
 class Joiner {
  public:
   Joiner(std::vector<Chain> chains, int size) : chains_(std::move(chains)), size_(size) {}
@@ -228,29 +246,29 @@ class Joiner {
   /// Joins the chain's last point, or else its first, to the nearest end.
   bool extend(std::size_t k) {
     Chain& own = chains_[k];
-    if (!own.leaves[1]) own.reverse();
-    if (!own.leaves[1]) return false;
+    if (!own.open[1]) own.reverse();
+    if (!own.open[1]) return false;
     const EnvelopeCurvePoint& end = own.points.back();
     double nearest = join_reach * 4.0 / size_;
     std::optional<std::pair<std::size_t, std::size_t>> found;
     for (std::size_t i = 0; i < chains_.size(); ++i) {
       for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
         const Chain& other = chains_[i];
-        if (other.points.empty() || !other.leaves[which] || (i == k && which == 1)) continue;
+        if (other.points.empty() || !other.open[which] || (i == k && which == 1)) continue;
         const EnvelopeCurvePoint& p = which == 0 ? other.points.front() : other.points.back();
         // A chain of one point is no loop.
         if (i == k && other.points.size() < 3) continue;
         const double distance = glm::distance(p.n, end.n);
-        if (distance >= nearest) continue;
+        if (distance >= nearest || !agree(end, p)) continue;
         nearest = distance;
         found = {i, which};
       }
     }
-    own.leaves[1] = false;
+    own.open[1] = false;
     if (!found) return true;
     if (found->first == k) {
       own.closed = true;
-      own.leaves[0] = false;
+      own.open[0] = false;
       return false;
     }
     Chain other = std::exchange(chains_[found->first], {});
@@ -259,7 +277,7 @@ class Joiner {
                         difference(end, other.points.front(), false);
     if (turned) other.exchange_sides();
     own.points.insert(own.points.end(), other.points.begin(), other.points.end());
-    own.leaves[1] = other.leaves[1];
+    own.open[1] = other.open[1];
     return true;
   }
 
