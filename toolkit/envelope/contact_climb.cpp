@@ -73,8 +73,8 @@ Place climb_element(const ContactGeometry& geometry, Place p, const dvec3& n) {
       higher = next.h >= p.h - least_gain;
     }
     if (!higher) break;
-    const double moved = std::max(std::abs(next.contact.u - p.contact.u),
-                                  std::abs(next.contact.v - p.contact.v));
+    const double moved =
+        std::max(std::abs(next.contact.u - p.contact.u), std::abs(next.contact.v - p.contact.v));
     p = next;
     if (moved < last_step) break;
   }
@@ -85,15 +85,14 @@ Place climb_element(const ContactGeometry& geometry, Place p, const dvec3& n) {
 std::vector<Contact> beyond(const ContactGeometry& geometry, const Place& p, const dvec3& n) {
   std::vector<Contact> result;
   if (p.contact.kind == SourceKind::edge) {
-    const EdgePiece& piece =
-        geometry.part(p.contact).pieces()[std::size_t(p.contact.element)];
+    const EdgePiece& piece = geometry.part(p.contact).pieces()[std::size_t(p.contact.element)];
     const double slope = glm::dot(p.jet.dx[0], n);
     for (const int end : {0, 1}) {
       const int next = piece.end_neighbor[std::size_t(end)];
       if (p.contact.u != end || next < 0 || !is_held(p.contact.u, slope)) continue;
       const EdgePiece& other = geometry.part(p.contact).pieces()[std::size_t(next)];
-      const bool at_start = other.end_neighbor[0] == p.contact.element &&
-                            (next != p.contact.element || end == 1);
+      const bool at_start =
+          other.end_neighbor[0] == p.contact.element && (next != p.contact.element || end == 1);
       result.push_back({p.contact.instance, SourceKind::edge, next, at_start ? 0.0 : 1.0, 0});
     }
     return result;

@@ -54,8 +54,8 @@ class ImageChains {
   struct Crossing {
     ImageGrid::SideNumber side;
     EnvelopeCurvePoint point;
-    bool outside = false;                       ///< in the other image's hemisphere
-    std::array<int, 2> next = {-1, -1};         ///< numbers of crossings
+    bool outside = false;                         ///< in the other image's hemisphere
+    std::array<int, 2> next = {-1, -1};           ///< numbers of crossings
     std::array<bool, 2> turned = {false, false};  ///< contact 0 is there contact 1
     int link_count = 0;
     bool in_triple_point = false;
@@ -223,8 +223,8 @@ double difference(const EnvelopeCurvePoint& a, const EnvelopeCurvePoint& b, bool
 
 /// Two ends may be of one curve.
 bool agree(const EnvelopeCurvePoint& a, const EnvelopeCurvePoint& b) {
-  const double apart = std::max(glm::distance(a.point[0], a.point[1]),
-                                glm::distance(b.point[0], b.point[1]));
+  const double apart =
+      std::max(glm::distance(a.point[0], a.point[1]), glm::distance(b.point[0], b.point[1]));
   return std::min(difference(a, b, false), difference(a, b, true)) <= join_share * apart;
 }
 
@@ -273,8 +273,8 @@ class Joiner {
     }
     Chain other = std::exchange(chains_[found->first], {});
     if (found->second == 1) other.reverse();
-    const bool turned = difference(end, other.points.front(), true) <
-                        difference(end, other.points.front(), false);
+    const bool turned =
+        difference(end, other.points.front(), true) < difference(end, other.points.front(), false);
     if (turned) other.exchange_sides();
     own.points.insert(own.points.end(), other.points.begin(), other.points.end());
     own.open[1] = other.open[1];

@@ -70,7 +70,25 @@ class Painter {
 };
 
 void Painter::make_triangles() {
+  // Cells of patches that are proven to touch no supporting plane are not drawn.
+  const Scene& scene = content_.scene;
+  const int levels = culling_levels(scene.model().patch_count());
+  const GaussMap gauss_map(
+      scene, {.levels = levels, .threads = options_.threads, .progress = options_.progress});
+  Culling culling =
+      cull(scene, gauss_map,
+           {.levels = levels, .threads = options_.threads, .progress = options_.progress});
+  std::erase_if(culling.cells, [](const CulledCell& c) {
+    return c.state == CellState::off || c.state == CellState::ruled;
+  });
+  const InnerPoints inner(culling.frame_points);
+
   const auto count = std::size_t(content_.elements.count());
+  std::vector<std::vector<CulledCell>> cells(count);
+  for (const CulledCell& c : culling.cells) {
+    cells[std::size_t(content_.elements.number({c.instance, SourceKind::face, c.patch, 0, 0}))]
+        .push_back(c);
+  }
   std::vector<GaussTriangles> own(count);
   parallel_for(count, 16, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
@@ -78,10 +96,11 @@ void Painter::make_triangles() {
       const Contact c = content_.elements.contact(int(k));
       if (content_.geometry.is_repeated(c)) continue;
       if (c.kind == SourceKind::face) {
-        add_face_triangles(content_.geometry, c, int(k), fineness_, own[k]);
+        add_face_triangles(content_.geometry, c, int(k), cells[k], fineness_, own[k]);
       } else if (c.kind == SourceKind::edge) {
         add_edge_bands(content_.geometry, c, int(k), fineness_, own[k]);
       }
+      inner.remove_hidden(own[k]);
     }
   });
   for (GaussTriangles& triangles : own) content_.triangles.append(std::exchange(triangles, {}));
@@ -176,8 +195,9 @@ void Painter::load(const StereographicView& view) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < here; ++k) {
       if (seen[k] == 0) continue;
-      if (kept != k) std::copy_n(vertices.begin() + std::ptrdiff_t(3 * k), 3,
-                                 vertices.begin() + std::ptrdiff_t(3 * kept));
+      if (kept != k)
+        std::copy_n(vertices.begin() + std::ptrdiff_t(3 * k), 3,
+                    vertices.begin() + std::ptrdiff_t(3 * kept));
       ++kept;
     }
     canvas_.add({vertices.data(), 3 * kept});
@@ -205,8 +225,8 @@ void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
                            value(first.depths[k]) - value(second.depths[k]) <= decision_margin;
         if (close) {
           ++counts[row].decided;
-          const dvec3 n = content_.direction(
-              {hemisphere, int(column) - image_margin, int(row) - image_margin});
+          const dvec3 n =
+              content_.direction({hemisphere, int(column) - image_margin, int(row) - image_margin});
           const auto climbed = [&](std::uint32_t triangle) {
             return climb(content_.geometry, content_.start(triangle), n);
           };
@@ -217,8 +237,7 @@ void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
           };
           // Of contacts that are one, the lower kind, which has the higher number.
           const double tie = content_.geometry.tie();
-          const bool second_wins =
-              b.h > a.h + tie || (b.h >= a.h - tie && number(b) > number(a));
+          const bool second_wins = b.h > a.h + tie || (b.h >= a.h - tie && number(b) > number(a));
           if (second_wins) pixel.triangle = second.pixels[k].triangle;
           pixel.element = std::uint32_t(number(second_wins ? b : a));
         }

@@ -47,10 +47,10 @@ struct EnvelopePixel {
 ///
 /// Every contact is drawn at the direction that it supports: patches by their Gauss map over
 /// adaptive triangulations of their parameters, edges as bands, vertices as spherical polygons; the
-/// support value goes to the depth buffer, and the numbers of element and triangle are kept, exactly.
-/// Where two values are closer than depths tell, contacts recomputed in double precision decide.
-/// So what is at a pixel is what supports at its centre, but for features that lie between pixels'
-/// centres, and joins of patches to a quarter of a pixel.
+/// support value goes to the depth buffer, and the numbers of element and triangle are kept,
+/// exactly. Where two values are closer than depths tell, contacts recomputed in double precision
+/// decide. So what is at a pixel is what supports at its centre, but for features that lie between
+/// pixels' centres, and joins of patches to a quarter of a pixel.
 ///
 /// The scene must outlive the images. Safe to ask concurrently.
 class EnvelopeImages {

@@ -73,8 +73,9 @@ class TriplePoints {
       if (glm::distance(known.n, plane.n) > same) continue;
       for (std::size_t k = 0; k < plane.contacts.size(); ++k) {
         const auto& c = plane.contacts[k];
-        const bool there = std::any_of(known.contacts.begin(), known.contacts.end(),
-                                       [&](const Contact& other) { return same_element(c, other); });
+        const bool there =
+            std::any_of(known.contacts.begin(), known.contacts.end(),
+                        [&](const Contact& other) { return same_element(c, other); });
         if (there) continue;
         known.contacts.push_back(c);
         known.points.push_back(plane.points[k]);

@@ -37,10 +37,10 @@ struct EnvelopeOverlay {
 };
 
 /// One of the images in colours that a person can read: every pixel in its source's colour, over it
-/// the separating curves in black, three pixels wide, and triple points as white discs; just outside
-/// of the inscribed circle a grey line. Pixels of the hemisphere farther than two pixels from all
-/// curves are not painted over. An overlay is drawn one pixel wide on top, curves in white and
-/// points in red.
+/// the separating curves in black, three pixels wide, and triple points as white discs; just
+/// outside of the inscribed circle a grey line. Pixels of the hemisphere farther than two pixels
+/// from all curves are not painted over. An overlay is drawn one pixel wide on top, curves in white
+/// and points in red.
 Picture envelope_picture(const EnvelopeImages& images, const EnvelopeMap& map,
                          const std::map<int, Color>& colors, Hemisphere hemisphere,
                          const EnvelopeOverlay& overlay = {});

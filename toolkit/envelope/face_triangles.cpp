@@ -37,7 +37,7 @@ class FaceTriangles {
         bezier_(geometry.patch(patch).bezier),
         coarsest_(coarsest_level(bezier_)) {}
 
-  void run();
+  void run(std::span<const CulledCell> cells);
 
  private:
   /// The patch at a place. `plus`, `minus`: the second form lets a supporting plane with the normal
@@ -50,9 +50,14 @@ class FaceTriangles {
   };
   struct Cell {
     int i, j, size;
+    ContactSigns signs;
+
+    bool has(int sign) const { return sign > 0 ? signs.plus : signs.minus; }
   };
   static constexpr int side = 1 << finest_level;
-  static std::uint32_t key(int i, int j) { return std::uint32_t(i) * (side + 1) + std::uint32_t(j); }
+  static std::uint32_t key(int i, int j) {
+    return std::uint32_t(i) * (side + 1) + std::uint32_t(j);
+  }
 
   Point& at(int i, int j);
   Point evaluate(const dvec2& uv) const;
@@ -62,7 +67,7 @@ class FaceTriangles {
   void side_points(int i0, int j0, int i1, int j1, std::vector<std::array<int, 2>>& list);
   void triangulate(const Cell& cell, int sign);
   int node(int i, int j, int sign);
-  void draw_side(Side which, int sign);
+  void draw_side(const Cell& cell, Side which, int sign);
   void draw_pole(Side which, int sign);
 
   const ContactGeometry& geometry_;
@@ -87,8 +92,7 @@ FaceTriangles::Point FaceTriangles::evaluate(const dvec2& uv) const {
   const double product = glm::length(j.dx[0]) * glm::length(j.dx[1]);
   const double largest = std::max(glm::length(j.dx[0]), glm::length(j.dx[1]));
   const bool regular = glm::length(normal) > least_normal * std::max(product, largest * largest);
-  p.n = regular ? unit(normal)
-                : geometry_.to_frame(c.instance, unit_normal(bezier_, uv.x, uv.y));
+  p.n = regular ? unit(normal) : geometry_.to_frame(c.instance, unit_normal(bezier_, uv.x, uv.y));
   if (p.n == dvec3(0.0)) return p;
   const double uu = glm::dot(j.dxx, p.n);
   const double uv_form = glm::dot(j.dxy, p.n);
@@ -150,7 +154,7 @@ void FaceTriangles::split(const Cell& cell, int level) {
   }
   const int h = cell.size / 2;
   for (const int i : {cell.i, cell.i + h}) {
-    for (const int j : {cell.j, cell.j + h}) split({i, j, h}, level + 1);
+    for (const int j : {cell.j, cell.j + h}) split({i, j, h, cell.signs}, level + 1);
   }
 }
 
@@ -212,14 +216,20 @@ void FaceTriangles::triangulate(const Cell& cell, int sign) {
   }
 }
 
-/// A strip along a side, as wide as border_width to either side.
-void FaceTriangles::draw_side(Side which, int sign) {
-  const dvec2 from = on_side(which, 0);
-  const dvec2 to = on_side(which, 1);
-  const auto place = [](double x) { return int(x * side); };
+/// A strip along the cell's part of a side of the patch, as wide as border_width to either side.
+void FaceTriangles::draw_side(const Cell& cell, Side which, int sign) {
+  const int first = along_v(which) ? cell.j : cell.i;
+  const int across = along_v(which) ? cell.i : cell.j;
+  if (at_upper_end(which) ? across + cell.size != side : across != 0) return;
+  const int fixed = at_upper_end(which) ? side : 0;
+  const auto place = [&](int free) {
+    return along_v(which) ? std::array<int, 2>{fixed, free} : std::array<int, 2>{free, fixed};
+  };
+  const std::array<int, 2> from = place(first);
+  const std::array<int, 2> to = place(first + cell.size);
   std::vector<std::array<int, 2>> list;
-  side_points(place(from.x), place(from.y), place(to.x), place(to.y), list);
-  list.push_back({place(to.x), place(to.y)});
+  side_points(from[0], from[1], to[0], to[1], list);
+  list.push_back(to);
   const double width = options_.border_width;
   for (std::size_t k = 0; k + 1 < list.size(); ++k) {
     const Point& a = at(list[k][0], list[k][1]);
@@ -230,12 +240,11 @@ void FaceTriangles::draw_side(Side which, int sign) {
     const dvec3 nb = double(sign) * b.n;
     const dvec3 middle = unit(na + nb);
     const dvec3 way = nb - na;
-    const dvec3 along =
-        glm::length(way) > 1e-9 ? unit(way - glm::dot(way, middle) * middle)
-                                : tangent_frame(middle)[0];
-    const dvec3 across = glm::cross(middle, along);
+    const dvec3 along = glm::length(way) > 1e-9 ? unit(way - glm::dot(way, middle) * middle)
+                                                : tangent_frame(middle)[0];
+    const dvec3 sideways = glm::cross(middle, along);
     const auto corner = [&](const dvec3& n, double forward, double left, const Point& p) {
-      return result_.add_node({unit(n + width * (forward * along + left * across)), p.x, p.uv});
+      return result_.add_node({unit(n + width * (forward * along + left * sideways)), p.x, p.uv});
     };
     const int a0 = corner(na, -1, -1, a);
     const int a1 = corner(na, -1, 1, a);
@@ -257,24 +266,30 @@ void FaceTriangles::draw_pole(Side which, int sign) {
   for (std::size_t k = 0; k < 4; ++k) {
     const double a = k == 1 || k == 2 ? 1 : -1;
     const double b = k >= 2 ? 1 : -1;
-    corner[k] =
-        result_.add_node({unit(n + options_.border_width * (a * e0 + b * e1)), p.x, p.uv});
+    corner[k] = result_.add_node({unit(n + options_.border_width * (a * e0 + b * e1)), p.x, p.uv});
   }
   result_.add_triangle(element_, corner[0], corner[1], corner[2], false);
   result_.add_triangle(element_, corner[0], corner[2], corner[3], false);
 }
 
-void FaceTriangles::run() {
-  split({0, 0, side}, 0);
+void FaceTriangles::run(std::span<const CulledCell> cells) {
+  for (const CulledCell& c : cells) {
+    const int size = side >> c.cell.level;
+    split({int(c.cell.i) * size, int(c.cell.j) * size, size, c.signs}, c.cell.level);
+  }
+  const auto& borders = geometry_.patch(patch_).borders;
   for (const int sign : {1, -1}) {
-    for (const Cell& leaf : leaves_) triangulate(leaf, sign);
-    for (const Side which : all_sides) {
-      const Border& border = geometry_.patch(patch_).borders[std::size_t(which)];
-      if (border.kind != BorderKind::collapsed) {
-        draw_side(which, sign);
-      } else if (border.vertex < 0) {
-        draw_pole(which, sign);
+    for (const Cell& leaf : leaves_) {
+      if (!leaf.has(sign)) continue;
+      triangulate(leaf, sign);
+      for (const Side which : all_sides) {
+        if (borders[std::size_t(which)].kind == BorderKind::collapsed) continue;
+        draw_side(leaf, which, sign);
       }
+    }
+    for (const Side which : all_sides) {
+      const Border& border = borders[std::size_t(which)];
+      if (border.kind == BorderKind::collapsed && border.vertex < 0) draw_pole(which, sign);
     }
   }
 }
@@ -282,9 +297,9 @@ void FaceTriangles::run() {
 }  // namespace
 
 void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, int element,
-                        const GaussTriangleOptions& options, GaussTriangles& result) {
-  if (geometry.is_ruled(patch)) return;
-  FaceTriangles(geometry, patch, element, options, result).run();
+                        std::span<const CulledCell> cells, const GaussTriangleOptions& options,
+                        GaussTriangles& result) {
+  FaceTriangles(geometry, patch, element, options, result).run(cells);
 }
 
 }  // namespace taut

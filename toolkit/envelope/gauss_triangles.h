@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "taut/hull/contact_geometry.h"
+#include "taut/hull/culling.h"
 
 namespace taut {
 
@@ -68,19 +70,37 @@ struct GaussTriangleOptions {
 /// Largest angle between the directions at two corners of a triangle, in radians.
 inline constexpr double largest_turn = 0.12;
 
-/// The Gauss map of a patch: over an adaptive triangulation of its parameters, the normals Su x Sv
-/// and their opposites, each where the curvature lets a supporting plane touch; and along its sides
-/// narrow strips, so that no crack opens to a neighbour. Nothing of a ruled patch, whose points are
-/// extreme on its borders only.
-/// @pre kind face
+/// The Gauss map of some cells of a patch: over an adaptive triangulation of its parameters, the
+/// normals Su x Sv and their opposites, as far as the cells' signs and the curvature let a
+/// supporting plane touch; and along its sides narrow strips, so that no crack opens to a
+/// neighbour.
+/// @pre kind face, not ruled; the cells are the patch's and do not overlap
 void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, int element,
-                        const GaussTriangleOptions& options, GaussTriangles& result);
+                        std::span<const CulledCell> cells, const GaussTriangleOptions& options,
+                        GaussTriangles& result);
 
 /// The directions in which planes touch a piece of an edge: to each point those orthogonal to the
 /// tangent, as far as the curve is bent away from them. Nothing of a straight piece.
 /// @pre kind edge
 void add_edge_bands(const ContactGeometry& geometry, const Contact& piece, int element,
                     const GaussTriangleOptions& options, GaussTriangles& result);
+
+/// Points of the model by which triangles are seen to lie below the envelope.
+class InnerPoints {
+ public:
+  /// @pre points are not empty; in the scene's frame
+  explicit InnerPoints(const std::vector<dvec3>& points);
+
+  /// True is certain: all values over the triangle are lower than that of one of the points.
+  bool surely_hides(const GaussTriangles& triangles, const GaussTriangles::Triangle& t) const;
+  /// Takes the triangles out that are hidden, and nodes that no other one has.
+  void remove_hidden(GaussTriangles& triangles) const;
+
+ private:
+  static std::size_t cell_of(const dvec3& n);
+
+  std::vector<dvec3> highest_;  ///< per cell of the sphere, the point that is highest in its middle
+};
 
 /// A point whose directions of support are to be filled.
 struct CellPoint {
@@ -95,7 +115,7 @@ struct CellPoint {
 /// farthest, a spherical polygon that is dual to the points' convex hull. Together they cover the
 /// sphere; cells overlap their neighbours by border_width. Points in a plane or on a line have
 /// cells that are lunes. Returns, for each point, the number of its first triangle.
-std::vector<int> add_point_cells(const std::vector<CellPoint>& points, const GaussTriangleOptions& options,
-                     GaussTriangles& result);
+std::vector<int> add_point_cells(const std::vector<CellPoint>& points,
+                                 const GaussTriangleOptions& options, GaussTriangles& result);
 
 }  // namespace taut

@@ -56,8 +56,8 @@ class OffscreenCanvas {
   const std::string& driver() const;
 
   /// Takes away all triangles; those that follow are projected for the given pole (+1: the north
-  /// image, see StereographicView), of which the image shows -extent <= x, y <= extent, and no value
-  /// is farther than `reach` from zero.
+  /// image, see StereographicView), of which the image shows -extent <= x, y <= extent, and no
+  /// value is farther than `reach` from zero.
   void begin(int pole, double extent, double reach);
   /// Adds triangles, three vertices each.
   void add(std::span<const Vertex> vertices);

@@ -9,10 +9,10 @@
 namespace taut {
 namespace {
 
-/// Two contacts are on different branches if climbing from each, in the other's direction, ends away
-/// from the other: together by more than this times their distance. It is two for branches that do
-/// not meet, and at most one where the one goes on into the other, whether climbing gets across the
-/// border between them or stops there.
+/// Two contacts are on different branches if climbing from each, in the other's direction, ends
+/// away from the other: together by more than this times their distance. It is two for branches
+/// that do not meet, and at most one where the one goes on into the other, whether climbing gets
+/// across the border between them or stops there.
 constexpr double bridging_share = 1.5;
 
 /// Contacts no farther apart, in the scene's frame, are one.
@@ -48,7 +48,8 @@ bool are_neighbors(const EnvelopeImages::Content& content, const EnvelopePixel& 
   return s.element == t.element && share_node(s, t);
 }
 
-dvec3 mean_direction(const EnvelopeImages::Content& content, std::span<const EnvelopePixel> pixels) {
+dvec3 mean_direction(const EnvelopeImages::Content& content,
+                     std::span<const EnvelopePixel> pixels) {
   dvec3 sum(0.0);
   for (const EnvelopePixel& p : pixels) sum += content.direction(p);
   return unit(sum);

@@ -80,10 +80,10 @@ void add_strip(const CellPoint& point, const dvec3& a, const dvec3& b, double wi
   const dvec3 way = b - a;
   const dvec3 along = glm::length(way) > 0 ? width * unit(way) : width * tangent_frame(a)[0];
   const dvec3 across = glm::cross(a, along);
-  add_triangle(point, unit(a - along - across), unit(b + along - across),
-               unit(b + along + across), result);
-  add_triangle(point, unit(a - along - across), unit(b + along + across),
-               unit(a - along + across), result);
+  add_triangle(point, unit(a - along - across), unit(b + along - across), unit(b + along + across),
+               result);
+  add_triangle(point, unit(a - along - across), unit(b + along + across), unit(a - along + across),
+               result);
 }
 
 /// The whole sphere.
