@@ -9,8 +9,14 @@ namespace {
 /// Steps of a band about its tangent, so that each is below largest_turn.
 constexpr int steps_around = 96;
 
+/// Steps that are looked at together first.
+constexpr int steps_a_sector = 8;
+
 /// Intervals of a piece are halved at most so often.
 constexpr int finest_level = 12;
+
+/// Levels that are never left out, so that what happens inside shows.
+constexpr int coarsest_level = 2;
 
 /// Directions towards which the curve is bent by more than this share of its bend are left out.
 constexpr double inner_share = 0.05;
@@ -19,8 +25,13 @@ constexpr double inner_share = 0.05;
 class EdgeBands {
  public:
   EdgeBands(const ContactGeometry& geometry, const Contact& piece, int element,
-            const GaussTriangleOptions& options, GaussTriangles& result)
-      : geometry_(geometry), piece_(piece), element_(element), options_(options), result_(result) {}
+            const InnerPoints& inner, const GaussTriangleOptions& options, GaussTriangles& result)
+      : geometry_(geometry),
+        piece_(piece),
+        element_(element),
+        inner_(inner),
+        options_(options),
+        result_(result) {}
 
   void run();
 
@@ -45,12 +56,14 @@ class EdgeBands {
   bool is_fine(const Point& a, const Point& b, const Point& middle) const;
   void make_frames();
   bool is_outer(const Point& p, int k) const;
+  bool is_hidden(const Point& a, const Point& b, int k, int steps) const;
   void band(Point& a, Point& b);
   void draw_end(const Point& p, double forward);
 
   const ContactGeometry& geometry_;
   Contact piece_;
   int element_;
+  const InnerPoints& inner_;
   const GaussTriangleOptions& options_;
   GaussTriangles& result_;
   std::vector<Point> points_;
@@ -85,7 +98,7 @@ bool EdgeBands::is_fine(const Point& a, const Point& b, const Point& middle) con
 
 void EdgeBands::sample(const Point& a, const Point& b, int level) {
   const Point middle = at(0.5 * (a.t + b.t));
-  if (level < finest_level && (level < 2 || !is_fine(a, b, middle))) {
+  if (level < finest_level && (level < coarsest_level || !is_fine(a, b, middle))) {
     sample(a, middle, level + 1);
     sample(middle, b, level + 1);
   } else {
@@ -109,15 +122,26 @@ bool EdgeBands::is_outer(const Point& p, int k) const {
   return glm::dot(p.bend, p.direction(k)) <= inner_share * glm::length(p.bend);
 }
 
+/// Nothing can be seen between the two points in so many steps from the k-th on.
+bool EdgeBands::is_hidden(const Point& a, const Point& b, int k, int steps) const {
+  const std::array<dvec3, 2> x = {a.x, b.x};
+  const std::array<dvec3, 4> n = {a.direction(k), a.direction(k + steps), b.direction(k),
+                                  b.direction(k + steps)};
+  return inner_.surely_hides(x, n);
+}
+
 void EdgeBands::band(Point& a, Point& b) {
   const auto node = [&](Point& p, int k) {
     int& number = p.nodes[std::size_t(k % steps_around)];
     if (number < 0) number = result_.add_node({p.direction(k), p.x, {p.t, 0}});
     return number;
   };
+  bool hidden = false;
   for (int k = 0; k < steps_around; ++k) {
+    if (k % steps_a_sector == 0) hidden = is_hidden(a, b, k, steps_a_sector);
+    if (hidden) continue;
     const bool outer = is_outer(a, k) || is_outer(a, k + 1) || is_outer(b, k) || is_outer(b, k + 1);
-    if (!outer) continue;
+    if (!outer || is_hidden(a, b, k, 1)) continue;
     const int a0 = node(a, k);
     const int a1 = node(a, k + 1);
     const int b0 = node(b, k);
@@ -130,16 +154,15 @@ void EdgeBands::band(Point& a, Point& b) {
 /// A strip along the last circle of directions, against cracks to where the edge goes on.
 void EdgeBands::draw_end(const Point& p, double forward) {
   const dvec3 shift = forward * options_.border_width * p.along;
-  std::array<int, 2> last = {-1, -1};
-  for (int k = 0; k <= steps_around; ++k) {
-    const dvec3 n = p.direction(k);
-    const std::array<int, 2> next = {result_.add_node({n, p.x, {p.t, 0}}),
-                                     result_.add_node({unit(n + shift), p.x, {p.t, 0}})};
-    if (k > 0 && (is_outer(p, k - 1) || is_outer(p, k))) {
-      result_.add_triangle(element_, last[0], next[0], next[1], false);
-      result_.add_triangle(element_, last[0], next[1], last[1], false);
-    }
-    last = next;
+  const auto node = [&](const dvec3& n) { return result_.add_node({unit(n), p.x, {p.t, 0}}); };
+  for (int k = 0; k < steps_around; ++k) {
+    if (!(is_outer(p, k) || is_outer(p, k + 1)) || is_hidden(p, p, k, 1)) continue;
+    const dvec3 m = p.direction(k);
+    const dvec3 n = p.direction(k + 1);
+    const int far = node(n + shift);
+    const int near = node(m);
+    result_.add_triangle(element_, near, node(n), far, false);
+    result_.add_triangle(element_, near, far, node(m + shift), false);
   }
 }
 
@@ -153,19 +176,21 @@ void EdgeBands::run() {
   make_frames();
   for (Point& p : points_) p.nodes.assign(steps_around, -1);
   for (std::size_t k = 0; k + 1 < points_.size(); ++k) band(points_[k], points_[k + 1]);
-  // Directions grow in n . along where the curve goes back.
-  draw_end(points_.front(), 1);
-  draw_end(points_.front(), -1);
-  draw_end(points_.back(), 1);
-  draw_end(points_.back(), -1);
+  // At a vertex the vertex's cell reaches over.
+  const EdgePiece& piece = geometry_.part(piece_).pieces()[std::size_t(piece_.element)];
+  for (const double forward : {-1.0, 1.0}) {
+    if (piece.end_neighbor[0] >= 0) draw_end(points_.front(), forward);
+    if (piece.end_neighbor[1] >= 0) draw_end(points_.back(), forward);
+  }
 }
 
 }  // namespace
 
 void add_edge_bands(const ContactGeometry& geometry, const Contact& piece, int element,
-                    const GaussTriangleOptions& options, GaussTriangles& result) {
+                    const InnerPoints& inner, const GaussTriangleOptions& options,
+                    GaussTriangles& result) {
   if (geometry.is_straight(piece)) return;
-  EdgeBands(geometry, piece, element, options, result).run();
+  EdgeBands(geometry, piece, element, inner, options, result).run();
 }
 
 }  // namespace taut

@@ -28,10 +28,12 @@ int coarsest_level(const BezierPatch& patch) {
 class FaceTriangles {
  public:
   FaceTriangles(const ContactGeometry& geometry, const Contact& patch, int element,
-                const GaussTriangleOptions& options, GaussTriangles& result)
+                const InnerPoints& inner, const GaussTriangleOptions& options,
+                GaussTriangles& result)
       : geometry_(geometry),
         patch_(patch),
         element_(element),
+        inner_(inner),
         options_(options),
         result_(result),
         bezier_(geometry.patch(patch).bezier),
@@ -61,7 +63,8 @@ class FaceTriangles {
 
   Point& at(int i, int j);
   Point evaluate(const dvec2& uv) const;
-  void split(const Cell& cell, int level);
+  void split(Cell cell, int level);
+  void hide(Cell& cell);
   bool is_fine(const Cell& cell, int level);
   bool is_halfway(const Point& a, const Point& middle, const Point& b) const;
   void side_points(int i0, int j0, int i1, int j1, std::vector<std::array<int, 2>>& list);
@@ -73,6 +76,7 @@ class FaceTriangles {
   const ContactGeometry& geometry_;
   Contact patch_;
   int element_;
+  const InnerPoints& inner_;
   const GaussTriangleOptions& options_;
   GaussTriangles& result_;
   const BezierPatch& bezier_;
@@ -143,7 +147,25 @@ bool FaceTriangles::is_fine(const Cell& cell, int level) {
          halfway(0, 4, 8) && halfway(2, 4, 6);
 }
 
-void FaceTriangles::split(const Cell& cell, int level) {
+/// Leaves out the signs with which nothing of the cell can be seen, by its corners and the points
+/// halfway.
+void FaceTriangles::hide(Cell& cell) {
+  std::array<dvec3, 9> x{};
+  std::array<dvec3, 9> n{};
+  for (std::size_t k = 0; k < 9; ++k) {
+    const Point& p = at(cell.i + int(k / 3) * cell.size / 2, cell.j + int(k % 3) * cell.size / 2);
+    if (p.n == dvec3(0.0) || glm::dot(p.n, n[0]) < 0) return;
+    x[k] = p.x;
+    n[k] = p.n;
+  }
+  cell.signs.plus = cell.signs.plus && !inner_.surely_hides(x, n);
+  for (dvec3& direction : n) direction = -direction;
+  cell.signs.minus = cell.signs.minus && !inner_.surely_hides(x, n);
+}
+
+void FaceTriangles::split(Cell cell, int level) {
+  if (level >= coarsest_) hide(cell);
+  if (!cell.signs.any()) return;
   const bool last = cell.size == 2;
   if (last || (level >= coarsest_ && is_fine(cell, level))) {
     leaves_.push_back(cell);
@@ -297,9 +319,9 @@ void FaceTriangles::run(std::span<const CulledCell> cells) {
 }  // namespace
 
 void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, int element,
-                        std::span<const CulledCell> cells, const GaussTriangleOptions& options,
-                        GaussTriangles& result) {
-  FaceTriangles(geometry, patch, element, options, result).run(cells);
+                        std::span<const CulledCell> cells, const InnerPoints& inner,
+                        const GaussTriangleOptions& options, GaussTriangles& result) {
+  FaceTriangles(geometry, patch, element, inner, options, result).run(cells);
 }
 
 }  // namespace taut

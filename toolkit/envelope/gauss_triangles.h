@@ -70,28 +70,16 @@ struct GaussTriangleOptions {
 /// Largest angle between the directions at two corners of a triangle, in radians.
 inline constexpr double largest_turn = 0.12;
 
-/// The Gauss map of some cells of a patch: over an adaptive triangulation of its parameters, the
-/// normals Su x Sv and their opposites, as far as the cells' signs and the curvature let a
-/// supporting plane touch; and along its sides narrow strips, so that no crack opens to a
-/// neighbour.
-/// @pre kind face, not ruled; the cells are the patch's and do not overlap
-void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, int element,
-                        std::span<const CulledCell> cells, const GaussTriangleOptions& options,
-                        GaussTriangles& result);
-
-/// The directions in which planes touch a piece of an edge: to each point those orthogonal to the
-/// tangent, as far as the curve is bent away from them. Nothing of a straight piece.
-/// @pre kind edge
-void add_edge_bands(const ContactGeometry& geometry, const Contact& piece, int element,
-                    const GaussTriangleOptions& options, GaussTriangles& result);
-
-/// Points of the model by which triangles are seen to lie below the envelope.
+/// Points of the model by which contacts are seen to lie below the envelope.
 class InnerPoints {
  public:
   /// @pre points are not empty; in the scene's frame
   explicit InnerPoints(const std::vector<dvec3>& points);
 
-  /// True is certain: all values over the triangle are lower than that of one of the points.
+  /// True is certain: in all directions between the given ones (non-negative combinations), one of
+  /// the points is higher than everything between x (convex combinations), by more than `rise`.
+  bool surely_hides(std::span<const dvec3> x, std::span<const dvec3> n, double rise = 0) const;
+  /// The same of all values over a triangle.
   bool surely_hides(const GaussTriangles& triangles, const GaussTriangles::Triangle& t) const;
   /// Takes the triangles out that are hidden, and nodes that no other one has.
   void remove_hidden(GaussTriangles& triangles) const;
@@ -101,6 +89,23 @@ class InnerPoints {
 
   std::vector<dvec3> highest_;  ///< per cell of the sphere, the point that is highest in its middle
 };
+
+/// The Gauss map of some cells of a patch: over an adaptive triangulation of its parameters, the
+/// normals Su x Sv and their opposites, as far as the cells' signs and the curvature let a
+/// supporting plane touch and no inner point hides them; and along its sides narrow strips, so that
+/// no crack opens to a neighbour.
+/// @pre kind face, not ruled; the cells are the patch's and do not overlap
+void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, int element,
+                        std::span<const CulledCell> cells, const InnerPoints& inner,
+                        const GaussTriangleOptions& options, GaussTriangles& result);
+
+/// The directions in which planes touch a piece of an edge: to each point those orthogonal to the
+/// tangent, as far as the curve is bent away from them and no inner point hides them. Nothing of a
+/// straight piece.
+/// @pre kind edge
+void add_edge_bands(const ContactGeometry& geometry, const Contact& piece, int element,
+                    const InnerPoints& inner, const GaussTriangleOptions& options,
+                    GaussTriangles& result);
 
 /// A point whose directions of support are to be filled.
 struct CellPoint {

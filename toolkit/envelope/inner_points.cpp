@@ -42,31 +42,34 @@ std::size_t InnerPoints::cell_of(const dvec3& n) {
   return std::size_t((face * cells_a_side + index(axis + 1)) * cells_a_side + index(axis + 2));
 }
 
-/// (x - p) . n over the triangle is a sum of such products of its corners, with factors that are
-/// not negative, and of its bends.
+bool InnerPoints::surely_hides(std::span<const dvec3> x, std::span<const dvec3> n,
+                               double rise) const {
+  dvec3 sum(0.0);
+  for (const dvec3& direction : n) sum += direction;
+  const dvec3& p = highest_[cell_of(sum)];
+  for (const dvec3& point : x) {
+    for (const dvec3& direction : n) {
+      if (!(glm::dot(point - p, direction) + rise < -hidden_depth)) return false;
+    }
+  }
+  return true;
+}
+
 bool InnerPoints::surely_hides(const GaussTriangles& triangles,
                                const GaussTriangles::Triangle& t) const {
-  std::array<const GaussTriangles::Node*, 3> node{};
-  dvec3 sum(0.0);
+  std::array<dvec3, 3> x{};
+  std::array<dvec3, 3> n{};
   for (std::size_t k = 0; k < 3; ++k) {
-    node[k] = &triangles.nodes[std::size_t(t.node[k])];
-    sum += node[k]->n;
+    const GaussTriangles::Node& node = triangles.nodes[std::size_t(t.node[k])];
+    x[k] = node.x;
+    n[k] = node.n;
   }
-  // Otherwise directions between them could be any.
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (glm::dot(node[k]->n, node[(k + 1) % 3]->n) < std::cos(2 * largest_turn)) return false;
-  }
-  const dvec3& p = highest_[cell_of(sum)];
-  double highest = -std::numeric_limits<double>::infinity();
   double bend = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      highest = std::max(highest, glm::dot(node[i]->x - p, node[j]->n));
-    }
-    const std::size_t next = (i + 1) % 3;
-    bend += std::abs(glm::dot(node[i]->n - node[next]->n, node[i]->x - node[next]->x));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    bend += std::abs(glm::dot(n[k] - n[next], x[k] - x[next]));
   }
-  return highest + bend / 8 < -hidden_depth;
+  return surely_hides(x, n, bend / 8);
 }
 
 void InnerPoints::remove_hidden(GaussTriangles& triangles) const {
