@@ -97,7 +97,8 @@ EnvelopeMap trace_envelope(const EnvelopeImages& images) {
   const std::array<ImageGrid, 2> grids = {ImageGrid(content, Hemisphere::north),
                                           ImageGrid(content, Hemisphere::south)};
   EnvelopeMap map;
-  map.regions = image_regions(content, grids);
+  map.size = content.size;
+  find_regions(content, grids, map);
   map.curves = chain_curves(content, grids);
   TriplePoints triple_points(content, map.triple_points);
   for (const ImageGrid& grid : grids) triple_points.find(grid);

@@ -49,6 +49,15 @@ struct EnvelopeMap {
   std::vector<EnvelopeCurve> curves;
   std::vector<EnvelopeTriplePoint> triple_points;
 
+  /// Width and height of the images.
+  int size = 0;
+  /// Per hemisphere and pixel, row by row, the number of its region; -1 outside of the circle.
+  std::array<std::vector<int>, 2> region_numbers;
+
+  int region_at(const EnvelopePixel& p) const {
+    return region_numbers[std::size_t(p.hemisphere)]
+                         [std::size_t(p.row) * std::size_t(size) + std::size_t(p.column)];
+  }
   int chain_count() const { return curves.empty() ? 0 : curves.back().chain + 1; }
 };
 

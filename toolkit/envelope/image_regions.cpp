@@ -23,17 +23,20 @@ class Regions {
         count_(size_ * size_),
         sets_(std::size_t(2 * count_)) {}
 
-  std::vector<EnvelopeRegion> run() {
+  void run(EnvelopeMap& map) {
     for (const ImageGrid& grid : grids_) unite_neighbors(grid);
     unite_across_equator();
-    std::vector<EnvelopeRegion> regions;
     number_.assign(std::size_t(2 * count_), -1);
     for (const ImageGrid& grid : grids_) {
+      std::vector<int>& numbers = map.region_numbers[std::size_t(grid.hemisphere())];
+      numbers.assign(std::size_t(map.size) * std::size_t(map.size), -1);
       for (int p = 0; p < count_; ++p) {
-        if (grid.is_seen(p) && is_inside(grid, p)) count_pixel(grid, p, regions);
+        if (!grid.is_seen(p) || !is_inside(grid, p)) continue;
+        const EnvelopePixel pixel = grid.pixel(p);
+        numbers[std::size_t(pixel.row * map.size + pixel.column)] =
+            count_pixel(grid, p, map.regions);
       }
     }
-    return regions;
   }
 
  private:
@@ -97,7 +100,8 @@ class Regions {
     return deepest;
   }
 
-  void count_pixel(const ImageGrid& grid, int p, std::vector<EnvelopeRegion>& regions) {
+  /// The number of its region.
+  int count_pixel(const ImageGrid& grid, int p, std::vector<EnvelopeRegion>& regions) {
     int& number = number_[std::size_t(sets_.find(global(grid, p)))];
     if (number < 0) {
       number = int(regions.size());
@@ -105,11 +109,12 @@ class Regions {
     }
     EnvelopeRegion& region = regions[std::size_t(number)];
     ++region.pixels;
-    if (region.depth >= deepest) return;
+    if (region.depth >= deepest) return number;
     const int own = depth(grid, p);
-    if (own <= region.depth) return;
+    if (own <= region.depth) return number;
     region.depth = own;
     region.inside = grid.pixel(p);
+    return number;
   }
 
   const EnvelopeImages::Content& content_;
@@ -122,9 +127,9 @@ class Regions {
 
 }  // namespace
 
-std::vector<EnvelopeRegion> image_regions(const EnvelopeImages::Content& content,
-                                          const std::array<ImageGrid, 2>& grids) {
-  return Regions(content, grids).run();
+void find_regions(const EnvelopeImages::Content& content, const std::array<ImageGrid, 2>& grids,
+                  EnvelopeMap& map) {
+  Regions(content, grids).run(map);
 }
 
 }  // namespace taut

@@ -1,15 +1,15 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "taut/envelope/envelope_map.h"
 #include "taut/envelope/image_grid.h"
 
 namespace taut {
 
-/// The regions of both images (EnvelopeMap::regions), in the order of their first pixels.
-std::vector<EnvelopeRegion> image_regions(const EnvelopeImages::Content& content,
-                                          const std::array<ImageGrid, 2>& grids);
+/// Fills the map's regions, in the order of their first pixels, and its pixels' numbers of them.
+/// @pre its size is that of the images
+void find_regions(const EnvelopeImages::Content& content, const std::array<ImageGrid, 2>& grids,
+                  EnvelopeMap& map);
 
 }  // namespace taut
