@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <cstdint>
+#include <limits>
+#include <map>
 
 #include "taut/core/parallel.h"
+#include "taut/core/stopwatch.h"
 #include "taut/envelope/envelope_content.h"
 #include "taut/hull/polytope_mesh.h"
 #include "taut/hull/sampled_start.h"
@@ -13,125 +16,166 @@ namespace taut {
 namespace {
 
 constexpr const char* images_too_coarse =
-    "the images are too coarse for the tolerance: larger ones may reach it";
+    "the images do not show enough for the tolerance: larger ones may";
 
-/// Between two pixels, directions are halved at most so often.
-constexpr int halving_limit = 10;
+/// Pixels across an image at which contacts are taken first.
+constexpr int first_pixels = 16;
 
-/// The grid's steps are such that surfaces rise between contacts by this share of the tolerance.
-constexpr double rise_share = 0.25;
+/// Contacts are added where they rise above a facet by this share of the tolerance, and if they are
+/// no nearer to another one: points nearer together make slivers, and change the hull by less.
+constexpr double worthwhile_rise = 0.01;
+/// And no less than this, in the scene's frame, where coordinates are rounded.
+constexpr double least_rise = 1e-14;
 
-/// Takes contacts from images, each once.
-class ImageSampler {
+/// Grows a polytope of contacts that the images show.
+class ImagePolytope {
  public:
-  ImageSampler(const EnvelopeImages& images, const EnvelopeMap& map, double tolerance)
-      : content_(images.content()),
-        map_(map),
-        rise_(rise_share * content_.scene.frame().length_to_frame(tolerance)) {}
+  ImagePolytope(const EnvelopeImages& images, const EnvelopeMap& map, const HullOptions& options,
+                double tolerance)
+      : images_(images),
+        content_(images.content()),
+        options_(options),
+        tolerance_(tolerance),
+        rise_(std::max(least_rise,
+                       worthwhile_rise * images.scene().frame().length_to_frame(tolerance))) {
+    for (const EnvelopeTriplePoint& p : map.triple_points) {
+      for (const Contact& c : p.contacts) add({p.n, c});
+    }
+    const int step = std::max(1, images.size() / first_pixels);
+    for (const Hemisphere hemisphere : hemispheres) {
+      for (int row = step / 2; row < images.size(); row += step) {
+        for (int column = step / 2; column < images.size(); column += step) {
+          const EnvelopePixel p{hemisphere, column, row};
+          if (images.source(p) >= 0) add({images.direction(p), images.contact(p)});
+        }
+      }
+    }
+  }
 
-  /// Of every step-th pixel.
-  void sample(int step, const HullOptions& options);
-
-  std::vector<Sample> samples;
-  std::vector<dvec3> points;  ///< per sample, in model coordinates
+  SampledPolytope run();
 
  private:
-  struct Found {
-    dvec3 n;
-    ClimbedContact contact;
-  };
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell_of(const dvec3& x) const;
+  bool add(const Sample& sample);
+  std::vector<int> wanted_facets(const SampledPolytope& polytope) const;
+  ClimbedContact highest_seen(const dvec3& n) const;
+  std::vector<Sample> seen_above(const SampledPolytope& polytope,
+                                 const std::vector<int>& facets) const;
 
-  void sample_row(int row, int step, Hemisphere hemisphere, std::vector<Found>& result) const;
-  void add_between(const Found& a, const Found& b, int halvings, std::vector<Found>& result) const;
-  void add(const dvec3& n, const Contact& contact);
-
+  const EnvelopeImages& images_;
   const EnvelopeImages::Content& content_;
-  const EnvelopeMap& map_;
-  double rise_;  ///< in the scene's frame
-  std::set<int> vertices_;
+  const HullOptions& options_;
+  double tolerance_;  ///< in model units
+  double rise_;       ///< in the scene's frame
+  std::vector<Sample> samples_;
+  std::vector<dvec3> points_;               ///< per sample, in model coordinates
+  std::vector<dvec3> frame_points_;         ///< the same in the scene's frame
+  std::map<Cell, std::vector<int>> cells_;  ///< samples by cells as wide as rise_
 };
 
-void ImageSampler::add(const dvec3& n, const Contact& contact) {
-  if (contact.kind == SourceKind::vertex &&
-      !vertices_.insert(content_.elements.number(contact)).second) {
-    return;
-  }
-  samples.push_back({n, contact});
-  points.push_back(content_.scene.point(contact));
+ImagePolytope::Cell ImagePolytope::cell_of(const dvec3& x) const {
+  const auto index = [&](double t) { return std::int64_t(std::floor(t / rise_)); };
+  return {index(x.x), index(x.y), index(x.z)};
 }
 
-/// What a surface may rise over the chord between two contacts is an eighth of what the chord gains
-/// from the one direction to the other.
-void ImageSampler::add_between(const Found& a, const Found& b, int halvings,
-                               std::vector<Found>& result) const {
-  const double gain = glm::dot(a.contact.x - b.contact.x, a.n - b.n);
-  if (halvings == halving_limit || gain / 8 <= rise_) return;
-  Found middle{unit(a.n + b.n), {}};
-  const ClimbedContact from_a = climb(content_.geometry, a.contact.place, middle.n);
-  const ClimbedContact from_b = climb(content_.geometry, b.contact.place, middle.n);
-  middle.contact = from_a.h >= from_b.h ? from_a : from_b;
-  const double moved = std::min(glm::distance(middle.contact.x, a.contact.x),
-                                glm::distance(middle.contact.x, b.contact.x));
-  if (moved <= rise_) return;  // it jumps from the one to the other
-  add_between(a, middle, halvings + 1, result);
-  result.push_back(middle);
-  add_between(middle, b, halvings + 1, result);
-}
-
-/// The pixels of a row, and what lies between them and those to the right and below.
-void ImageSampler::sample_row(int row, int step, Hemisphere hemisphere,
-                              std::vector<Found>& result) const {
-  const auto drawn = [&](int column, int line) {
-    const double reach = 0.5 * content_.size + step;
-    const dvec2 p(column + 0.5 - 0.5 * content_.size, line + 0.5 - 0.5 * content_.size);
-    return column < content_.size && line < content_.size && glm::length(p) <= reach &&
-           content_.at({hemisphere, column, line}).element != OffscreenCanvas::nothing;
-  };
-  const auto found_at = [&](int column, int line) {
-    const EnvelopePixel p{hemisphere, column, line};
-    return Found{content_.direction(p), content_.climbed(p)};
-  };
-  for (int column = 0; column < content_.size; column += step) {
-    if (!drawn(column, row)) continue;
-    const Found own = found_at(column, row);
-    result.push_back(own);
-    if (drawn(column + step, row)) add_between(own, found_at(column + step, row), 0, result);
-    if (drawn(column, row + step)) add_between(own, found_at(column, row + step), 0, result);
-  }
-}
-
-void ImageSampler::sample(int step, const HullOptions& options) {
-  samples.clear();
-  points.clear();
-  vertices_.clear();
-  for (const EnvelopeTriplePoint& p : map_.triple_points) {
-    for (const Contact& c : p.contacts) add(p.n, c);
-  }
-  for (const EnvelopeCurve& curve : map_.curves) {
-    for (std::size_t k = 0; k < curve.points.size(); ++k) {
-      const bool end = k == 0 || k + 1 == curve.points.size();
-      if (!end && k % std::size_t(step) != 0) continue;
-      for (const Contact& c : curve.points[k].contact) add(curve.points[k].n, c);
+/// False if there is one as good as this already.
+bool ImagePolytope::add(const Sample& sample) {
+  const dvec3 x = content_.geometry.point(sample.contact);
+  const Cell own = cell_of(x);
+  for (std::int64_t i = own[0] - 1; i <= own[0] + 1; ++i) {
+    for (std::int64_t j = own[1] - 1; j <= own[1] + 1; ++j) {
+      for (std::int64_t k = own[2] - 1; k <= own[2] + 1; ++k) {
+        const auto found = cells_.find({i, j, k});
+        if (found == cells_.end()) continue;
+        for (const int other : found->second) {
+          if (glm::distance(frame_points_[std::size_t(other)], x) < rise_) return false;
+        }
+      }
     }
   }
-  const auto rows = std::size_t((content_.size + step - 1) / step);
-  std::vector<std::vector<Found>> found(2 * rows);
-  parallel_for(found.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-    options.progress.check();
+  cells_[own].push_back(int(samples_.size()));
+  samples_.push_back(sample);
+  points_.push_back(content_.scene.frame().to_model(x));
+  frame_points_.push_back(x);
+  return true;
+}
+
+/// Those that keep a vertex from its tolerance.
+std::vector<int> ImagePolytope::wanted_facets(const SampledPolytope& polytope) const {
+  std::vector<int> wanted;
+  for (std::size_t f = 0; f < polytope.gaps.size(); ++f) {
+    const PointHull::Facet& facet = polytope.hull.facets()[f];
+    if (!facet.alive || polytope.gaps[f] <= rise_) continue;
+    const bool bounds = std::any_of(facet.vertex.begin(), facet.vertex.end(), [&](int v) {
+      return polytope.vertex_bounds[std::size_t(v)] > tolerance_;
+    });
+    if (bounds) wanted.push_back(int(f));
+  }
+  return wanted;
+}
+
+/// The highest contact for a direction that its pixel or one next to that leads to: separating
+/// curves may run between them.
+ClimbedContact ImagePolytope::highest_seen(const dvec3& n) const {
+  const EnvelopePixel pixel = images_.pixel(n);
+  std::vector<std::uint32_t> tried;
+  ClimbedContact best;
+  for (int row = pixel.row - 1; row <= pixel.row + 1; ++row) {
+    for (int column = pixel.column - 1; column <= pixel.column + 1; ++column) {
+      const OffscreenCanvas::Pixel& seen = content_.at({pixel.hemisphere, column, row});
+      if (seen.element == OffscreenCanvas::nothing ||
+          std::find(tried.begin(), tried.end(), seen.triangle) != tried.end()) {
+        continue;
+      }
+      tried.push_back(seen.triangle);
+      const ClimbedContact c = climb(content_.geometry, content_.start(seen.triangle), n);
+      if (tried.size() == 1 || c.h > best.h) best = c;
+    }
+  }
+  return best;
+}
+
+/// What the images show in the facets' directions, as far as it lies above them.
+std::vector<Sample> ImagePolytope::seen_above(const SampledPolytope& polytope,
+                                              const std::vector<int>& facets) const {
+  std::vector<Sample> seen(facets.size());
+  parallel_for(facets.size(), 64, options_.threads, [&](std::size_t begin, std::size_t end) {
+    options_.progress.check();
     for (std::size_t k = begin; k < end; ++k) {
-      sample_row(int(k % rows) * step, step, hemispheres[k / rows], found[k]);
+      const PointHull::Facet& facet = polytope.hull.facet(facets[k]);
+      const dvec3 n = unit(facet.side.normal());
+      const ClimbedContact c = highest_seen(n);
+      double height = std::numeric_limits<double>::infinity();
+      for (const int v : facet.vertex) {
+        height = std::min(height, c.h - glm::dot(frame_points_[std::size_t(v)], n));
+      }
+      if (height > rise_) seen[k] = {n, c.contact};
     }
   });
-  for (const auto& row : found) {
-    for (const Found& f : row) add(f.n, f.contact.contact);
-  }
+  std::erase_if(seen, [](const Sample& s) { return s.contact.instance < 0; });
+  return seen;
 }
 
-/// The coarsest steps worth trying: between directions so far apart, spheres of the scene's size
-/// rise by the tolerance.
-int first_step(double relative_tolerance, int size) {
-  const double angle = std::sqrt(8 * rise_share * relative_tolerance);
-  return std::clamp(int(angle * size / 4), 1, std::max(1, size / 16));
+SampledPolytope ImagePolytope::run() {
+  HullStatistics statistics;
+  for (;;) {
+    // Any distance ends the refinement by queries before it begins.
+    SampledPolytope polytope = sampled_polytope(content_.scene, options_,
+                                                2 * content_.scene.diagonal(), samples_, points_);
+    polytope.statistics += statistics;
+    statistics = polytope.statistics;
+    if (polytope.distance_bound <= tolerance_) return polytope;
+    polytope.failure = images_too_coarse;
+    if (int(samples_.size()) >= options_.max_vertices) {
+      polytope.failure = vertex_limit_met;
+      return polytope;
+    }
+    const std::vector<Sample> more = seen_above(polytope, wanted_facets(polytope));
+    bool added = false;
+    for (const Sample& sample : more) added = add(sample) || added;
+    if (!added) return polytope;
+  }
 }
 
 }  // namespace
@@ -142,23 +186,7 @@ Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
   const double tolerance = tolerance_for(options, scene.diagonal());
   SupportQuery query(scene);
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
-
-  ImageSampler sampler(images, map, tolerance);
-  HullStatistics statistics;
-  statistics.support_queries = query.queries();
-  statistics.newton_iterations = query.newton_iterations();
-  for (int step = first_step(tolerance / scene.diagonal(), images.size());; step = step / 2) {
-    sampler.sample(step, options);
-    // Any distance ends the refinement before it begins: it is the image's own that is measured.
-    SampledPolytope polytope =
-        sampled_polytope(scene, options, 2 * scene.diagonal(), sampler.samples, sampler.points);
-    polytope.statistics += statistics;
-    statistics = polytope.statistics;
-    const bool reached = polytope.distance_bound <= tolerance;
-    if (!reached && step > 1) continue;
-    if (!reached) polytope.failure = images_too_coarse;
-    return polytope_hull(scene, options, polytope);
-  }
+  return polytope_hull(scene, options, ImagePolytope(images, map, options, tolerance).run());
 }
 
 }  // namespace taut
