@@ -34,12 +34,12 @@ inline dvec3 pixels_away(const taut::EnvelopeImages& images, const dvec3& n, con
 
 /// What comparing an image's sources with those of support queries gave.
 struct SourceCounts {
-  long tried = 0;    ///< directions more than two pixels from any change of source
-  long skipped = 0;  ///< the others
-  long wrong = 0;
+  long right = 0;
+  long near = 0;   ///< wrong, within two pixels of a change of source
+  long wrong = 0;  ///< elsewhere
 };
 
-/// Random directions; those with another source within two pixels are skipped.
+/// Random directions. A wrong source does not count where another one is within two pixels.
 inline SourceCounts count_sources(const taut::EnvelopeImages& images, long directions,
                                   unsigned seed) {
   const taut::Scene& scene = images.scene();
@@ -50,32 +50,35 @@ inline SourceCounts count_sources(const taut::EnvelopeImages& images, long direc
     Random random(seed + begin);
     taut::SupportQuery query(scene);
     SourceCounts& own = counts[begin / grain];
-    for (std::size_t k = begin; k < end; ++k) {
-      const dvec3 n = random_direction(random);
-      const taut::Support s = query(n);
-      const int source = scene.source(s.contact).source;
+    const auto changes_near = [&](const dvec3& n, const taut::Support& s, int source) {
       const auto [e0, e1] = taut::tangent_frame(n);
-      bool near = false;
-      for (int i = 0; i < around && !near; ++i) {
+      for (int i = 0; i < around; ++i) {
         const double angle = 2 * M_PI * i / around;
         for (const double pixels : {1.0, 2.0}) {
           const dvec3 m =
               pixels_away(images, n, std::cos(angle) * e0 + std::sin(angle) * e1, pixels);
-          near = near || scene.source(query(m, s.contact).contact).source != source;
+          if (scene.source(query(m, s.contact).contact).source != source) return true;
         }
       }
-      if (near) {
-        ++own.skipped;
-        continue;
+      return false;
+    };
+    for (std::size_t k = begin; k < end; ++k) {
+      const dvec3 n = random_direction(random);
+      const taut::Support s = query(n);
+      const int source = scene.source(s.contact).source;
+      if (images.source(images.pixel(n)) == source) {
+        ++own.right;
+      } else if (changes_near(n, s, source)) {
+        ++own.near;
+      } else {
+        ++own.wrong;
       }
-      ++own.tried;
-      own.wrong += images.source(images.pixel(n)) != source ? 1 : 0;
     }
   });
   SourceCounts sum;
   for (const SourceCounts& c : counts) {
-    sum.tried += c.tried;
-    sum.skipped += c.skipped;
+    sum.right += c.right;
+    sum.near += c.near;
     sum.wrong += c.wrong;
   }
   return sum;
@@ -245,9 +248,9 @@ inline void match_triple_points(const taut::EnvelopeImages& images, const taut::
   }
 }
 
-/// Patches of the exact hull and regions of the images. Each vertex inside of a patch of a fine mesh
-/// lies in a region, as far as that is wide; the middle of each wide region is supported by a vertex
-/// at which a patch of its source lies.
+/// Patches of the exact hull and regions of the images. Each vertex inside of a patch of a fine
+/// mesh lies in a region, as far as that is wide; the middle of each wide region is supported by a
+/// vertex at which a patch of its source lies.
 inline void match_regions(const taut::EnvelopeImages& images, const taut::EnvelopeMap& map,
                           const taut::Hull& hull, MatchCounts& counts) {
   const Model& model = images.scene().model();
@@ -272,11 +275,11 @@ inline void match_regions(const taut::EnvelopeImages& images, const taut::Envelo
     const taut::EnvelopeRegion& region = map.regions[r];
     if (region.depth < 2 || model.source(region.source).kind != taut::SourceKind::face) continue;
     const dvec3 n = images.direction(region.inside);
-    const auto highest = *std::max_element(
-        hull.mesh.vertices_begin(), hull.mesh.vertices_end(), [&](const auto& a, const auto& b) {
-          return glm::dot(taut::position(hull.mesh, a), n) <
-                 glm::dot(taut::position(hull.mesh, b), n);
-        });
+    const auto highest = *std::max_element(hull.mesh.vertices_begin(), hull.mesh.vertices_end(),
+                                           [&](const auto& a, const auto& b) {
+                                             return glm::dot(taut::position(hull.mesh, a), n) <
+                                                    glm::dot(taut::position(hull.mesh, b), n);
+                                           });
     for (const auto f : hull.mesh.vf_range(highest)) {
       const auto& face = hull.mesh.data(f);
       if (face.kind != taut::FaceKind::patch || face.source != region.source) continue;

@@ -9,7 +9,7 @@ namespace taut {
 namespace {
 
 constexpr int step_limit = 30;
-constexpr int crossing_limit = 8;
+constexpr int crossing_limit = 64;
 /// A step in the parameters after which a further one is below rounding.
 constexpr double last_step = 1e-9;
 /// Where the value is not concave, steps go uphill by so much of the patch.

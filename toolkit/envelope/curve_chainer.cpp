@@ -21,6 +21,10 @@ constexpr double equator_overlap = 0.25;
 constexpr double join_reach = 3;
 constexpr double join_share = 0.75;
 
+/// Chains of so few points between two triple points are no curves: the triple points are one, in
+/// which four or more contacts meet.
+constexpr std::size_t shortest_chain = 2;
+
 /// A polyline through the sides of one image, or of both once they are joined.
 struct Chain {
   std::vector<EnvelopeCurvePoint> points;
@@ -209,6 +213,8 @@ std::vector<Chain> ImageChains::run() {
       Chain chain = walk(int(k));
       chain.open[0] = !chain.closed && (leaves || !c.in_triple_point);
       if (chain.closed) chain.open[1] = false;
+      const bool between = !chain.closed && !chain.open[0] && !chain.open[1];
+      if (between && chain.points.size() <= shortest_chain) continue;
       chains.push_back(std::move(chain));
     }
   }

@@ -25,8 +25,9 @@ struct EnvelopeImages::Content {
   int threads = 0;
   EnvelopeStatistics statistics;
   GaussTriangles triangles;
-  int first_filler = 0;              ///< of the triangles
-  std::vector<int> element_sources;  ///< per element
+  int first_filler = 0;                      ///< of the triangles
+  std::vector<int> element_sources;          ///< per element, as support queries tell them
+  std::vector<std::vector<char>> is_corner;  ///< per part and vertex: a patch has it as a corner
   /// Per hemisphere: the element that is seen, and the triangle from which to climb to the contact.
   std::array<std::vector<OffscreenCanvas::Pixel>, 2> images;
 
@@ -39,10 +40,13 @@ struct EnvelopeImages::Content {
   dvec3 direction(const EnvelopePixel& p) const {
     return StereographicView{p.hemisphere, size}.direction_at(p.column, p.row);
   }
-  /// In the middle of a triangle.
-  Contact start(std::uint32_t triangle) const;
+  /// The contact as support queries tell it: at the end of a free curve, where no surface has a
+  /// corner, a contact of the curve.
+  Contact told(const Contact& c) const;
+  /// Where a triangle has the direction, as it is interpolated.
+  Contact start(std::uint32_t triangle, const dvec3& n) const;
   ClimbedContact climbed(const EnvelopePixel& p) const {
-    return climb(geometry, start(at(p).triangle), direction(p));
+    return climb(geometry, start(at(p).triangle, direction(p)), direction(p));
   }
 };
 

@@ -129,7 +129,7 @@ ClimbedContact ImagePolytope::highest_seen(const dvec3& n) const {
         continue;
       }
       tried.push_back(seen.triangle);
-      const ClimbedContact c = climb(content_.geometry, content_.start(seen.triangle), n);
+      const ClimbedContact c = climb(content_.geometry, content_.start(seen.triangle, n), n);
       if (tried.size() == 1 || c.h > best.h) best = c;
     }
   }

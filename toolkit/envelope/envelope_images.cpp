@@ -133,12 +133,22 @@ void Painter::add_cells() {
 
 void Painter::find_sources() {
   const Scene& scene = content_.scene;
+  for (const Part& part : scene.model().parts()) {
+    std::vector<char>& corners = content_.is_corner.emplace_back(part.vertices().size(), 0);
+    const auto mark = [&](int vertex) {
+      if (vertex >= 0) corners[std::size_t(vertex)] = 1;
+    };
+    for (const Patch& patch : part.patches()) {
+      for (const int vertex : patch.corner_vertex) mark(vertex);
+      for (const Border& border : patch.borders) mark(border.vertex);
+    }
+  }
   for (int k = 0; k < content_.elements.count(); ++k) {
     Contact c = content_.elements.contact(k);
     // Inside of the element, whose borders may be others' sources.
     if (c.kind != SourceKind::vertex) c.u = 0.5;
     if (c.kind == SourceKind::face) c.v = 0.5;
-    content_.element_sources.push_back(scene.source(c).source);
+    content_.element_sources.push_back(scene.source(content_.told(c)).source);
   }
 }
 
@@ -228,7 +238,7 @@ void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
           const dvec3 n =
               content_.direction({hemisphere, int(column) - image_margin, int(row) - image_margin});
           const auto climbed = [&](std::uint32_t triangle) {
-            return climb(content_.geometry, content_.start(triangle), n);
+            return climb(content_.geometry, content_.start(triangle, n), n);
           };
           const ClimbedContact a = climbed(pixel.triangle);
           const ClimbedContact b = climbed(second.pixels[k].triangle);
@@ -279,11 +289,32 @@ void Painter::paint() {
 
 }  // namespace
 
-Contact EnvelopeImages::Content::start(std::uint32_t triangle) const {
+Contact EnvelopeImages::Content::told(const Contact& c) const {
+  if (c.kind != SourceKind::vertex) return c;
+  const Part& part = geometry.part(c);
+  if (c.element < part.point_count()) return c;
+  const int index = scene.model().instances()[std::size_t(c.instance)].part;
+  if (is_corner[std::size_t(index)][std::size_t(c.element)] != 0) return c;
+  const auto& ends = geometry.ends(c);
+  if (ends.empty()) return c;
+  const int instance = ends[0].instance >= 0 ? ends[0].instance : c.instance;
+  return {instance, SourceKind::edge, ends[0].piece, double(ends[0].end), 0};
+}
+
+Contact EnvelopeImages::Content::start(std::uint32_t triangle, const dvec3& n) const {
   const GaussTriangles::Triangle& t = triangles.triangles[triangle];
   Contact c = elements.contact(t.element);
-  dvec2 uv(0.0);
-  for (const int node : t.node) uv += triangles.nodes[std::size_t(node)].uv / 3.0;
+  std::array<const GaussTriangles::Node*, 3> node{};
+  for (std::size_t k = 0; k < 3; ++k) node[k] = &triangles.nodes[std::size_t(t.node[k])];
+  // n is a sum of the corners' directions with these factors; the middle where they span nothing.
+  dvec3 b(glm::dot(n, glm::cross(node[1]->n, node[2]->n)),
+          glm::dot(n, glm::cross(node[2]->n, node[0]->n)),
+          glm::dot(n, glm::cross(node[0]->n, node[1]->n)));
+  if (b.x + b.y + b.z < 0) b = -b;
+  b = glm::max(b, dvec3(0.0));
+  const double sum = b.x + b.y + b.z;
+  b = sum > 0 ? b / sum : dvec3(1.0 / 3);
+  const dvec2 uv = b.x * node[0]->uv + b.y * node[1]->uv + b.z * node[2]->uv;
   c.u = std::clamp(uv.x, 0.0, 1.0);
   c.v = std::clamp(uv.y, 0.0, 1.0);
   return c;
@@ -321,7 +352,7 @@ int EnvelopeImages::source(const EnvelopePixel& p) const {
 }
 
 Contact EnvelopeImages::contact(const EnvelopePixel& p) const {
-  return content_->climbed(p).contact;
+  return content_->told(content_->climbed(p).contact);
 }
 
 }  // namespace taut

@@ -94,7 +94,8 @@ void draw_circle(Picture& picture) {
   for (int row = 0; row < picture.height; ++row) {
     for (int column = 0; column < picture.width; ++column) {
       const double r = glm::length(dvec2(column + 0.5, row + 0.5) - dvec2(radius));
-      if (r > radius && r <= radius + 1.5) picture.at(column, row) = circle_color;
+      // Pixels to which directions of the hemisphere are rounded are left as they are.
+      if (r > radius + 0.75 && r <= radius + 2.25) picture.at(column, row) = circle_color;
     }
   }
 }

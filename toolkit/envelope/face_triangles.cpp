@@ -7,8 +7,11 @@
 namespace taut {
 namespace {
 
-/// Cells of a patch are halved at most so often.
-constexpr int finest_level = 10;
+/// Cells of a patch are halved at most so often, and of one with many cells less often: needles a
+/// million times as long as wide turn within a millionth of their parameters.
+constexpr int finest_level = 24;
+constexpr int finest_level_of_many = 10;
+constexpr std::size_t many_cells = 20000;
 
 /// A normal whose length is no larger, as a share of the tangents' product, says nothing.
 constexpr double least_normal = 1e-9;
@@ -57,9 +60,7 @@ class FaceTriangles {
     bool has(int sign) const { return sign > 0 ? signs.plus : signs.minus; }
   };
   static constexpr int side = 1 << finest_level;
-  static std::uint32_t key(int i, int j) {
-    return std::uint32_t(i) * (side + 1) + std::uint32_t(j);
-  }
+  static std::uint64_t key(int i, int j) { return std::uint64_t(i) << 32U | std::uint64_t(j); }
 
   Point& at(int i, int j);
   Point evaluate(const dvec2& uv) const;
@@ -81,8 +82,8 @@ class FaceTriangles {
   GaussTriangles& result_;
   const BezierPatch& bezier_;
   int coarsest_;
-  std::unordered_map<std::uint32_t, Point> points_;
-  std::unordered_map<std::uint32_t, bool> corners_;  ///< of leaves
+  std::unordered_map<std::uint64_t, Point> points_;
+  std::unordered_map<std::uint64_t, bool> corners_;  ///< of leaves
   std::vector<Cell> leaves_;
 };
 
@@ -166,7 +167,8 @@ void FaceTriangles::hide(Cell& cell) {
 void FaceTriangles::split(Cell cell, int level) {
   if (level >= coarsest_) hide(cell);
   if (!cell.signs.any()) return;
-  const bool last = cell.size == 2;
+  const bool last =
+      cell.size == 2 || (level >= finest_level_of_many && leaves_.size() >= many_cells);
   if (last || (level >= coarsest_ && is_fine(cell, level))) {
     leaves_.push_back(cell);
     for (const int i : {cell.i, cell.i + cell.size}) {

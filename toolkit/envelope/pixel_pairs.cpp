@@ -20,10 +20,10 @@ constexpr double least_distance = 1e-9;
 
 constexpr int plane_steps = 6;
 
-/// Contacts of a hole are so far apart, in the scene's frame, and what supports in the middle is so
-/// far from their mean, as a share of their distance.
+/// Contacts of a plane that touches along a curve stay so far apart, in the scene's frame, however
+/// near their directions come to the plane's; down to this, in radians.
 constexpr double hole_size = 0.05;
-constexpr double hole_share = 0.4;
+constexpr double least_angle = 1e-6;
 
 bool share_node(const GaussTriangles::Triangle& a, const GaussTriangles::Triangle& b) {
   return std::any_of(a.node.begin(), a.node.end(), [&](int node) {
@@ -71,7 +71,7 @@ EnvelopeTriplePoint triple_point(const EnvelopeImages::Content& content, const d
                                  const std::vector<ClimbedContact>& contacts) {
   EnvelopeTriplePoint result{n, {}, {}};
   for (const ClimbedContact& c : contacts) {
-    result.contacts.push_back(c.contact);
+    result.contacts.push_back(content.told(c.contact));
     result.points.push_back(to_model(content, c.x));
   }
   return result;
@@ -108,7 +108,7 @@ EnvelopeCurvePoint curve_point(const EnvelopeImages::Content& content, const Env
     a = climb(content.geometry, a.place, result.n);
     b = climb(content.geometry, b.place, result.n);
   }
-  result.contact = {a.contact, b.contact};
+  result.contact = {content.told(a.contact), content.told(b.contact)};
   result.point = {to_model(content, a.x), to_model(content, b.x)};
   return result;
 }
@@ -152,34 +152,28 @@ std::optional<EnvelopeTriplePoint> plane_over_hole(const EnvelopeImages::Content
                                                    double reach) {
   const dvec3 middle = mean_direction(content, loop);
   std::vector<ClimbedContact> contacts;
-  dvec3 mean(0.0);
-  for (const EnvelopePixel& p : loop) {
-    contacts.push_back(content.climbed(p));
-    mean += contacts.back().x / double(loop.size());
-  }
-  double farthest = 0;
-  double shortest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    for (std::size_t i = 0; i < k; ++i) {
-      const double distance = glm::distance(contacts[k].x, contacts[i].x);
-      farthest = std::max(farthest, distance);
-      shortest = std::min(shortest, distance);
-    }
-  }
-  if (shortest < hole_size) return std::nullopt;
-  for (const ClimbedContact& c : contacts) {
-    const ClimbedContact inside = climb(content.geometry, c.place, middle);
-    if (glm::distance(inside.x, mean) < hole_share * farthest) return std::nullopt;
-  }
-  // Closer and closer about the direction of the plane, its contacts come near the curve.
-  dvec3 n = middle;
-  for (double share = 0.5; share > 1e-7; share *= 0.1) {
+  for (const EnvelopePixel& p : loop) contacts.push_back(content.climbed(p));
+  const auto spread = [&] {  // no less across than along
+    dvec3 area(0.0);
     for (std::size_t k = 0; k < contacts.size(); ++k) {
-      const dvec3 beside = unit(n + share * (content.direction(loop[k]) - middle));
-      contacts[k] = climb(content.geometry, contacts[k].place, beside);
+      area += 0.5 * glm::cross(contacts[k].x - contacts[0].x,
+                               contacts[(k + 1) % contacts.size()].x - contacts[0].x);
     }
-    n = plane_normal(contacts, n);
+    return std::sqrt(glm::length(area));
+  };
+  if (spread() < hole_size) return std::nullopt;
+  // Closer and closer about the direction of the plane through them.
+  dvec3 n = plane_normal(contacts, middle);
+  double angle = glm::distance(content.direction(loop[0]), content.direction(loop[1]));
+  for (; angle > least_angle; angle *= 0.25) {
     if (n == dvec3(0.0) || glm::distance(n, middle) > reach) return std::nullopt;
+    const auto [e0, e1] = tangent_frame(n);
+    const std::array<dvec3, 4> around = {e0, e1, -e0, -e1};
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      contacts[k] = climb(content.geometry, contacts[k].place, unit(n + angle * around[k % 4]));
+    }
+    if (spread() < hole_size) return std::nullopt;
+    n = plane_normal(contacts, n);
   }
   return triple_point(content, n, contacts);
 }
