@@ -134,10 +134,11 @@ struct MatchCounts {
   long curve_points = 0, curve_points_off = 0;     ///< of the image; off by more than two pixels
   long wide_rulings = 0, wide_rulings_missed = 0;  ///< of the exact curves, about one a pixel
   long narrow_rulings = 0;
-  long triple_points = 0, triple_points_off = 0;      ///< of the image
-  long wide_facets = 0, wide_facets_missed = 0;       ///< of the boundary
-  long wide_regions = 0, wide_regions_unmatched = 0;  ///< of the image, of faces
-  long patches = 0, patches_split = 0;                ///< of the boundary; shown by several regions
+  long triple_points = 0, triple_points_off = 0;     ///< of the image
+  long wide_facets = 0, wide_facets_missed = 0;      ///< of the boundary
+  long wide_regions = 0;                             ///< of the image, of faces
+  long regions_of_none = 0, regions_of_several = 0;  ///< patches of the boundary
+  long patches = 0, patches_split = 0;               ///< of the boundary; shown by several regions
 };
 
 /// Along a separating curve: on either side of n, up to three pixels away, its contacts support.
@@ -287,7 +288,8 @@ inline void match_regions(const taut::EnvelopeImages& images, const taut::Envelo
       regions_of[face.hull_face].insert(int(r));
     }
     ++counts.wide_regions;
-    counts.wide_regions_unmatched += patches_of[int(r)].size() != 1 ? 1 : 0;
+    counts.regions_of_none += patches_of[int(r)].empty() ? 1 : 0;
+    counts.regions_of_several += patches_of[int(r)].size() > 1 ? 1 : 0;
   }
   counts.patches = long(regions_of.size());
   for (const auto& [patch, regions] : regions_of) {

@@ -48,7 +48,10 @@ void expect_match(Model model) {
   EXPECT_LE(counts.narrow_rulings, counts.wide_rulings / 4);
   EXPECT_EQ(counts.triple_points_off, 0) << "of " << counts.triple_points;
   EXPECT_EQ(counts.wide_facets_missed, 0) << "of " << counts.wide_facets;
-  EXPECT_EQ(counts.wide_regions_unmatched, 0) << "of " << counts.wide_regions;
+  EXPECT_EQ(counts.regions_of_several, 0) << "of " << counts.wide_regions;
+  // Patches of which the mesh has no vertex that tells.
+  EXPECT_LE(counts.regions_of_none, hull.boundary->count(FaceKind::patch) - counts.patches);
+  EXPECT_LE(counts.regions_of_none, 1 + counts.wide_regions / 20);
   EXPECT_EQ(counts.patches_split, 0) << "of " << counts.patches;
   // What is not wide is the rest.
   EXPECT_LE(counts.wide_regions, hull.boundary->count(FaceKind::patch));

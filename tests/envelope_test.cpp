@@ -23,7 +23,7 @@ namespace {
 using namespace taut;       // NOLINT: a test
 using namespace taut_test;  // NOLINT
 
-constexpr int small = 160;
+constexpr int small = 128;
 
 EnvelopeImages draw(const Scene& scene, int size = small, int threads = 2) {
   return EnvelopeImages(scene, {.size = size, .threads = threads, .progress = {}});
@@ -133,7 +133,7 @@ TEST(EnvelopeImages, StopWhereAsked) {
 
 /// What images of any model must be: without holes, and right where sources do not change nearby.
 void expect_sound(const Scene& scene, const std::string& name, int size = small,
-                  long directions = 4000) {
+                  long directions = 2000) {
   SCOPED_TRACE(name);
   const EnvelopeImages images = draw(scene, size);
   EXPECT_EQ(images.statistics().empty_pixels, 0);
@@ -398,7 +398,7 @@ TEST(EnvelopeHull, IsConvexClosedAndCertified) {
                                     {.relative = c.tolerance, .threads = 1, .progress = {}});
     taut_test::Known known = c.known;
     if (std::string(c.name) == "teapot") known.volume = -1;
-    expect_certified(scene, hull, c.tolerance, known);
+    expect_certified(scene, hull, c.tolerance, known, 300);
   }
 }
 
@@ -410,12 +410,12 @@ TEST(EnvelopeHull, SaysWhereTheImagesAreTooCoarse) {
   const EnvelopeImages images = draw(scene, 8);
   try {
     envelope_hull(images, trace_envelope(images),
-                  {.relative = 1e-7, .max_vertices = 5000, .progress = {}});
+                  {.relative = 1e-6, .max_vertices = 1500, .progress = {}});
     ADD_FAILURE() << "reached";
   } catch (const HullNotConverged& failure) {
     ASSERT_TRUE(failure.best);
     EXPECT_EQ(failure.best->kind, HullKind::solid);
-    EXPECT_GT(failure.reached, 1e-7 * scene.diagonal());
+    EXPECT_GT(failure.reached, 1e-6 * scene.diagonal());
     const PolygonMesh mesh = polygons(failure.best->mesh);
     expect_strict_polytope(mesh_facts(mesh));
     EXPECT_LE(gaps(scene, mesh, 500).highest, failure.reached);

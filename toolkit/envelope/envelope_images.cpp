@@ -97,6 +97,7 @@ void Painter::make_triangles() {
       if (content_.geometry.is_repeated(c)) continue;
       if (c.kind == SourceKind::face) {
         add_face_triangles(content_.geometry, c, int(k), cells[k], inner, fineness_, own[k]);
+        add_join_bands(content_.geometry, c, int(k), fineness_, own[k]);
       } else if (c.kind == SourceKind::edge) {
         add_edge_bands(content_.geometry, c, int(k), inner, fineness_, own[k]);
       }

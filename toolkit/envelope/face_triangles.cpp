@@ -13,9 +13,6 @@ constexpr int finest_level = 24;
 constexpr int finest_level_of_many = 10;
 constexpr std::size_t many_cells = 20000;
 
-/// A normal whose length is no larger, as a share of the tangents' product, says nothing.
-constexpr double least_normal = 1e-9;
-
 /// Second derivatives along the normal that are no larger, as a share of the patch's size, have no
 /// sign.
 constexpr double flat_bend = 1e-9;
@@ -92,12 +89,8 @@ FaceTriangles::Point FaceTriangles::evaluate(const dvec2& uv) const {
   c.u = uv.x;
   c.v = uv.y;
   const ContactJet j = geometry_.jet(c);
-  Point p{dvec3(0.0), j.x, uv, false, false};
-  const dvec3 normal = glm::cross(j.dx[0], j.dx[1]);
-  const double product = glm::length(j.dx[0]) * glm::length(j.dx[1]);
-  const double largest = std::max(glm::length(j.dx[0]), glm::length(j.dx[1]));
-  const bool regular = glm::length(normal) > least_normal * std::max(product, largest * largest);
-  p.n = regular ? unit(normal) : geometry_.to_frame(c.instance, unit_normal(bezier_, uv.x, uv.y));
+  const auto [n, regular] = surface_normal(geometry_, c, j);
+  Point p{n, j.x, uv, false, false};
   if (p.n == dvec3(0.0)) return p;
   const double uu = glm::dot(j.dxx, p.n);
   const double uv_form = glm::dot(j.dxy, p.n);

@@ -3,6 +3,21 @@
 #include <algorithm>
 
 namespace taut {
+namespace {
+
+/// A normal whose length is no larger, as a share of the longer tangent's square, says nothing.
+constexpr double least_normal = 1e-9;
+
+}  // namespace
+
+SurfaceNormal surface_normal(const ContactGeometry& geometry, const Contact& c,
+                             const ContactJet& j) {
+  const dvec3 normal = glm::cross(j.dx[0], j.dx[1]);
+  const double largest = std::max(glm::length(j.dx[0]), glm::length(j.dx[1]));
+  if (glm::length(normal) > least_normal * largest * largest) return {unit(normal), true};
+  const dvec3 limit = unit_normal(geometry.patch(c).bezier, c.u, c.v);
+  return {geometry.to_frame(c.instance, limit), false};
+}
 
 void GaussTriangles::append(const GaussTriangles& other) {
   const auto offset = int(nodes.size());

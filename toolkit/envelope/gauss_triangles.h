@@ -99,6 +99,22 @@ void add_face_triangles(const ContactGeometry& geometry, const Contact& patch, i
                         std::span<const CulledCell> cells, const InnerPoints& inner,
                         const GaussTriangleOptions& options, GaussTriangles& result);
 
+/// What is between the normals of two patches along their smooth joins, where these differ: coarse
+/// stand-ins for limit surfaces of cages meet in creases that are too flat to be edges. Nothing
+/// where they differ by less than the direction tolerance. Of the two patches the first has them.
+/// @pre kind face
+void add_join_bands(const ContactGeometry& geometry, const Contact& patch, int element,
+                    const GaussTriangleOptions& options, GaussTriangles& result);
+
+/// The unit normal Su x Sv at a contact on a patch, whose jet is given, in the scene's frame; the
+/// limit of unit_normal() where that vanishes, then `regular` is false. Zero if there is none.
+struct SurfaceNormal {
+  dvec3 n = dvec3(0.0);
+  bool regular = true;
+};
+SurfaceNormal surface_normal(const ContactGeometry& geometry, const Contact& c,
+                             const ContactJet& j);
+
 /// The directions in which planes touch a piece of an edge: to each point those orthogonal to the
 /// tangent, as far as the curve is bent away from them and no inner point hides them. Nothing of a
 /// straight piece.
