@@ -410,7 +410,7 @@ TEST(EnvelopeHull, SaysWhereTheImagesAreTooCoarse) {
   const EnvelopeImages images = draw(scene, 8);
   try {
     envelope_hull(images, trace_envelope(images),
-                  {.relative = 1e-6, .max_vertices = 1500, .progress = {}});
+                  {.relative = 1e-6, .max_vertices = 300, .progress = {}});
     ADD_FAILURE() << "reached";
   } catch (const HullNotConverged& failure) {
     ASSERT_TRUE(failure.best);

@@ -173,7 +173,9 @@ SampledPolytope ImagePolytope::run() {
     }
     const std::vector<Sample> more = seen_above(polytope, wanted_facets(polytope));
     bool added = false;
-    for (const Sample& sample : more) added = add(sample) || added;
+    for (const Sample& sample : more) {
+      if (int(samples_.size()) < options_.max_vertices) added = add(sample) || added;
+    }
     if (!added) return polytope;
   }
 }
