@@ -132,9 +132,11 @@ class NearDirections {
 /// How what an image shows agrees with the exact boundary. "Wide": wider than three pixels.
 struct MatchCounts {
   long curve_points = 0, curve_points_off = 0;     ///< of the image; off by more than two pixels
+  long curve_points_wrong = 0;                     ///< off, and its contacts do not both support
   long wide_rulings = 0, wide_rulings_missed = 0;  ///< of the exact curves, about one a pixel
   long narrow_rulings = 0;
   long triple_points = 0, triple_points_off = 0;     ///< of the image
+  long triple_points_wrong = 0;                      ///< off, and not all contacts support
   long wide_facets = 0, wide_facets_missed = 0;      ///< of the boundary
   long wide_regions = 0;                             ///< of the image, of faces
   long regions_of_none = 0, regions_of_several = 0;  ///< patches of the boundary
@@ -159,6 +161,16 @@ inline bool is_wide(const taut::EnvelopeImages& images, taut::SupportQuery& quer
   return true;
 }
 
+/// The points, in model coordinates, support the direction, to within interpolation by pixels.
+template <class Points>
+bool all_support(const taut::EnvelopeImages& images, taut::SupportQuery& query, const dvec3& n,
+                 const Points& points) {
+  const double h = query(n).h;
+  return std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
+    return h - glm::dot(images.scene().frame().to_frame(p), n) < 1e-6;
+  });
+}
+
 inline void match_curves(const taut::EnvelopeImages& images, const taut::EnvelopeMap& map,
                          const taut::HullBoundary& boundary, MatchCounts& counts) {
   std::vector<std::vector<dvec3>> exact;
@@ -176,13 +188,15 @@ inline void match_curves(const taut::EnvelopeImages& images, const taut::Envelop
   }
   const NearDirections near_exact(images, exact);
   const NearDirections near_seen(images, seen);
+  taut::SupportQuery query(images.scene());
   for (const taut::EnvelopeCurve& curve : map.curves) {
     for (const auto& p : curve.points) {
       ++counts.curve_points;
-      counts.curve_points_off += near_exact.distance(p.n) > 2 ? 1 : 0;
+      if (near_exact.distance(p.n) <= 2) continue;
+      ++counts.curve_points_off;
+      counts.curve_points_wrong += all_support(images, query, p.n, p.point) ? 0 : 1;
     }
   }
-  taut::SupportQuery query(images.scene());
   for (const taut::SeparatingArc& arc : boundary.arcs) {
     for (const taut::ArcPiece& piece : arc.pieces) {
       for (const taut::Ruling& r : piece.rulings) {
@@ -197,8 +211,8 @@ inline void match_curves(const taut::EnvelopeImages& images, const taut::Envelop
   }
 }
 
-/// No other facet is within six pixels, and the rulings that are sides of it are wide a few pixels
-/// from it: in all directions around, four pixels away, one of its contacts supports.
+/// No other facet is within six pixels, and in all directions around, four pixels away, one of its
+/// contacts supports, moved by much less than the contacts are apart, each in some of them.
 inline bool is_wide(const taut::EnvelopeImages& images, taut::SupportQuery& query,
                     const taut::HullBoundary& boundary, const taut::HullFace& facet) {
   for (const taut::HullFace& other : boundary.faces) {
@@ -208,6 +222,13 @@ inline bool is_wide(const taut::EnvelopeImages& images, taut::SupportQuery& quer
   // The contacts' sectors around the facet's direction are seen.
   const auto [e0, e1] = taut::tangent_frame(facet.n);
   std::vector<long> seen(facet.points.size(), 0);
+  double apart = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < facet.points.size(); ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      apart = std::min(apart, glm::distance(facet.points[k], facet.points[i]));
+    }
+  }
+  const bool straight = facet.sides.empty();  // else contacts move along its sides
   constexpr int around = 64;
   for (int i = 0; i < around; ++i) {
     const double angle = 2 * M_PI * i / around;
@@ -217,6 +238,7 @@ inline bool is_wide(const taut::EnvelopeImages& images, taut::SupportQuery& quer
     for (std::size_t k = 1; k < facet.points.size(); ++k) {
       if (glm::distance(x, facet.points[k]) < glm::distance(x, facet.points[nearest])) nearest = k;
     }
+    if (straight && glm::distance(x, facet.points[nearest]) > 0.3 * apart) return false;
     ++seen[nearest];
   }
   return std::all_of(seen.begin(), seen.end(), [](long n) { return n >= 3; });
@@ -239,7 +261,9 @@ inline void match_triple_points(const taut::EnvelopeImages& images, const taut::
   for (const auto& p : map.triple_points) {
     ++counts.triple_points;
     const double off = nearest(p.n, facets, [](const dvec3& n) { return n; });
-    counts.triple_points_off += off > 2 ? 1 : 0;
+    if (off <= 2) continue;
+    ++counts.triple_points_off;
+    counts.triple_points_wrong += all_support(images, query, p.n, p.points) ? 0 : 1;
   }
   for (const taut::HullFace& face : boundary.faces) {
     if (face.kind != taut::FaceKind::facet || !is_wide(images, query, boundary, face)) continue;

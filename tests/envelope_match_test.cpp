@@ -9,6 +9,7 @@
 #include "envelope_checks.h"
 #include "hull_checks.h"
 #include "taut/envelope/envelope_hull.h"
+#include "taut/hull/precise_hull.h"
 #include "taut/io/read_model.h"
 
 namespace {
@@ -67,5 +68,48 @@ TEST(EnvelopeMatch, Oloid) { expect_match(data_model("oloid.taut.json")); }
 TEST(EnvelopeMatch, Torus) { expect_match(data_model("torus.taut.json")); }
 TEST(EnvelopeMatch, ThreeSpheres) { expect_match(data_model("three_spheres.taut.json")); }
 TEST(EnvelopeMatch, SixteenTeapots) { expect_match(posed_teapots(1, 16)); }
+
+// A control cage of a car, coarse about its extraordinary vertices: 74000 patches. What its exact
+// boundary lacks (HullBoundary::unresolved) support queries must confirm.
+TEST(EnvelopeMatch, CarCage) {
+  const char* folder = std::getenv("TAUT_MODELS");
+  if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS names no folder with models";
+  const std::filesystem::path file =
+      std::filesystem::path(folder) / "A15_osd_car_creases_boundary.obj";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  Model model;
+  ReadOptions options;
+  options.cage_accuracy = 1e-3;
+  read_model(file, model, options);
+  const Scene scene(std::move(model));
+  const EnvelopeImages images(scene, {.size = size, .threads = 0, .progress = {}});
+  EXPECT_EQ(images.statistics().empty_pixels, 0);
+  EXPECT_EQ(images.statistics().filled_pixels, 0);
+
+  const SourceCounts sources = count_sources(images, directions, 1);
+  EXPECT_LT(sources.near, directions / 50);
+  EXPECT_LT(1000 * sources.wrong, directions * 9 / 10);
+
+  const EnvelopeMap map = trace_envelope(images);
+  HullStatistics statistics;
+  const GaussMap gauss_map(scene, {});
+  const HullBoundary boundary = exact_boundary(scene, gauss_map, {}, statistics);
+  MatchCounts counts;
+  match_curves(images, map, boundary, counts);
+  match_triple_points(images, map, boundary, counts);
+  EXPECT_EQ(counts.wide_rulings_missed, 0) << "of " << counts.wide_rulings;
+  EXPECT_GT(counts.wide_rulings, 1000);
+  EXPECT_LE(100 * counts.curve_points_wrong, counts.curve_points);
+  EXPECT_EQ(counts.triple_points_wrong, 0) << "of " << counts.triple_points_off;
+  EXPECT_EQ(counts.wide_facets_missed, 0) << "of " << counts.wide_facets;
+  EXPECT_GT(counts.wide_facets, 10);
+  if (boundary.unresolved.empty()) {
+    EXPECT_EQ(counts.triple_points_off, 0);
+    EXPECT_LE(100 * counts.curve_points_off, counts.curve_points);
+  }
+
+  const Hull hull = envelope_hull(images, map, {.relative = 1e-4, .progress = {}});
+  expect_certified(scene, hull, 1e-4, {});
+}
 
 }  // namespace

@@ -17,6 +17,9 @@ namespace {
 constexpr int smallest_size = 8;
 constexpr int largest_size = 16000;
 
+/// Smaller images are drawn from triangles as fine as those for this size.
+constexpr int smallest_fine_size = 64;
+
 /// Values closer than this, in the scene's frame, are decided in double precision: four times what
 /// interpolation may be off (GaussTriangleOptions::value_tolerance) and depths round away.
 constexpr double decision_margin = 5e-5;
@@ -31,7 +34,8 @@ constexpr double filler_distance = 1e-3;
 constexpr std::size_t batch_size = 65536;
 
 /// Pixels' centres at the circle are 2 / size radians apart.
-GaussTriangleOptions triangle_options(int size) {
+GaussTriangleOptions triangle_options(int image_size) {
+  const double size = std::max(image_size, smallest_fine_size);
   return {.direction_tolerance = 1.0 / size, .value_tolerance = 1e-5, .border_width = 3.0 / size};
 }
 
