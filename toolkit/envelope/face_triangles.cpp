@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -22,6 +24,10 @@ int coarsest_level(const BezierPatch& patch) {
   const int degree = std::max(patch.degree_u, patch.degree_v);
   return degree <= 2 ? 0 : degree <= 3 ? 1 : degree <= 8 ? 2 : 3;
 }
+
+/// Of 3 x 3 points of a cell, each that lies halfway between two others, with these around it.
+constexpr std::array<std::array<std::size_t, 3>, 6> halfway_points = {
+    {{0, 1, 2}, {6, 7, 8}, {0, 3, 6}, {2, 5, 8}, {0, 4, 8}, {2, 4, 6}}};
 
 /// The adaptive triangulation of one patch. Places in its parameters are integers in
 /// [0, 2^finest_level].
@@ -134,11 +140,10 @@ bool FaceTriangles::is_fine(const Cell& cell, int level) {
   for (const auto& [a, b] : {std::pair(0, 2), {0, 6}, {0, 8}, {2, 6}, {2, 8}, {6, 8}}) {
     if (glm::dot(p[std::size_t(a)].n, p[std::size_t(b)].n) < turn) return false;
   }
-  const auto halfway = [&](std::size_t a, std::size_t m, std::size_t b) {
+  return std::all_of(halfway_points.begin(), halfway_points.end(), [&](const auto& own) {
+    const auto& [a, m, b] = own;
     return is_halfway(p[a], p[m], p[b]);
-  };
-  return halfway(0, 1, 2) && halfway(6, 7, 8) && halfway(0, 3, 6) && halfway(2, 5, 8) &&
-         halfway(0, 4, 8) && halfway(2, 4, 6);
+  });
 }
 
 /// Leaves out the signs with which nothing of the cell can be seen, by its corners and the points
@@ -152,9 +157,16 @@ void FaceTriangles::hide(Cell& cell) {
     x[k] = p.x;
     n[k] = p.n;
   }
-  cell.signs.plus = cell.signs.plus && !inner_.surely_hides(x, n);
+  // How far the surface may be from between its points, and normals from between theirs: by the
+  // differences over twice the distance, which are some four times as large.
+  double rise = 0;
+  for (const auto& [a, m, b] : halfway_points) {
+    rise = std::max(rise, glm::distance(x[m], 0.5 * (x[a] + x[b])));
+    rise = std::max(rise, 2 * glm::distance(n[m], unit(n[a] + n[b])));
+  }
+  cell.signs.plus = cell.signs.plus && !inner_.surely_hides(x, n, rise);
   for (dvec3& direction : n) direction = -direction;
-  cell.signs.minus = cell.signs.minus && !inner_.surely_hides(x, n);
+  cell.signs.minus = cell.signs.minus && !inner_.surely_hides(x, n, rise);
 }
 
 void FaceTriangles::split(Cell cell, int level) {

@@ -7,11 +7,11 @@ namespace taut {
 namespace {
 
 /// Cells along each side of the faces of a cube about the sphere.
-constexpr int cells_a_side = 16;
+constexpr int cells_a_side = 32;
 
-/// How much lower than a point, in the scene's frame, what is hidden is at least: more than what
+/// How much lower than a point, in the scene's frame, what is hidden is at least: ten times what
 /// surfaces may rise over the triangles that stand for them.
-constexpr double hidden_depth = 1e-3;
+constexpr double hidden_depth = 1e-4;
 
 }  // namespace
 
