@@ -38,6 +38,7 @@ void add_join_bands(const ContactGeometry& geometry, const Contact& patch, int e
     if (!differ) continue;
     for (const double sign : {1.0, -1.0}) {
       std::vector<std::array<int, 2>> nodes;
+      nodes.reserve(rungs.size());
       for (const Rung& r : rungs) {
         nodes.push_back({result.add_node({sign * r.own, r.x, r.uv}),
                          result.add_node({sign * r.other, r.x, r.uv})});

@@ -55,59 +55,59 @@ const Library& loaded_library() {
   throw BackendError("envelope images cannot be drawn: " + what);
 }
 
-/// The functions of OpenGL that are called, by their names without "gl"; all of them through the
+/// The functions of OpenGL that are called; all of them through the
 /// library, since those of another OpenGL in the same program would do nothing.
 struct Functions {
-  decltype(&glGetString) GetString = nullptr;
-  decltype(&glGetIntegerv) GetIntegerv = nullptr;
-  decltype(&glGetError) GetError = nullptr;
-  decltype(&glViewport) Viewport = nullptr;
-  decltype(&glEnable) Enable = nullptr;
-  decltype(&glDisable) Disable = nullptr;
-  decltype(&glDepthFunc) DepthFunc = nullptr;
-  decltype(&glDrawArrays) DrawArrays = nullptr;
-  decltype(&glReadPixels) ReadPixels = nullptr;
-  decltype(&glReadBuffer) ReadBuffer = nullptr;
-  decltype(&glPixelStorei) PixelStorei = nullptr;
-  decltype(&glGenTextures) GenTextures = nullptr;
-  decltype(&glBindTexture) BindTexture = nullptr;
-  decltype(&glTexImage2D) TexImage2D = nullptr;
-  decltype(&glTexParameteri) TexParameteri = nullptr;
-  PFNGLACTIVETEXTUREPROC ActiveTexture = nullptr;
-  PFNGLCREATESHADERPROC CreateShader = nullptr;
-  PFNGLSHADERSOURCEPROC ShaderSource = nullptr;
-  PFNGLCOMPILESHADERPROC CompileShader = nullptr;
-  PFNGLGETSHADERIVPROC GetShaderiv = nullptr;
-  PFNGLGETSHADERINFOLOGPROC GetShaderInfoLog = nullptr;
-  PFNGLCREATEPROGRAMPROC CreateProgram = nullptr;
-  PFNGLATTACHSHADERPROC AttachShader = nullptr;
-  PFNGLLINKPROGRAMPROC LinkProgram = nullptr;
-  PFNGLGETPROGRAMIVPROC GetProgramiv = nullptr;
-  PFNGLGETPROGRAMINFOLOGPROC GetProgramInfoLog = nullptr;
-  PFNGLUSEPROGRAMPROC UseProgram = nullptr;
-  PFNGLGETUNIFORMLOCATIONPROC GetUniformLocation = nullptr;
-  PFNGLUNIFORM1FPROC Uniform1f = nullptr;
-  PFNGLUNIFORM1IPROC Uniform1i = nullptr;
-  PFNGLGENVERTEXARRAYSPROC GenVertexArrays = nullptr;
-  PFNGLBINDVERTEXARRAYPROC BindVertexArray = nullptr;
-  PFNGLDELETEVERTEXARRAYSPROC DeleteVertexArrays = nullptr;
-  PFNGLGENBUFFERSPROC GenBuffers = nullptr;
-  PFNGLBINDBUFFERPROC BindBuffer = nullptr;
-  PFNGLBUFFERDATAPROC BufferData = nullptr;
-  PFNGLDELETEBUFFERSPROC DeleteBuffers = nullptr;
-  PFNGLENABLEVERTEXATTRIBARRAYPROC EnableVertexAttribArray = nullptr;
-  PFNGLVERTEXATTRIBPOINTERPROC VertexAttribPointer = nullptr;
-  PFNGLVERTEXATTRIBIPOINTERPROC VertexAttribIPointer = nullptr;
-  PFNGLGENFRAMEBUFFERSPROC GenFramebuffers = nullptr;
-  PFNGLBINDFRAMEBUFFERPROC BindFramebuffer = nullptr;
-  PFNGLFRAMEBUFFERTEXTURE2DPROC FramebufferTexture2D = nullptr;
-  PFNGLGENRENDERBUFFERSPROC GenRenderbuffers = nullptr;
-  PFNGLBINDRENDERBUFFERPROC BindRenderbuffer = nullptr;
-  PFNGLRENDERBUFFERSTORAGEPROC RenderbufferStorage = nullptr;
-  PFNGLFRAMEBUFFERRENDERBUFFERPROC FramebufferRenderbuffer = nullptr;
-  PFNGLCHECKFRAMEBUFFERSTATUSPROC CheckFramebufferStatus = nullptr;
-  PFNGLCLEARBUFFERUIVPROC ClearBufferuiv = nullptr;
-  PFNGLCLEARBUFFERFVPROC ClearBufferfv = nullptr;
+  decltype(&glGetString) get_string = nullptr;
+  decltype(&glGetIntegerv) get_integerv = nullptr;
+  decltype(&glGetError) get_error = nullptr;
+  decltype(&glViewport) viewport = nullptr;
+  decltype(&glEnable) enable = nullptr;
+  decltype(&glDisable) disable = nullptr;
+  decltype(&glDepthFunc) depth_func = nullptr;
+  decltype(&glDrawArrays) draw_arrays = nullptr;
+  decltype(&glReadPixels) read_pixels = nullptr;
+  decltype(&glReadBuffer) read_buffer = nullptr;
+  decltype(&glPixelStorei) pixel_storei = nullptr;
+  decltype(&glGenTextures) gen_textures = nullptr;
+  decltype(&glBindTexture) bind_texture = nullptr;
+  decltype(&glTexImage2D) tex_image2_d = nullptr;
+  decltype(&glTexParameteri) tex_parameteri = nullptr;
+  PFNGLACTIVETEXTUREPROC active_texture = nullptr;
+  PFNGLCREATESHADERPROC create_shader = nullptr;
+  PFNGLSHADERSOURCEPROC shader_source = nullptr;
+  PFNGLCOMPILESHADERPROC compile_shader = nullptr;
+  PFNGLGETSHADERIVPROC get_shaderiv = nullptr;
+  PFNGLGETSHADERINFOLOGPROC get_shader_info_log = nullptr;
+  PFNGLCREATEPROGRAMPROC create_program = nullptr;
+  PFNGLATTACHSHADERPROC attach_shader = nullptr;
+  PFNGLLINKPROGRAMPROC link_program = nullptr;
+  PFNGLGETPROGRAMIVPROC get_programiv = nullptr;
+  PFNGLGETPROGRAMINFOLOGPROC get_program_info_log = nullptr;
+  PFNGLUSEPROGRAMPROC use_program = nullptr;
+  PFNGLGETUNIFORMLOCATIONPROC get_uniform_location = nullptr;
+  PFNGLUNIFORM1FPROC uniform1f = nullptr;
+  PFNGLUNIFORM1IPROC uniform1i = nullptr;
+  PFNGLGENVERTEXARRAYSPROC gen_vertex_arrays = nullptr;
+  PFNGLBINDVERTEXARRAYPROC bind_vertex_array = nullptr;
+  PFNGLDELETEVERTEXARRAYSPROC delete_vertex_arrays = nullptr;
+  PFNGLGENBUFFERSPROC gen_buffers = nullptr;
+  PFNGLBINDBUFFERPROC bind_buffer = nullptr;
+  PFNGLBUFFERDATAPROC buffer_data = nullptr;
+  PFNGLDELETEBUFFERSPROC delete_buffers = nullptr;
+  PFNGLENABLEVERTEXATTRIBARRAYPROC enable_vertex_attrib_array = nullptr;
+  PFNGLVERTEXATTRIBPOINTERPROC vertex_attrib_pointer = nullptr;
+  PFNGLVERTEXATTRIBIPOINTERPROC vertex_attrib_i_pointer = nullptr;
+  PFNGLGENFRAMEBUFFERSPROC gen_framebuffers = nullptr;
+  PFNGLBINDFRAMEBUFFERPROC bind_framebuffer = nullptr;
+  PFNGLFRAMEBUFFERTEXTURE2DPROC framebuffer_texture2_d = nullptr;
+  PFNGLGENRENDERBUFFERSPROC gen_renderbuffers = nullptr;
+  PFNGLBINDRENDERBUFFERPROC bind_renderbuffer = nullptr;
+  PFNGLRENDERBUFFERSTORAGEPROC renderbuffer_storage = nullptr;
+  PFNGLFRAMEBUFFERRENDERBUFFERPROC framebuffer_renderbuffer = nullptr;
+  PFNGLCHECKFRAMEBUFFERSTATUSPROC check_framebuffer_status = nullptr;
+  PFNGLCLEARBUFFERUIVPROC clear_bufferuiv = nullptr;
+  PFNGLCLEARBUFFERFVPROC clear_bufferfv = nullptr;
 
   void load(const Library& library);
 };
@@ -117,56 +117,56 @@ void Functions::load(const Library& library) {
     function = reinterpret_cast<std::decay_t<decltype(function)>>(library.address(name));
     if (function == nullptr) fail(std::string("the driver has no ") + name);
   };
-  find(GetString, "glGetString");
-  find(GetIntegerv, "glGetIntegerv");
-  find(GetError, "glGetError");
-  find(Viewport, "glViewport");
-  find(Enable, "glEnable");
-  find(Disable, "glDisable");
-  find(DepthFunc, "glDepthFunc");
-  find(DrawArrays, "glDrawArrays");
-  find(ReadPixels, "glReadPixels");
-  find(ReadBuffer, "glReadBuffer");
-  find(PixelStorei, "glPixelStorei");
-  find(GenTextures, "glGenTextures");
-  find(BindTexture, "glBindTexture");
-  find(TexImage2D, "glTexImage2D");
-  find(TexParameteri, "glTexParameteri");
-  find(ActiveTexture, "glActiveTexture");
-  find(CreateShader, "glCreateShader");
-  find(ShaderSource, "glShaderSource");
-  find(CompileShader, "glCompileShader");
-  find(GetShaderiv, "glGetShaderiv");
-  find(GetShaderInfoLog, "glGetShaderInfoLog");
-  find(CreateProgram, "glCreateProgram");
-  find(AttachShader, "glAttachShader");
-  find(LinkProgram, "glLinkProgram");
-  find(GetProgramiv, "glGetProgramiv");
-  find(GetProgramInfoLog, "glGetProgramInfoLog");
-  find(UseProgram, "glUseProgram");
-  find(GetUniformLocation, "glGetUniformLocation");
-  find(Uniform1f, "glUniform1f");
-  find(Uniform1i, "glUniform1i");
-  find(GenVertexArrays, "glGenVertexArrays");
-  find(BindVertexArray, "glBindVertexArray");
-  find(DeleteVertexArrays, "glDeleteVertexArrays");
-  find(GenBuffers, "glGenBuffers");
-  find(BindBuffer, "glBindBuffer");
-  find(BufferData, "glBufferData");
-  find(DeleteBuffers, "glDeleteBuffers");
-  find(EnableVertexAttribArray, "glEnableVertexAttribArray");
-  find(VertexAttribPointer, "glVertexAttribPointer");
-  find(VertexAttribIPointer, "glVertexAttribIPointer");
-  find(GenFramebuffers, "glGenFramebuffers");
-  find(BindFramebuffer, "glBindFramebuffer");
-  find(FramebufferTexture2D, "glFramebufferTexture2D");
-  find(GenRenderbuffers, "glGenRenderbuffers");
-  find(BindRenderbuffer, "glBindRenderbuffer");
-  find(RenderbufferStorage, "glRenderbufferStorage");
-  find(FramebufferRenderbuffer, "glFramebufferRenderbuffer");
-  find(CheckFramebufferStatus, "glCheckFramebufferStatus");
-  find(ClearBufferuiv, "glClearBufferuiv");
-  find(ClearBufferfv, "glClearBufferfv");
+  find(get_string, "glGetString");
+  find(get_integerv, "glGetIntegerv");
+  find(get_error, "glGetError");
+  find(viewport, "glViewport");
+  find(enable, "glEnable");
+  find(disable, "glDisable");
+  find(depth_func, "glDepthFunc");
+  find(draw_arrays, "glDrawArrays");
+  find(read_pixels, "glReadPixels");
+  find(read_buffer, "glReadBuffer");
+  find(pixel_storei, "glPixelStorei");
+  find(gen_textures, "glGenTextures");
+  find(bind_texture, "glBindTexture");
+  find(tex_image2_d, "glTexImage2D");
+  find(tex_parameteri, "glTexParameteri");
+  find(active_texture, "glActiveTexture");
+  find(create_shader, "glCreateShader");
+  find(shader_source, "glShaderSource");
+  find(compile_shader, "glCompileShader");
+  find(get_shaderiv, "glGetShaderiv");
+  find(get_shader_info_log, "glGetShaderInfoLog");
+  find(create_program, "glCreateProgram");
+  find(attach_shader, "glAttachShader");
+  find(link_program, "glLinkProgram");
+  find(get_programiv, "glGetProgramiv");
+  find(get_program_info_log, "glGetProgramInfoLog");
+  find(use_program, "glUseProgram");
+  find(get_uniform_location, "glGetUniformLocation");
+  find(uniform1f, "glUniform1f");
+  find(uniform1i, "glUniform1i");
+  find(gen_vertex_arrays, "glGenVertexArrays");
+  find(bind_vertex_array, "glBindVertexArray");
+  find(delete_vertex_arrays, "glDeleteVertexArrays");
+  find(gen_buffers, "glGenBuffers");
+  find(bind_buffer, "glBindBuffer");
+  find(buffer_data, "glBufferData");
+  find(delete_buffers, "glDeleteBuffers");
+  find(enable_vertex_attrib_array, "glEnableVertexAttribArray");
+  find(vertex_attrib_pointer, "glVertexAttribPointer");
+  find(vertex_attrib_i_pointer, "glVertexAttribIPointer");
+  find(gen_framebuffers, "glGenFramebuffers");
+  find(bind_framebuffer, "glBindFramebuffer");
+  find(framebuffer_texture2_d, "glFramebufferTexture2D");
+  find(gen_renderbuffers, "glGenRenderbuffers");
+  find(bind_renderbuffer, "glBindRenderbuffer");
+  find(renderbuffer_storage, "glRenderbufferStorage");
+  find(framebuffer_renderbuffer, "glFramebufferRenderbuffer");
+  find(check_framebuffer_status, "glCheckFramebufferStatus");
+  find(clear_bufferuiv, "glClearBufferuiv");
+  find(clear_bufferfv, "glClearBufferfv");
 }
 
 }  // namespace
@@ -247,17 +247,17 @@ void OffscreenCanvas::Context::start(int size) {
   check_driver();
   make_program();
   make_attachments();
-  gl_.Viewport(0, 0, size_, size_);
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.Disable(GL_CULL_FACE);
-  gl_.DepthFunc(GL_LESS);
-  gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl_.viewport(0, 0, size_, size_);
+  gl_.enable(GL_DEPTH_TEST);
+  gl_.disable(GL_CULL_FACE);
+  gl_.depth_func(GL_LESS);
+  gl_.pixel_storei(GL_PACK_ALIGNMENT, 1);
   check("its set-up");
 }
 
 void OffscreenCanvas::Context::check_driver() {
   const auto text = [&](GLenum name) {
-    const auto* value = reinterpret_cast<const char*>(gl_.GetString(name));
+    const auto* value = reinterpret_cast<const char*>(gl_.get_string(name));
     if (value == nullptr) {
       fail("OSMesa does not answer; another OpenGL library may be loaded before it");
     }
@@ -270,10 +270,10 @@ void OffscreenCanvas::Context::check_driver() {
   GLint major = 0;
   GLint minor = 0;
   GLint largest = 0;
-  gl_.GetIntegerv(GL_MAJOR_VERSION, &major);
-  gl_.GetIntegerv(GL_MINOR_VERSION, &minor);
+  gl_.get_integerv(GL_MAJOR_VERSION, &major);
+  gl_.get_integerv(GL_MINOR_VERSION, &minor);
   if (10 * major + minor < 33) fail("OpenGL 3.3 is needed, not " + driver);
-  gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  gl_.get_integerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (size_ < 1 || size_ > largest) {
     fail("the driver draws images of 1 to " + std::to_string(largest) + " pixels a side, not " +
          std::to_string(size_));
@@ -281,50 +281,50 @@ void OffscreenCanvas::Context::check_driver() {
 }
 
 GLuint OffscreenCanvas::Context::shader(GLenum kind, const char* source) const {
-  const GLuint result = gl_.CreateShader(kind);
-  gl_.ShaderSource(result, 1, &source, nullptr);
-  gl_.CompileShader(result);
+  const GLuint result = gl_.create_shader(kind);
+  gl_.shader_source(result, 1, &source, nullptr);
+  gl_.compile_shader(result);
   GLint done = GL_FALSE;
-  gl_.GetShaderiv(result, GL_COMPILE_STATUS, &done);
+  gl_.get_shaderiv(result, GL_COMPILE_STATUS, &done);
   if (done == GL_TRUE) return result;
   std::array<char, 512> log = {};
-  gl_.GetShaderInfoLog(result, GLsizei(log.size()), nullptr, log.data());
+  gl_.get_shader_info_log(result, GLsizei(log.size()), nullptr, log.data());
   fail(std::string("the driver does not take a shader: ") + log.data());
 }
 
 void OffscreenCanvas::Context::make_program() {
-  program_ = gl_.CreateProgram();
-  gl_.AttachShader(program_, shader(GL_VERTEX_SHADER, vertex_shader));
-  gl_.AttachShader(program_, shader(GL_FRAGMENT_SHADER, fragment_shader));
-  gl_.LinkProgram(program_);
+  program_ = gl_.create_program();
+  gl_.attach_shader(program_, shader(GL_VERTEX_SHADER, vertex_shader));
+  gl_.attach_shader(program_, shader(GL_FRAGMENT_SHADER, fragment_shader));
+  gl_.link_program(program_);
   GLint done = GL_FALSE;
-  gl_.GetProgramiv(program_, GL_LINK_STATUS, &done);
+  gl_.get_programiv(program_, GL_LINK_STATUS, &done);
   if (done != GL_TRUE) {
     std::array<char, 512> log = {};
-    gl_.GetProgramInfoLog(program_, GLsizei(log.size()), nullptr, log.data());
+    gl_.get_program_info_log(program_, GLsizei(log.size()), nullptr, log.data());
     fail(std::string("the driver does not link its shaders: ") + log.data());
   }
-  gl_.UseProgram(program_);
+  gl_.use_program(program_);
 }
 
 GLuint OffscreenCanvas::Context::integer_texture() const {
   GLuint texture = 0;
-  gl_.GenTextures(1, &texture);
-  gl_.BindTexture(GL_TEXTURE_2D, texture);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RG32UI, size_, size_, 0, GL_RG_INTEGER, GL_UNSIGNED_INT,
-                 nullptr);
-  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl_.gen_textures(1, &texture);
+  gl_.bind_texture(GL_TEXTURE_2D, texture);
+  gl_.tex_image2_d(GL_TEXTURE_2D, 0, GL_RG32UI, size_, size_, 0, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                   nullptr);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return texture;
 }
 
 GLuint OffscreenCanvas::Context::framebuffer(GLuint names) const {
   GLuint result = 0;
-  gl_.GenFramebuffers(1, &result);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, result);
-  gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, names, 0);
-  gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
-  if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+  gl_.gen_framebuffers(1, &result);
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, result);
+  gl_.framebuffer_texture2_d(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, names, 0);
+  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+  if (gl_.check_framebuffer_status(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     fail("the driver has no attachments of integers and depths of " + std::to_string(size_) +
          " pixels a side");
   }
@@ -332,19 +332,19 @@ GLuint OffscreenCanvas::Context::framebuffer(GLuint names) const {
 }
 
 void OffscreenCanvas::Context::make_attachments() {
-  gl_.ActiveTexture(GL_TEXTURE0);
-  gl_.GenRenderbuffers(1, &depth_);
-  gl_.BindRenderbuffer(GL_RENDERBUFFER, depth_);
-  gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, size_, size_);
+  gl_.active_texture(GL_TEXTURE0);
+  gl_.gen_renderbuffers(1, &depth_);
+  gl_.bind_renderbuffer(GL_RENDERBUFFER, depth_);
+  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, size_, size_);
   for (std::size_t k = 0; k < 2; ++k) {
     names_[k] = integer_texture();
     framebuffers_[k] = framebuffer(names_[k]);
   }
-  gl_.BindTexture(GL_TEXTURE_2D, 0);
+  gl_.bind_texture(GL_TEXTURE_2D, 0);
 }
 
 void OffscreenCanvas::Context::check(const char* what) const {
-  const GLenum error = gl_.GetError();
+  const GLenum error = gl_.get_error();
   if (error == GL_NO_ERROR) return;
   if (error == GL_OUT_OF_MEMORY) throw LimitExceeded("envelope images: out of memory");
   fail(std::string("the driver reports error ") + std::to_string(error) + " after " + what);
@@ -352,8 +352,8 @@ void OffscreenCanvas::Context::check(const char* what) const {
 
 void OffscreenCanvas::Context::clear_triangles() {
   for (const Batch& batch : batches_) {
-    gl_.DeleteVertexArrays(1, &batch.array);
-    gl_.DeleteBuffers(1, &batch.buffer);
+    gl_.delete_vertex_arrays(1, &batch.array);
+    gl_.delete_buffers(1, &batch.buffer);
   }
   batches_.clear();
 }
@@ -362,52 +362,55 @@ void OffscreenCanvas::Context::add(std::span<const Vertex> vertices) {
   if (vertices.empty()) return;
   Batch batch;
   batch.count = GLsizei(vertices.size());
-  gl_.GenVertexArrays(1, &batch.array);
-  gl_.BindVertexArray(batch.array);
-  gl_.GenBuffers(1, &batch.buffer);
-  gl_.BindBuffer(GL_ARRAY_BUFFER, batch.buffer);
-  gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertices.size_bytes()), vertices.data(),
-                 GL_STATIC_DRAW);
-  const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+  gl_.gen_vertex_arrays(1, &batch.array);
+  gl_.bind_vertex_array(batch.array);
+  gl_.gen_buffers(1, &batch.buffer);
+  gl_.bind_buffer(GL_ARRAY_BUFFER, batch.buffer);
+  gl_.buffer_data(GL_ARRAY_BUFFER, GLsizeiptr(vertices.size_bytes()), vertices.data(),
+                  GL_STATIC_DRAW);
+  // The interface takes offsets into the buffer as pointers.
+  const auto offset = [](std::size_t bytes) {
+    return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr)
+  };
   constexpr GLsizei stride = sizeof(Vertex);
   const auto floats = [&](GLuint location, GLint count, std::size_t at) {
-    gl_.EnableVertexAttribArray(location);
-    gl_.VertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, stride, offset(at));
+    gl_.enable_vertex_attrib_array(location);
+    gl_.vertex_attrib_pointer(location, count, GL_FLOAT, GL_FALSE, stride, offset(at));
   };
   floats(0, 2, offsetof(Vertex, x));
   floats(1, 3, offsetof(Vertex, point));
   floats(2, 2, offsetof(Vertex, b));
   floats(3, 3, offsetof(Vertex, bend));
-  gl_.EnableVertexAttribArray(4);
-  gl_.VertexAttribIPointer(4, 2, GL_UNSIGNED_INT, stride, offset(offsetof(Vertex, element)));
+  gl_.enable_vertex_attrib_array(4);
+  gl_.vertex_attrib_i_pointer(4, 2, GL_UNSIGNED_INT, stride, offset(offsetof(Vertex, element)));
   batches_.push_back(batch);
   check("taking triangles");
 }
 
 OffscreenCanvas::Layer OffscreenCanvas::Context::draw(bool second) {
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[second ? 1 : 0]);
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, framebuffers_[second ? 1 : 0]);
   // Not bound while it is drawn to.
-  gl_.BindTexture(GL_TEXTURE_2D, second ? names_[0] : 0);
-  const auto at = [&](const char* name) { return gl_.GetUniformLocation(program_, name); };
-  gl_.Uniform1f(at("size"), float(size_));
-  gl_.Uniform1f(at("pole"), float(pole));
-  gl_.Uniform1f(at("extent"), float(extent));
-  gl_.Uniform1f(at("reach"), float(reach));
-  gl_.Uniform1i(at("second"), second ? 1 : 0);
-  gl_.Uniform1i(at("first_names"), 0);
+  gl_.bind_texture(GL_TEXTURE_2D, second ? names_[0] : 0);
+  const auto at = [&](const char* name) { return gl_.get_uniform_location(program_, name); };
+  gl_.uniform1f(at("size"), float(size_));
+  gl_.uniform1f(at("pole"), float(pole));
+  gl_.uniform1f(at("extent"), float(extent));
+  gl_.uniform1f(at("reach"), float(reach));
+  gl_.uniform1i(at("second"), second ? 1 : 0);
+  gl_.uniform1i(at("first_names"), 0);
   const std::array<GLuint, 4> empty = {nothing, nothing, nothing, nothing};
   const GLfloat farthest = 1;
-  gl_.ClearBufferuiv(GL_COLOR, 0, empty.data());
-  gl_.ClearBufferfv(GL_DEPTH, 0, &farthest);
+  gl_.clear_bufferuiv(GL_COLOR, 0, empty.data());
+  gl_.clear_bufferfv(GL_DEPTH, 0, &farthest);
   for (const Batch& batch : batches_) {
-    gl_.BindVertexArray(batch.array);
-    gl_.DrawArrays(GL_TRIANGLES, 0, batch.count);
+    gl_.bind_vertex_array(batch.array);
+    gl_.draw_arrays(GL_TRIANGLES, 0, batch.count);
   }
   const auto side = std::size_t(size_);
   Layer layer{std::vector<Pixel>(side * side), std::vector<float>(side * side)};
-  gl_.ReadBuffer(GL_COLOR_ATTACHMENT0);
-  gl_.ReadPixels(0, 0, size_, size_, GL_RG_INTEGER, GL_UNSIGNED_INT, layer.pixels.data());
-  gl_.ReadPixels(0, 0, size_, size_, GL_DEPTH_COMPONENT, GL_FLOAT, layer.depths.data());
+  gl_.read_buffer(GL_COLOR_ATTACHMENT0);
+  gl_.read_pixels(0, 0, size_, size_, GL_RG_INTEGER, GL_UNSIGNED_INT, layer.pixels.data());
+  gl_.read_pixels(0, 0, size_, size_, GL_DEPTH_COMPONENT, GL_FLOAT, layer.depths.data());
   check("drawing");
   // Rows of OpenGL begin at the bottom.
   for (std::size_t row = 0; row < side / 2; ++row) {
