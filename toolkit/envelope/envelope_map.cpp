@@ -92,10 +92,11 @@ class TriplePoints {
 
 }  // namespace
 
-EnvelopeMap trace_envelope(const EnvelopeImages& images) {
+EnvelopeMap trace_envelope(const EnvelopeImages& images, const Progress& progress) {
   const EnvelopeImages::Content& content = images.content();
-  const std::array<ImageGrid, 2> grids = {ImageGrid(content, Hemisphere::north),
-                                          ImageGrid(content, Hemisphere::south)};
+  const std::array<ImageGrid, 2> grids = {ImageGrid(content, Hemisphere::north, progress),
+                                          ImageGrid(content, Hemisphere::south, progress)};
+  progress.update("trace", 0.5);
   EnvelopeMap map;
   map.size = content.size;
   find_regions(content, grids, map);

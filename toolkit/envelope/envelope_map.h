@@ -70,6 +70,7 @@ struct EnvelopeMap {
 /// more contacts meet, or the contacts around leave a hole that no surface fills, there is a triple
 /// point, polished to the plane through its contacts. Features narrower than a pixel are not seen,
 /// nor are curves whose two contacts are closer than contacts move from pixel to pixel.
-EnvelopeMap trace_envelope(const EnvelopeImages& images);
+/// @throws Cancelled
+EnvelopeMap trace_envelope(const EnvelopeImages& images, const Progress& progress = {});
 
 }  // namespace taut

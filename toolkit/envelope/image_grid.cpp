@@ -10,7 +10,8 @@ constexpr double seen_margin = 2.5;
 
 }  // namespace
 
-ImageGrid::ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere)
+ImageGrid::ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere,
+                     const Progress& progress)
     : hemisphere_(hemisphere), size_(int(content.side())) {
   const auto count = std::size_t(size_) * std::size_t(size_);
   seen_.assign(count, 0);
@@ -24,6 +25,7 @@ ImageGrid::ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphe
     return content.at(pixel(p)).element != OffscreenCanvas::nothing;
   };
   parallel_for(std::size_t(size_), 4, content.threads, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     for (int row = int(begin); row < int(end); ++row) {
       for (int column = 0; column < size_; ++column) {
         const int p = row * size_ + column;

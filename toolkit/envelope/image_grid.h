@@ -14,7 +14,9 @@ class ImageGrid {
   /// A side between two neighbouring pixels: 2 * pixel to the right of it, 2 * pixel + 1 below.
   using SideNumber = int;
 
-  ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere);
+  /// @throws Cancelled
+  ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere,
+            const Progress& progress);
 
   Hemisphere hemisphere() const { return hemisphere_; }
   /// Of the image as it is drawn.

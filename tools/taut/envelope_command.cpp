@@ -216,7 +216,7 @@ ExitCode run(const EnvelopeArguments& arguments, Console& console) {
   warn_of_pixels(images.statistics(), console);
   const Stopwatch tracing;
   options.progress.update("trace", 0);
-  const EnvelopeMap map = trace_envelope(images);
+  const EnvelopeMap map = trace_envelope(images, options.progress);
   const double seconds_map = tracing.seconds();
   const auto overlay = make_overlay(input, arguments, console);
 

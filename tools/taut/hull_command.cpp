@@ -95,7 +95,7 @@ Hull hull_of_images(const Scene& scene, int size, const HullOptions& options) {
   const Stopwatch watch;
   const EnvelopeImages images(
       scene, {.size = size, .threads = options.threads, .progress = options.progress});
-  const EnvelopeMap map = trace_envelope(images);
+  const EnvelopeMap map = trace_envelope(images, options.progress);
   const double seconds = watch.seconds();
   Hull hull = envelope_hull(images, map, options);
   hull.statistics.seconds_sample += seconds;
