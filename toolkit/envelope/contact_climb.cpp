@@ -81,22 +81,44 @@ Place climb_element(const ContactGeometry& geometry, Place p, const dvec3& n) {
   return p;
 }
 
-/// Beyond the patch's sides that hold the contact back: the neighbours' places there.
+/// Where the pieces that end in the vertex begin.
+void add_pieces(const ContactGeometry& geometry, const Contact& vertex,
+                std::vector<Contact>& result) {
+  for (const ContactGeometry::PieceEnd& end : geometry.ends(vertex)) {
+    const int instance = end.instance >= 0 ? end.instance : vertex.instance;
+    const Contact next{instance, SourceKind::edge, end.piece, double(end.end), 0};
+    if (!geometry.is_straight(next)) result.push_back(next);
+  }
+}
+
+/// The same place on the patches that have the piece for a border, and the pieces that go on from
+/// it at an end that holds the contact back.
+void add_sides(const ContactGeometry& geometry, const Place& p, const dvec3& n,
+               std::vector<Contact>& result) {
+  const Contact& c = p.contact;
+  for (const ContactGeometry::PieceSide& side : geometry.sides(c)) {
+    const int instance = side.instance >= 0 ? side.instance : c.instance;
+    const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
+    result.push_back({instance, SourceKind::face, side.patch, uv.x, uv.y});
+  }
+  const EdgePiece& piece = geometry.part(c).pieces()[std::size_t(c.element)];
+  const double slope = glm::dot(p.jet.dx[0], n);
+  for (const int end : {0, 1}) {
+    const int next = piece.end_neighbor[std::size_t(end)];
+    if (c.u != end || next < 0 || !is_held(c.u, slope)) continue;
+    const EdgePiece& other = geometry.part(c).pieces()[std::size_t(next)];
+    const bool at_start = other.end_neighbor[0] == c.element && (next != c.element || end == 1);
+    result.push_back({c.instance, SourceKind::edge, next, at_start ? 0.0 : 1.0, 0});
+  }
+}
+
+/// Where the value may grow on: beyond the patch's sides that hold the contact back, from an edge
+/// onto its patches, and from a vertex onto its edges.
 std::vector<Contact> beyond(const ContactGeometry& geometry, const Place& p, const dvec3& n) {
   std::vector<Contact> result;
-  if (p.contact.kind == SourceKind::edge) {
-    const EdgePiece& piece = geometry.part(p.contact).pieces()[std::size_t(p.contact.element)];
-    const double slope = glm::dot(p.jet.dx[0], n);
-    for (const int end : {0, 1}) {
-      const int next = piece.end_neighbor[std::size_t(end)];
-      if (p.contact.u != end || next < 0 || !is_held(p.contact.u, slope)) continue;
-      const EdgePiece& other = geometry.part(p.contact).pieces()[std::size_t(next)];
-      const bool at_start =
-          other.end_neighbor[0] == p.contact.element && (next != p.contact.element || end == 1);
-      result.push_back({p.contact.instance, SourceKind::edge, next, at_start ? 0.0 : 1.0, 0});
-    }
-    return result;
-  }
+  if (p.contact.kind != SourceKind::face && geometry.is_repeated(p.contact)) return result;
+  if (p.contact.kind == SourceKind::vertex) add_pieces(geometry, p.contact, result);
+  if (p.contact.kind == SourceKind::edge) add_sides(geometry, p, n, result);
   if (p.contact.kind != SourceKind::face) return result;
   const Patch& patch = geometry.patch(p.contact);
   for (const Side side : all_sides) {

@@ -62,7 +62,9 @@ class Painter {
   void find_sources();
   void load(const StereographicView& view);
   bool corners(const StereographicView& view, std::size_t triangle, Vertex* result) const;
-  void decide(Hemisphere hemisphere, Layer first, const Layer& second);
+  OffscreenCanvas::Pixel better(const OffscreenCanvas::Pixel& first,
+                                const OffscreenCanvas::Pixel* second, const dvec3& n) const;
+  void decide(Hemisphere hemisphere, const Layer& first, const Layer& second);
   double value(float depth) const { return reach_ * (1 - 2 * double(depth)); }
 
   EnvelopeImages::Content& content_;
@@ -219,42 +221,59 @@ void Painter::load(const StereographicView& view) {
   }
 }
 
-/// Takes what was drawn, and where two contacts are as good as equal the better one.
-void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
+/// Where climbing from what is drawn, or from what lies below it, leads to the higher contact.
+OffscreenCanvas::Pixel Painter::better(const OffscreenCanvas::Pixel& first,
+                                       const OffscreenCanvas::Pixel* second, const dvec3& n) const {
+  const auto climbed = [&](std::uint32_t triangle) {
+    return climb(content_.geometry, content_.start(triangle, n), n);
+  };
+  const auto number = [&](const ClimbedContact& c) { return content_.elements.number(c.contact); };
+  const ClimbedContact a = climbed(first.triangle);
+  if (second == nullptr) return {std::uint32_t(number(a)), first.triangle};
+  const ClimbedContact b = climbed(second->triangle);
+  // Of contacts that are one, the lower kind, which has the higher number.
+  const double tie = content_.geometry.tie();
+  const bool second_wins = b.h > a.h + tie || (b.h >= a.h - tie && number(b) > number(a));
+  return {std::uint32_t(number(second_wins ? b : a)),
+          second_wins ? second->triangle : first.triangle};
+}
+
+/// Takes what was drawn; where two contacts are as good as equal, and where what is drawn changes
+/// from pixel to pixel, double precision decides.
+void Painter::decide(Hemisphere hemisphere, const Layer& first, const Layer& second) {
   const std::size_t size = content_.side();
   struct Counts {
     long decided = 0, filled = 0, empty = 0;
   };
   std::vector<Counts> counts(size);
+  std::vector<OffscreenCanvas::Pixel>& image = content_.images[std::size_t(hemisphere)];
+  image = first.pixels;
+  const auto at_change = [&](std::size_t row, std::size_t column) {
+    const auto element = [&](std::size_t r, std::size_t c) {
+      return first.pixels[std::min(r, size - 1) * size + std::min(c, size - 1)].element;
+    };
+    const std::uint32_t own = element(row, column);
+    return own != element(row, column + 1) || own != element(row + 1, column) ||
+           (column > 0 && own != element(row, column - 1)) ||
+           (row > 0 && own != element(row - 1, column));
+  };
   parallel_for(size, 4, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
     for (std::size_t row = begin; row < end; ++row) {
       for (std::size_t column = 0; column < size; ++column) {
         const std::size_t k = row * size + column;
-        OffscreenCanvas::Pixel& pixel = first.pixels[k];
+        OffscreenCanvas::Pixel& pixel = image[k];
         if (pixel.element == OffscreenCanvas::nothing) {
           ++counts[row].empty;
           continue;
         }
         const bool close = second.pixels[k].element != OffscreenCanvas::nothing &&
                            value(first.depths[k]) - value(second.depths[k]) <= decision_margin;
-        if (close) {
+        if (close || at_change(row, column)) {
           ++counts[row].decided;
           const dvec3 n =
               content_.direction({hemisphere, int(column) - image_margin, int(row) - image_margin});
-          const auto climbed = [&](std::uint32_t triangle) {
-            return climb(content_.geometry, content_.start(triangle, n), n);
-          };
-          const ClimbedContact a = climbed(pixel.triangle);
-          const ClimbedContact b = climbed(second.pixels[k].triangle);
-          const auto number = [&](const ClimbedContact& c) {
-            return content_.elements.number(c.contact);
-          };
-          // Of contacts that are one, the lower kind, which has the higher number.
-          const double tie = content_.geometry.tie();
-          const bool second_wins = b.h > a.h + tie || (b.h >= a.h - tie && number(b) > number(a));
-          if (second_wins) pixel.triangle = second.pixels[k].triangle;
-          pixel.element = std::uint32_t(number(second_wins ? b : a));
+          pixel = better(pixel, close ? &second.pixels[k] : nullptr, n);
         }
         if (int(pixel.triangle) >= content_.first_filler) ++counts[row].filled;
       }
@@ -265,7 +284,6 @@ void Painter::decide(Hemisphere hemisphere, Layer first, const Layer& second) {
     content_.statistics.filled_pixels += c.filled;
     content_.statistics.empty_pixels += c.empty;
   }
-  content_.images[std::size_t(hemisphere)] = std::move(first.pixels);
 }
 
 void Painter::paint() {
@@ -283,11 +301,11 @@ void Painter::paint() {
     options_.progress.update("draw", hemisphere == Hemisphere::north ? 0 : 0.5);
     watch = Stopwatch();
     load(StereographicView{hemisphere, options_.size});
-    Layer first = canvas_.draw_first();
+    const Layer first = canvas_.draw_first();
     const Layer second = canvas_.draw_second();
     statistics.seconds_draw += watch.seconds();
     watch = Stopwatch();
-    decide(hemisphere, std::move(first), second);
+    decide(hemisphere, first, second);
     statistics.seconds_decide += watch.seconds();
   }
 }

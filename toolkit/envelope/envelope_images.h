@@ -21,8 +21,8 @@ struct EnvelopeOptions {
 struct EnvelopeStatistics {
   std::string driver;
   long triangles = 0;
-  /// Pixels at which two contacts were so close that depths of 32 bits do not tell, decided in
-  /// double precision.
+  /// Pixels decided in double precision: at which two contacts were so close that depths of 32 bits
+  /// do not tell, or beside which another element is seen.
   long decided_pixels = 0;
   /// Pixels that no surface, edge or vertex covered, and that show the nearest of some points that
   /// are sampled beforehand. None, unless surfaces turn faster than triangles are made fine.
