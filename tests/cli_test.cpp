@@ -258,7 +258,6 @@ TEST_F(Cli, WrongUsageIsRefusedBeforeAnyWork) {
   expect_failure(hull + "-o - --format hull.cbor --method sampled", 2, "holds the exact hull");
   expect_failure(hull + "-o a.mlp -o a-hull.ply", 2, "a-hull.ply: is named twice");
   expect_failure(hull + "-o - --format mlp", 2, "several files");
-  expect_failure(hull + "-o a.ply --method envelope", 2, "not available yet");
   expect_failure(hull + "-o a.ply --method guess", 2, "--method");
   expect_failure(hull + "-o a.ply --threads -1", 2, "--threads");
   expect_failure(hull + "-o a.ply --progress loud", 2, "--progress");

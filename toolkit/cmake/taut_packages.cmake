@@ -35,6 +35,8 @@ set(CPACK_DEBIAN_TAUT_DESCRIPTION "convex hulls of freeform models: command\n${a
 set(CPACK_DEBIAN_LIBTAUT_PACKAGE_NAME libtaut)
 set(CPACK_DEBIAN_LIBTAUT_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBTAUT_DESCRIPTION "convex hulls of freeform models: libraries\n${about}")
+# Loaded when envelope images are drawn; all else works without it.
+set(CPACK_DEBIAN_LIBTAUT_PACKAGE_RECOMMENDS libosmesa6)
 
 set(CPACK_DEBIAN_LIBTAUT-DEV_PACKAGE_NAME libtaut-dev)
 set(CPACK_DEBIAN_LIBTAUT-DEV_PACKAGE_SECTION libdevel)

@@ -28,6 +28,7 @@ inline Command add_command(CLI::App& parent, const std::string& name, const std:
   return command;
 }
 
+Command add_envelope(CLI::App& parent);
 Command add_hull(CLI::App& parent);
 Command add_info(CLI::App& parent);
 Command add_support(CLI::App& parent);

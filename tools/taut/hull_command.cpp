@@ -12,6 +12,7 @@
 #include "input.h"
 #include "output.h"
 #include "standard_input.h"
+#include "taut/envelope/envelope_hull.h"
 #include "taut/hull/boundary_measures.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measures.h"
@@ -39,6 +40,7 @@ struct HullArguments {
   std::optional<double> relative;
   std::optional<double> tolerance;
   int max_vertices = HullOptions().max_vertices;
+  int size = EnvelopeOptions().size;
 };
 
 std::string format_of(const std::string& output, const HullArguments& arguments) {
@@ -51,9 +53,6 @@ bool is_document(const std::string& format) {
 
 /// What can be told from the command line alone.
 void check(const HullArguments& arguments, bool json) {
-  if (arguments.method == "envelope") {
-    throw UsageError("--method envelope is not available yet: give --method precise or sampled");
-  }
   for (const std::string& file : arguments.outputs) {
     const std::string format = format_of(file, arguments);
     if (arguments.method == "precise" || !is_document(format)) continue;
@@ -92,11 +91,24 @@ struct Outcome {
   std::optional<HullNotConverged> failure;
 };
 
-Outcome compute(Input& input, const std::string& method, const HullOptions& options) {
+Hull hull_of_images(const Scene& scene, int size, const HullOptions& options) {
+  const Stopwatch watch;
+  const EnvelopeImages images(
+      scene, {.size = size, .threads = options.threads, .progress = options.progress});
+  const EnvelopeMap map = trace_envelope(images, options.progress);
+  const double seconds = watch.seconds();
+  Hull hull = envelope_hull(images, map, options);
+  hull.statistics.seconds_sample += seconds;
+  return hull;
+}
+
+Outcome compute(Input& input, const HullArguments& arguments, const HullOptions& options) {
+  const std::string& method = arguments.method;
   try {
-    Hull hull = input.model().polyhedral() ? polyhedral_hull(input.model(), options)
-                : method == "precise"      ? precise_hull(input.scene(), options)
-                                           : sampled_hull(input.scene(), options);
+    Hull hull = method == "envelope" ? hull_of_images(input.scene(), arguments.size, options)
+                : input.model().polyhedral() ? polyhedral_hull(input.model(), options)
+                : method == "precise"        ? precise_hull(input.scene(), options)
+                                             : sampled_hull(input.scene(), options);
     return {std::make_shared<const Hull>(std::move(hull)), {}};
   } catch (const HullNotConverged& failure) {
     return {failure.best, failure};
@@ -374,7 +386,7 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
-  const Outcome outcome = compute(input, arguments.method, options);
+  const Outcome outcome = compute(input, arguments, options);
 
   Report report = make_report(input, *outcome.hull, arguments, options.tolerance, console);
   bring_up_to_date(report, outcome, console);
@@ -429,7 +441,7 @@ Command add_hull(CLI::App& parent) {
   app.add_option(
          "--method", arguments->method,
          "precise (default): the exact hull, and a mesh of it; sampled: a\nmesh through points of "
-         "the model; envelope is not available yet")
+         "the model; envelope: a mesh through contacts that envelope images\nshow")
       ->check(CLI::IsMember({"sampled", "precise", "envelope"}).description(""))
       ->type_name("METHOD");
   CLI::Option* relative =
@@ -445,6 +457,10 @@ Command add_hull(CLI::App& parent) {
   add_integer(app, "--max-vertices", arguments->max_vertices, 4, std::numeric_limits<int>::max(),
               "Vertices after which to give up on the tolerance, default " +
                   number(long(arguments->max_vertices)));
+  add_integer(app, "--size", arguments->size, 8, 16000,
+              "Width and height in pixels of the images of --method envelope,\ndefault " +
+                  number(long(arguments->size)))
+      ->type_name("N");
   app.add_option("--report", arguments->report, "JSON report to write; - is stdout")
       ->type_name("FILE");
   command.run = [arguments](Console& console) { return run(*arguments, console); };

@@ -105,8 +105,8 @@ class CommandLine {
     app_.set_help_flag("-h,--help", "Print this help and exit");
     app_.set_version_flag("--version", "taut " TAUT_VERSION);
     app_.require_subcommand(1);
-    commands_ = {add_hull(app_),     add_info(app_),   add_support(app_),
-                 add_contains(app_), add_verify(app_), add_plugins(app_)};
+    commands_ = {add_hull(app_),     add_info(app_),   add_support(app_), add_contains(app_),
+                 add_envelope(app_), add_verify(app_), add_plugins(app_)};
     // Last, so that help shows them last.
     for (const Command& command : commands_) add_common_options(*command.app, *command.common);
   }

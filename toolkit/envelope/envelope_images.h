@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "taut/bounds/scene.h"
+#include "taut/core/progress.h"
+#include "taut/envelope/stereographic.h"
+
+namespace taut {
+
+struct EnvelopeOptions {
+  /// Width and height of each image, in pixels. 8 .. 16384, or as many as the driver draws.
+  int size = 1024;
+  /// Threads of everything but the drawing itself, 0 for all. The images do not depend on it.
+  int threads = 0;
+  Progress progress;
+};
+
+/// What drawing the images took, and what was met.
+struct EnvelopeStatistics {
+  std::string driver;
+  long triangles = 0;
+  /// Pixels decided in double precision: at which two contacts were so close that depths of 32 bits
+  /// do not tell, or beside which another element is seen.
+  long decided_pixels = 0;
+  /// Pixels that no surface, edge or vertex covered, and that show the nearest of some points that
+  /// are sampled beforehand. None, unless surfaces turn faster than triangles are made fine.
+  long filled_pixels = 0;
+  /// Pixels without anything. None.
+  long empty_pixels = 0;
+  double seconds_triangles = 0;
+  double seconds_draw = 0;
+  double seconds_decide = 0;
+};
+
+/// A pixel of one of the two images.
+struct EnvelopePixel {
+  Hemisphere hemisphere = Hemisphere::north;
+  int column = 0;
+  int row = 0;
+};
+
+/// The upper envelope of a scene's support functions as two images of the sphere of directions
+/// (Kim, Kim, Kim, Elber: Precise convex hull computation for freeform models, section 3.1): which
+/// of its patches, edges and vertices supports in each direction, and where.
+///
+/// Every contact is drawn at the direction that it supports: patches by their Gauss map over
+/// adaptive triangulations of their parameters, edges as bands, vertices as spherical polygons; the
+/// support value goes to the depth buffer, and the numbers of element and triangle are kept,
+/// exactly. Where two values are closer than depths tell, contacts recomputed in double precision
+/// decide. So what is at a pixel is what supports at its centre, but for features that lie between
+/// pixels' centres, and joins of patches to a quarter of a pixel.
+///
+/// The scene must outlive the images. Safe to ask concurrently.
+class EnvelopeImages {
+ public:
+  /// Draws them. @throws InvalidInput if the size is out of range, BackendError if OSMesa does not
+  /// draw (OffscreenCanvas), Cancelled
+  explicit EnvelopeImages(const Scene& scene, const EnvelopeOptions& options = {});
+  ~EnvelopeImages();
+  EnvelopeImages(EnvelopeImages&&) noexcept;
+
+  const Scene& scene() const;
+  int size() const;
+  StereographicView view(Hemisphere hemisphere) const { return {hemisphere, size()}; }
+  const EnvelopeStatistics& statistics() const;
+
+  /// The direction at the pixel's centre.
+  dvec3 direction(const EnvelopePixel& p) const {
+    return view(p.hemisphere).direction_at(p.column, p.row);
+  }
+  /// The pixel nearest to a direction, in the image of its hemisphere.
+  EnvelopePixel pixel(const dvec3& n) const;
+  /// The source that is seen there (Model::source).
+  int source(const EnvelopePixel& p) const;
+  /// The contact that is seen there, recomputed in double precision.
+  Contact contact(const EnvelopePixel& p) const;
+
+  struct Content;  // defined in envelope_content.h, for this layer
+  const Content& content() const { return *content_; }
+
+ private:
+  std::unique_ptr<const Content> content_;
+};
+
+}  // namespace taut

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "taut/envelope/envelope_images.h"
+
+namespace taut {
+
+/// A connected set of pixels that show one source, across the equator and unbroken by any
+/// separating curve. Pixels outside of the inscribed circle do not count.
+struct EnvelopeRegion {
+  int source = -1;
+  long pixels = 0;
+  /// A pixel of it, one of those that lie deepest inside.
+  EnvelopePixel inside;
+  /// How many pixels around that one are of the region too, in all eight directions: a region of
+  /// depth d holds a square of 2 d + 1 pixels. Counted up to 3.
+  int depth = 0;
+};
+
+/// A direction at which two contacts support at once.
+struct EnvelopeCurvePoint {
+  dvec3 n = dvec3(0.0);
+  std::array<Contact, 2> contact;
+  std::array<dvec3, 2> point = {dvec3(0.0), dvec3(0.0)};  ///< in model coordinates
+};
+
+/// A polyline along a separating curve, between whose points there is about a pixel. To each of its
+/// sides one source supports.
+struct EnvelopeCurve {
+  std::array<int, 2> sources = {-1, -1};
+  std::vector<EnvelopeCurvePoint> points;
+  bool closed = false;  ///< the last point is followed by the first
+  /// Curves of one chain go on into each other, in their order, where a source changes.
+  int chain = -1;
+};
+
+/// A plane that touches the model in three or more contacts, or along a curve.
+struct EnvelopeTriplePoint {
+  dvec3 n = dvec3(0.0);
+  std::vector<Contact> contacts;
+  std::vector<dvec3> points;  ///< in model coordinates
+};
+
+/// What two envelope images show.
+struct EnvelopeMap {
+  std::vector<EnvelopeRegion> regions;
+  std::vector<EnvelopeCurve> curves;
+  std::vector<EnvelopeTriplePoint> triple_points;
+
+  /// Width and height of the images.
+  int size = 0;
+  /// Per hemisphere and pixel, row by row, the number of its region; -1 outside of the circle.
+  std::array<std::vector<int>, 2> region_numbers;
+
+  int region_at(const EnvelopePixel& p) const {
+    return region_numbers[std::size_t(p.hemisphere)]
+                         [std::size_t(p.row) * std::size_t(size) + std::size_t(p.column)];
+  }
+  int chain_count() const { return curves.empty() ? 0 : curves.back().chain + 1; }
+};
+
+/// Reads regions, separating curves and triple points off the images alone.
+///
+/// Between two neighbouring pixels runs a separating curve if their contacts are no local maxima of
+/// one another's surfaces: if climbing from the one over the surface, towards what supports at the
+/// other's centre, does not lead there. Its point between the two is the direction in which both
+/// support the same, to within the interpolation between the pixels. Where the curves of three or
+/// more contacts meet, or the contacts around leave a hole that no surface fills, there is a triple
+/// point, polished to the plane through its contacts. Features narrower than a pixel are not seen,
+/// nor are curves whose two contacts are closer than contacts move from pixel to pixel.
+/// @throws Cancelled
+EnvelopeMap trace_envelope(const EnvelopeImages& images, const Progress& progress = {});
+
+}  // namespace taut

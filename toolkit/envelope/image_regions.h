@@ -1,0 +1,15 @@
+#pragma once
+
+#include <array>
+
+#include "taut/envelope/envelope_map.h"
+#include "taut/envelope/image_grid.h"
+
+namespace taut {
+
+/// Fills the map's regions, in the order of their first pixels, and its pixels' numbers of them.
+/// @pre its size is that of the images
+void find_regions(const EnvelopeImages::Content& content, const std::array<ImageGrid, 2>& grids,
+                  EnvelopeMap& map);
+
+}  // namespace taut
