@@ -318,32 +318,6 @@ TEST(AddCage, WarnsOfNonManifoldCages) {
                           [](const Edge& e) { return e.faces.size() == 3; }));
 }
 
-/// A regular torus has a crest on its top and its bottom, and two flat disks; with a NURBS model, a
-/// curve and points it makes one hull.
-TEST(CageHull, OfTorusAndMixedScenes) {
-  const Hull torus = convex_hull(cage_model(torus_cage(6, 5)), {.relative = 1e-2, .progress = {}});
-  ASSERT_TRUE(torus.boundary);
-  EXPECT_TRUE(torus.boundary->unresolved.empty());
-  EXPECT_EQ(torus.boundary->count(FaceKind::facet), 2);
-  EXPECT_EQ(torus.boundary->count(FaceKind::scroll), 0);
-  Model mixed = cage_model(torus_cage(6, 5));
-  Part others;
-  const Shape pot = teapot();
-  for (const auto& surface : pot.surfaces) others.add_surface(surface, "pot");
-  others.add_point({0, 0, 2});
-  others.add_point({3, 0, 0});
-  NurbsCurve line;
-  line.degree = 1;
-  line.knots = {0, 0, 1, 1};
-  line.points = {{0, -3, 0, 1}, {0, -3, 1, 1}};
-  others.add_curve(line, "line");
-  mixed.add_part(std::move(others), smooth_join_angle);
-  const Hull hull = convex_hull(mixed, {.relative = 1e-2, .progress = {}});
-  ASSERT_TRUE(hull.boundary);
-  EXPECT_TRUE(hull.boundary->unresolved.empty());
-  EXPECT_EQ(hull.kind, HullKind::solid);
-}
-
 TEST(Tapered, IsTheSamePatch) {
   Random random(3);
   for (const int m : {1, 2, 3}) {

@@ -14,7 +14,7 @@ namespace {
 
 /// Radii of the disc, in that of the cell, tried one after the other. At twice the cell's radius a
 /// paraboloid is as high as the cell's tangent planes.
-constexpr std::array<double, 2> disc_radii = {2, 3};
+constexpr std::array<double, 3> disc_radii = {2, 3, 5};
 /// Shares of the disc's radius. Within this one, what is curved one way is divided until it is
 /// inside of the disc,
 constexpr double inner = 0.8;

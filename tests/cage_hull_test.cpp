@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+
+#include "cages.h"
+#include "models.h"
+#include "taut/bounds/scene.h"
+#include "taut/bounds/support_query.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/io/read_model.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: cages
+
+Hull whole_hull(const Model& model, const std::string& name) {
+  const Hull hull = convex_hull(model, {.relative = 1e-2, .progress = {}});
+  EXPECT_TRUE(hull.boundary) << name;
+  if (hull.boundary && !hull.boundary->unresolved.empty()) {
+    ADD_FAILURE() << name << ": " << hull.boundary->unresolved.size()
+                  << " unresolved: " << hull.boundary->unresolved.front().reason;
+  }
+  return hull;
+}
+
+/// Permutations of coordinates with an even number of changed signs; for the cube any number.
+void expect_symmetry(const Model& model, bool all_signs, const std::string& name) {
+  const Scene scene(model);
+  SupportQuery query(scene);
+  const double bound = 2 * model.deviation_bound() + 1e-13;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 50; ++k) {
+    const dvec3 n = glm::normalize(dvec3(normal(random), normal(random), normal(random)));
+    const double h = support(query, scene, n).h;
+    for (int signs = 0; signs < 8; ++signs) {
+      const dvec3 s((signs & 1) != 0 ? -1 : 1, (signs & 2) != 0 ? -1 : 1,
+                    (signs & 4) != 0 ? -1 : 1);
+      if (!all_signs && s.x * s.y * s.z < 0) continue;
+      for (const dvec3& p : {n, dvec3(n.y, n.z, n.x), dvec3(n.z, n.x, n.y), dvec3(n.y, n.x, n.z),
+                             dvec3(n.x, n.z, n.y), dvec3(n.z, n.y, n.x)}) {
+        EXPECT_NEAR(support(query, scene, s * p).h, h, bound) << name;
+      }
+    }
+  }
+}
+
+// Closed and convex: all of the limit surface is its hull, proven cell by cell.
+TEST(CageHull, OfCubeAndTetrahedra) {
+  struct Case {
+    std::string name;
+    ControlCage cage;
+    double accuracy;
+    bool all_signs;
+  };
+  for (const Case& c :
+       {Case{"cube", cube_cage(), 1e-9, true},
+        Case{"tetrahedron", tetrahedron_cage(CageScheme::catmark), 1e-9, false},
+        Case{"tetrahedron, loop", tetrahedron_cage(CageScheme::loop), 1e-6, false}}) {
+    const Model model = cage_model(c.cage, c.accuracy);
+    const Hull hull = whole_hull(model, c.name);
+    EXPECT_EQ(hull.statistics.cells_searched, 0) << c.name;
+    EXPECT_EQ(hull.boundary->count(FaceKind::facet), 0) << c.name;
+    EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 0) << c.name;
+    EXPECT_EQ(hull.boundary->count(FaceKind::patch), int(c.cage.faces.size())) << c.name;
+    expect_symmetry(model, c.all_signs, c.name);
+  }
+}
+
+/// A regular torus has a crest on its top and its bottom, and two flat disks; with a NURBS model, a
+/// curve and points it makes one hull.
+TEST(CageHull, OfTorusAndMixedScenes) {
+  const Hull torus = convex_hull(cage_model(torus_cage(6, 5)), {.relative = 1e-2, .progress = {}});
+  ASSERT_TRUE(torus.boundary);
+  EXPECT_TRUE(torus.boundary->unresolved.empty());
+  EXPECT_EQ(torus.boundary->count(FaceKind::facet), 2);
+  EXPECT_EQ(torus.boundary->count(FaceKind::scroll), 0);
+  Model mixed = cage_model(torus_cage(6, 5));
+  Part others;
+  const Shape pot = teapot();
+  for (const auto& surface : pot.surfaces) others.add_surface(surface, "pot");
+  others.add_point({0, 0, 2});
+  others.add_point({3, 0, 0});
+  NurbsCurve line;
+  line.degree = 1;
+  line.knots = {0, 0, 1, 1};
+  line.points = {{0, -3, 0, 1}, {0, -3, 1, 1}};
+  others.add_curve(line, "line");
+  mixed.add_part(std::move(others), smooth_join_angle);
+  const Hull hull = convex_hull(mixed, {.relative = 1e-2, .progress = {}});
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_TRUE(hull.boundary->unresolved.empty());
+  EXPECT_EQ(hull.kind, HullKind::solid);
+}
+
+/// A cage file from elsewhere.
+void expect_whole(const char* file, double accuracy) {
+  const char* const folder = std::getenv("TAUT_MODELS");
+  if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS names no folder with models";
+  const std::filesystem::path path = std::filesystem::path(folder) / file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  Model model;
+  ReadOptions options;
+  options.scheme = Scheme::catmark;
+  options.cage_accuracy = accuracy;
+  read_model(path, model, options);
+  whole_hull(model, file);
+}
+
+TEST(CageHull, OfSheetsWithCornersAndBoundary) {
+  expect_whole("A16_osd_edgecorner_boundary.obj", 1e-9);
+}
+TEST(CageHull, OfANonManifoldCage) { expect_whole("A17_osd_nonmanifold_edges.obj", 1e-9); }
+TEST(CageHull, OfAnOffTorus) { expect_whole("A19_torus_quad_smooth.off", 1e-9); }
+TEST(CageHull, OfATriangulatedCube) { expect_whole("A20_cube_binary.ply", 1e-3); }
+
+}  // namespace
+}  // namespace taut
