@@ -31,6 +31,8 @@ using Sums = Integrals<quantities>;
 
 /// Relative accuracy of every single rule: what contacts solved to 1e-13 can give.
 constexpr double rule_accuracy = 1e-13;
+/// Absolute, of each integral, in the scene's frame.
+constexpr double region_accuracy = 1e-18;
 
 /// Adds w times the area element of size dA with unit or any normal, n dA = A.
 void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double w) {
@@ -48,7 +50,8 @@ void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double 
 }
 
 /// Tolerances relative to the largest component of each kind, but not below the rounding of the
-/// areas that they are made of (lengths in the scene's frame are about one at most).
+/// areas that they are made of (lengths in the scene's frame are about one at most), nor what tiny
+/// regions may miss: their points' rounding is no small share of them.
 Sample tolerances(const Sample& magnitude) {
   Sample result{};
   const auto largest = [&](std::size_t from, std::size_t to) {
@@ -58,7 +61,8 @@ Sample tolerances(const Sample& magnitude) {
   };
   const double areas = std::max(magnitude[area], largest(vector_area, quantities));
   const auto set = [&](std::size_t from, std::size_t to) {
-    const double m = rule_accuracy * largest(from, to) + 8 * rounding_unit * areas;
+    const double m =
+        rule_accuracy * largest(from, to) + 8 * rounding_unit * areas + region_accuracy;
     for (std::size_t k = from; k < to; ++k) result[k] = m;
   };
   set(volume, volume + 1);
