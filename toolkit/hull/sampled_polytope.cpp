@@ -48,6 +48,7 @@ class Sampler {
 
   void begin(std::vector<Sample> samples, const std::vector<dvec3>& points);
   dvec3 direction_of(int facet) const;
+  bool take_slivers_seriously();
   void find_planes();
   void bound_vertices();
   bool refine();
@@ -71,6 +72,7 @@ class Sampler {
   std::vector<dvec3> frame_points_;    // per vertex
   std::vector<double> vertex_gaps_;    // per vertex: the largest gap of its facets
   std::vector<double> vertex_depths_;  // per vertex: cone_depth() of its facets' normals
+  bool slivers_count_ = false;         // their own directions do, since nothing else helped
   std::vector<Plane> planes_;          // per facet
   double tolerance_;                   // in the scene's frame
   double bound_ = 0;
@@ -94,7 +96,7 @@ void Sampler::begin(std::vector<Sample> samples, const std::vector<dvec3>& point
 dvec3 Sampler::direction_of(int facet) const {
   const double rounding = scene_.frame().length_to_frame(8 * vertex_rounding(scene_));
   int f = facet;
-  for (int k = 0; k < sliver_limit; ++k) {
+  for (int k = 0; k < sliver_limit && !slivers_count_; ++k) {
     const PointHull::Facet& own = hull_.facet(f);
     std::size_t longest = 0;
     double length = 0;
@@ -111,6 +113,19 @@ dvec3 Sampler::direction_of(int facet) const {
     f = own.neighbor[longest];
   }
   return unit(hull_.facet(facet).side.normal());
+}
+
+/// Lets slivers have their own directions from now on. False if that changes nothing.
+bool Sampler::take_slivers_seriously() {
+  if (slivers_count_) return false;
+  slivers_count_ = true;
+  bool changes = false;
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    if (!hull_.facets()[f].alive || planes_[f].n == direction_of(int(f))) continue;
+    planes_[f].known = false;
+    changes = true;
+  }
+  return changes;
 }
 
 /// Queries the supporting plane of every facet that has none yet, in parallel; each query starts
@@ -297,7 +312,7 @@ SampledPolytope Sampler::run(std::vector<Sample> samples, const std::vector<dvec
     if (bound_ <= tolerance_) break;
     if (int(hull_.points().size()) >= options_.max_vertices) {
       failure = vertex_limit_met;
-    } else if (!refine()) {
+    } else if (!refine() && !take_slivers_seriously()) {
       failure = tolerance_too_fine;
     }
   }
