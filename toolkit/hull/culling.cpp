@@ -228,7 +228,9 @@ class PatchCulling {
       // Where the parent's support point is here, the proof needs no query.
       const bool near = may_be_on && is_near(beacon, cell);
       bool on = near && surely_on(bounds, nets.points, cell, sign);
-      if (!on) {
+      if (on) {
+        sample_middle(cell, sign);
+      } else {
         if (left.plus) left.plus = !surely_off(pyramid, nets.points, cell, 1, beacons[0]);
         if (left.minus) left.minus = !surely_off(pyramid, nets.points, cell, -1, beacons[1]);
         if (!left.any()) {
@@ -380,11 +382,8 @@ class PatchCulling {
                  const PatchCell& cell, double sign) {
     const NormalPyramid& pyramid = *bounds.pyramid;
     const bool alone = bounds.definite && !touches_another(cell);
-    if (alone && surely_on_alone(pyramid, points, cell, sign)) {
-      sample_middle(cell, sign);
-      return true;
-    }
-    return cell.level < finest_ && surely_on_with_others(pyramid, cell, sign);
+    return (alone && surely_on_alone(pyramid, points, cell, sign)) ||
+           (cell.level < finest_ && surely_on_with_others(pyramid, cell, sign));
   }
 
   bool surely_on_alone(const NormalPyramid& pyramid, const std::vector<dvec4>& points,
@@ -423,10 +422,13 @@ class PatchCulling {
     const dvec3 n = unit(to_frame(normal));
     const Support s = tools_.query(n, middle);
     ++result_.queries;
+    if (glm::dot(s.point - content_.frame_point(middle), n) <=
+        middle_rounding * content_.rounding) {
+      return true;
+    }
     result_.samples.push_back({n, s.contact});
     result_.frame_points.push_back(s.point);
-    return glm::dot(s.point - content_.frame_point(middle), n) <=
-           middle_rounding * content_.rounding;
+    return false;
   }
 
   /// Points of the region in rings about the cell, in the scene's frame. Any of them may be
