@@ -53,8 +53,9 @@ enum class HullKind { empty = -1, point, segment, planar, solid };
 struct Hull {
   HullKind kind = HullKind::empty;
   HullMesh mesh;
-  /// Proven upper bound of the Hausdorff distance between the mesh and the true convex hull, in
-  /// model units, rounding included.
+  /// Proven upper bound of the Hausdorff distance between the mesh and the true convex hull of the
+  /// model as it stands, in model units, rounding included. What patches that stand for other
+  /// surfaces miss (Model::deviation_bound, of control cages) comes on top.
   double distance_bound = 0;
   /// The exact boundary, where the method finds it.
   std::shared_ptr<const HullBoundary> boundary;
