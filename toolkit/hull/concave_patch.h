@@ -36,6 +36,7 @@ class ConcavePatch {
   /// @name Nodes of the tree, 0 its root
   /// @{
   const ParameterRectangle& cell(int node) const { return nodes_[std::size_t(node)].cell; }
+  std::size_t node_count() const { return nodes_.size(); }
   int level(int node) const { return nodes_[std::size_t(node)].level; }
   /// One of the two halves.
   int child(int node, int k);

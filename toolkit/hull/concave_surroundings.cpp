@@ -24,8 +24,10 @@ constexpr double coarse = 0.5;
 constexpr double fine = 1.0 / 32;
 /// Pieces of the surface after which a disc is given up.
 constexpr std::size_t piece_limit = 512;
-/// Patches that are held.
-constexpr std::size_t surface_limit = 2048;
+/// Nodes of patches' trees that are held, some kilobytes each, and cells after which they are
+/// counted again.
+constexpr std::size_t node_limit = 16384;
+constexpr long cells_between_counts = 64;
 /// Share of the radius that is kept clear of the border, far more than rounding.
 constexpr double clearance = 1e-6;
 /// The fall to one side of a cell as a share of that to another below which it counts as none.
@@ -351,9 +353,17 @@ ConcavePatch& ConcaveSurroundings::surface(int part, int patch) {
   return *held;
 }
 
+/// Lest memory grow with the model: it is only sooner asked again.
+void ConcaveSurroundings::forget_some() {
+  if (++cells_ % cells_between_counts != 0) return;
+  std::size_t nodes = 0;
+  for (const auto& [place, surface] : surfaces_) nodes += surface->node_count();
+  if (nodes > node_limit) surfaces_.clear();
+}
+
 bool ConcaveSurroundings::surely_on(int instance, int patch, const PatchCell& cell,
                                     const NormalPyramid& pyramid, double sign) {
-  if (surfaces_.size() > surface_limit) surfaces_.clear();
+  forget_some();
   const SceneInstance& placed = scene_.content().instances[std::size_t(instance)];
   const dvec3 axis = sign * pyramid.axis;
   const ParameterRectangle own{cell.u(), cell.v()};

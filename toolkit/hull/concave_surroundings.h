@@ -45,6 +45,7 @@ class ConcaveSurroundings {
   class Walk;
 
   ConcavePatch& surface(int part, int patch);
+  void forget_some();
   bool is_above_others(int instance, int patch, const ParameterRectangle& cell,
                        const std::array<dvec3, 4>& corners,
                        const std::vector<std::pair<int, ParameterRectangle>>& pieces);
@@ -52,6 +53,7 @@ class ConcaveSurroundings {
   const Scene& scene_;
   ReachTest reach_;
   long walks_ = 0;
+  long cells_ = 0;
   std::map<std::pair<int, int>, std::unique_ptr<ConcavePatch>> surfaces_;  // by part and patch
 };
 
