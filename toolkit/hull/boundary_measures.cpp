@@ -31,8 +31,9 @@ using Sums = Integrals<quantities>;
 
 /// Relative accuracy of every single rule: what contacts solved to 1e-13 can give.
 constexpr double rule_accuracy = 1e-13;
-/// Absolute, of each integral, in the scene's frame.
-constexpr double region_accuracy = 1e-18;
+/// Roundings of a second derivative, in the scene's frame, which curvature is of whatever a patch's
+/// size.
+constexpr double curvature_rounding = 16 * rounding_unit;
 
 /// Adds w times the area element of size dA with unit or any normal, n dA = A.
 void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double w) {
@@ -49,9 +50,9 @@ void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double 
   }
 }
 
-/// Tolerances relative to the largest component of each kind, but not below the rounding of the
-/// areas that they are made of (lengths in the scene's frame are about one at most), nor what tiny
-/// regions may miss: their points' rounding is no small share of them.
+/// Tolerances relative to the largest component of each kind, but not below the rounding of what
+/// they are made of: lengths in the scene's frame are about one at most, derivatives are rounded as
+/// these are, and areas have those of the region's size as factors.
 Sample tolerances(const Sample& magnitude) {
   Sample result{};
   const auto largest = [&](std::size_t from, std::size_t to) {
@@ -60,9 +61,9 @@ Sample tolerances(const Sample& magnitude) {
     return m;
   };
   const double areas = std::max(magnitude[area], largest(vector_area, quantities));
+  const double rounding = 8 * rounding_unit * std::max(areas, std::sqrt(areas));
   const auto set = [&](std::size_t from, std::size_t to) {
-    const double m =
-        rule_accuracy * largest(from, to) + 8 * rounding_unit * areas + region_accuracy;
+    const double m = rule_accuracy * largest(from, to) + rounding;
     for (std::size_t k = from; k < to; ++k) result[k] = m;
   };
   set(volume, volume + 1);
@@ -72,7 +73,7 @@ Sample tolerances(const Sample& magnitude) {
   set(surface_moment, vector_area);
   set(vector_area, quantities);
   result[area] = result[vector_area];
-  result[curvature] += 8 * rounding_unit * magnitude[curvature];
+  result[curvature] += 8 * rounding_unit * magnitude[curvature] + curvature_rounding;
   return result;
 }
 
