@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "models.h"
 #include "surface_checks.h"
@@ -71,6 +73,44 @@ TEST(CurvatureNets, HoldForRandomPatches) {
     const double weights = k % 2 == 0 ? 1 : log_uniform(random, 1.01, 10);
     const BezierPatch patch = random_patch(random, pick(random, 1, 5), pick(random, 1, 5), weights);
     told += check(patch, no_poles, std::to_string(k), random, 20);
+  }
+  EXPECT_GE(told, 100);
+}
+
+/// Halved again and again, in turns at random: what is said of a part holds in points of it.
+TEST(CurvatureNets, HalvesHoldInTheirParts) {
+  Random random(8);
+  int told = 0;
+  const Model model = make_model(blob(2));
+  const std::vector<Patch>& patches = model.parts()[0].patches();
+  for (int k = 0; k < 100; ++k) {
+    const BezierPatch& patch = patches[std::size_t(k) % patches.size()].bezier;
+    CurvatureNets nets(patch, no_poles);
+    Interval u{0, 1};
+    Interval v{0, 1};
+    for (int level = 0; level < 8; ++level) {
+      const Direction direction = pick(random, 0, 1) == 0 ? Direction::u : Direction::v;
+      const int half = pick(random, 0, 1);
+      Interval& t = direction == Direction::u ? u : v;
+      (half == 0 ? t.upper : t.lower) = t.at(0.5);
+      std::array<CurvatureNets, 2> halves = nets.halves(direction);
+      nets = std::move(halves[std::size_t(half)]);
+      const int sign = nets.definite_sign();
+      const std::optional<NormalPyramid> pyramid = nets.normals();
+      told += sign != 0 ? 1 : 0;
+      for (int i = 0; i < 10; ++i) {
+        const double x = u.at(uniform(random, 0, 1));
+        const double y = v.at(uniform(random, 0, 1));
+        const Form there = form_at(patch, x, y);
+        if (sign != 0) {
+          EXPECT_GT(there.determinant(), 0) << k;
+          EXPECT_EQ(there.uu < 0, sign < 0) << k;
+        }
+        if (pyramid) {
+          EXPECT_TRUE(pyramid->may_contain(dvec3(reference_jet(patch, x, y).normal()))) << k;
+        }
+      }
+    }
   }
   EXPECT_GE(told, 100);
 }
