@@ -23,7 +23,9 @@ struct CellPatch {
   enum class Kind {
     none,     ///< a face of the cage that is no quad (Loop: none is)
     regular,  ///< exactly the limit surface
-    cap,  ///< stands for it: its corners are the limit's, and so are its borders to regular cells
+    /// Stands for it, polynomial too: its corners are the limit's, and so are its borders to
+    /// regular cells and the tangent planes there.
+    cap,
   };
   Kind kind = Kind::none;
   /// It is, or meets in a vertex, what is semi-sharp.
