@@ -223,6 +223,49 @@ TEST(LimitPatches, KeepTheirAccuracy) {
   }
 }
 
+/// The largest angle between the normals on both sides of smooth joins, and the number of joins
+/// between two patches of this degree.
+std::pair<double, int> largest_kink(const Part& part, int degree) {
+  double kink = 0;
+  int count = 0;
+  for (const Patch& patch : part.patches()) {
+    for (const Side side : all_sides) {
+      const Border& border = patch.borders[std::size_t(side)];
+      if (border.kind != BorderKind::smooth) continue;
+      const Patch& other = part.patches()[std::size_t(border.neighbor)];
+      const bool are_caps = patch.bezier.degree_u == degree && other.bezier.degree_u == degree;
+      count += are_caps && patch.stand_in && other.stand_in ? 1 : 0;
+      for (int k = 0; k <= 8; ++k) {
+        const dvec2 at = on_side(side, k / 8.0);
+        const dvec2 there = on_side(border.neighbor_side, border.reversed ? 1 - k / 8.0 : k / 8.0);
+        const dvec3 n = unit_normal(patch.bezier, at.x, at.y);
+        kink =
+            std::max(kink, glm::length(glm::cross(n, unit_normal(other.bezier, there.x, there.y))));
+      }
+    }
+  }
+  return {kink, count};
+}
+
+/// All faces of these domes touch the hull, and so do all caps.
+TEST(LimitPatches, CapsMeetSmoothly) {
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    const bool loop = scheme == CageScheme::loop;
+    for (const int n : {3, 4, 5, 6, 7, 8, 12}) {
+      if (n == (loop ? 6 : 4)) continue;
+      for (const double accuracy : {1e-3, 1e-6}) {
+        const Model model = cage_model(dome_cage(scheme, n), accuracy);
+        const auto [kink, count] = largest_kink(model.parts()[0], loop ? 6 : 5);
+        EXPECT_GE(count, loop ? 10 * n : 2 * n) << n;
+        // Tangents have the rounding of coordinates over the patches' size, whose square is the
+        // deviation.
+        EXPECT_LE(kink, 1e-12 / std::sqrt(accuracy))
+            << name_of(scheme) << " " << n << " " << accuracy;
+      }
+    }
+  }
+}
+
 TEST(LimitPatches, RefineOnlyWhatCanTouch) {
   // A torus whose inside has an extraordinary vertex: two quads there become a hexagon.
   ControlCage cage = torus_cage(12, 8);

@@ -69,7 +69,8 @@ class Trace {
   Pace advance();
   void begin_piece(const Ruling& first);
   bool is_sound() const;
-  void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(ruling); }
+  void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(on_joins(ruling)); }
+  Ruling on_joins(Ruling ruling) const;
 
   Pace ended(TracedArc::End end) {
     arc_.end = end;
@@ -172,6 +173,20 @@ void Trace::begin_piece(const Ruling& first) {
   lenient_ = false;
   push(first);
   changes_.begin();
+}
+
+/// The ruling with contacts that run along a join on it where they are beyond.
+Ruling Trace::on_joins(Ruling ruling) const {
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& c = ruling.contact[i];
+    if (!point_.join[i] || !same_element(c, point_.at.contact[i])) continue;
+    double& t = along_v(*point_.join[i]) ? c.u : c.v;
+    const bool beyond = at_upper_end(*point_.join[i]) ? t > 1 : t < 0;
+    if (!beyond) continue;
+    t = std::clamp(t, 0.0, 1.0);
+    ruling.point[i] = geometry_.point(c);
+  }
+  return ruling;
 }
 
 /// All numbers are finite: Newton's method may end in anything on surfaces without tangent planes.

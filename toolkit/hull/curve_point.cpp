@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "taut/hull/contact_exits.h"
 #include "taut/hull/rulings_between.h"
 
 namespace taut {
@@ -10,6 +9,10 @@ namespace {
 
 /// A contact that is no farther from a border, and moves to or from it no faster, moves along it.
 constexpr double border_slack = 1e-9;
+/// Rounding turns the way of a contact by no more than this, as a slope; sides of patches have no
+/// less than this length.
+constexpr double turn_limit = 1e-2;
+constexpr double least_size = 1e-7;
 /// How far contacts may leave their elements by rounding.
 constexpr double parameter_slack = 1e-9;
 /// A direction that turns by less, relative to the motion of (n, x_0, x_1), stands still.
@@ -71,6 +74,30 @@ bool CurvePoint::is_followed(Ruling from, const Ruling& to) const {
   return std::all_of(merging_shares.begin(), merging_shares.end(), holds);
 }
 
+/// The contact is on the side of its patch and moves along it, to within rounding. That of a
+/// patch's second derivatives turns the way of a contact by the more the smaller the patch is.
+bool CurvePoint::runs_along(std::size_t contact, const ContactExit& exit) const {
+  const ContactJet& j = at.jet[contact];
+  const LinearEquation e = exit_margin(geometry_, at, int(contact), exit);
+  const double rate = glm::dot(e.parameter[contact], tangent.parameter[contact]);
+  const bool across_u = along_v(all_sides[std::size_t(exit.index)]);
+  // As lengths: about a pole parameters are less exact.
+  const double size = std::min(1.0, glm::length(j.dx[across_u ? 0 : 1]));
+  const double second = std::abs(glm::dot(across_u ? j.dxx : j.dyy, at.n));
+  const double rounding = geometry_.rounding();
+  const double turn = rounding < turn_limit * second ? rounding / second : turn_limit;
+  const double slack = std::max(border_slack, rounding);
+  return std::abs(e.residual) * size <= slack && std::abs(rate) * size <= std::max(slack, turn);
+}
+
+/// The contact moves over the side where the direction turns into its own region.
+bool CurvePoint::extends_over(std::size_t contact, const ContactExit& exit) const {
+  const LinearEquation e = exit_margin(geometry_, at, int(contact), exit);
+  const dvec3 inward = contact == 0 ? at.d() : -at.d();
+  const std::optional<dvec2> rate = parameter_rate(at.jet[contact], at.n, inward);
+  return rate && glm::dot(e.parameter[contact], *rate) < 0;
+}
+
 bool CurvePoint::settle() {
   const CurveTangent* before = tangent.n == dvec3(0.0) ? nullptr : &tangent;
   const std::optional<CurveTangent> t = system_.tangent(at, before);
@@ -81,31 +108,41 @@ bool CurvePoint::settle() {
     const Contact c = at.contact[i];
     if (c.kind != SourceKind::face) continue;
     for (const ContactExit& exit : exits(geometry_, c)) {
-      const LinearEquation e = exit_margin(geometry_, at, int(i), exit);
-      const double along = glm::dot(e.parameter[i], tangent.parameter[i]);
-      // As lengths: about a pole parameters are less exact.
-      const Side side = all_sides[std::size_t(exit.index)];
-      const double size = std::min(1.0, glm::length(at.jet[i].dx[along_v(side) ? 0 : 1]));
-      const double slack = std::max(border_slack, geometry_.rounding());
-      if (std::max(std::abs(e.residual), std::abs(along)) * size > slack) continue;
+      if (!runs_along(i, exit)) continue;
       const std::optional<Contact> over = beyond(geometry_, c, exit);
       if (!over || over->kind == SourceKind::vertex) continue;
-      if (over->kind == SourceKind::face) {
-        // How the contact moves where the direction turns into its own region.
-        const dvec3 inward = i == 0 ? at.d() : -at.d();
-        const std::optional<dvec2> rate = parameter_rate(at.jet[i], at.n, inward);
-        if (!rate || glm::dot(e.parameter[i], *rate) >= 0) continue;
-      }
+      if (over->kind == SourceKind::face && !extends_over(i, exit)) continue;
       at.contact[i] = *over;
       changed = true;
       break;
     }
   }
-  if (!changed) return true;
-  at.evaluate(geometry_);
-  const std::optional<CurveTangent> again = system_.tangent(at, before);
-  if (again) tangent = *again;
-  return again.has_value();
+  if (changed) {
+    at.evaluate(geometry_);
+    const std::optional<CurveTangent> again = system_.tangent(at, before);
+    if (!again) return false;
+    tangent = *again;
+  }
+  find_joins();
+  return true;
+}
+
+void CurvePoint::find_joins() {
+  for (std::size_t i = 0; i < 2; ++i) {
+    join[i].reset();
+    const Contact& c = at.contact[i];
+    if (c.kind != SourceKind::face) continue;
+    for (const Side side : all_sides) {
+      if (geometry_.patch(c).borders[std::size_t(side)].kind != BorderKind::smooth) continue;
+      if (runs_along(i, {ContactExit::Kind::side, int(side)})) join[i] = side;
+    }
+  }
+}
+
+double CurvePoint::join_distance(std::size_t contact) const {
+  if (!join[contact]) return 0;
+  const double size = glm::length(at.jet[contact].dx[along_v(*join[contact]) ? 0 : 1]);
+  return border_slack / std::max(size, least_size);
 }
 
 void CurvePoint::head_into(std::size_t contact) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "taut/bounds/support_query.h"
+#include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_system.h"
 
 namespace taut {
@@ -26,6 +28,8 @@ class CurvePoint {
 
   CommonSupport at;
   CurveTangent tangent;
+  /// The smooth join, a side of its patch, along which a contact runs (settle()).
+  std::array<std::optional<Side>, 2> join;
 
   const ContactSystem& system() const { return system_; }
   const ContactGeometry& geometry() const { return geometry_; }
@@ -51,9 +55,11 @@ class CurvePoint {
   double rate_apart() const { return glm::dot(tangent.x[0] - tangent.x[1], at.d()) / apart(); }
 
   /// Where a contact moves along an edge or a seam, it is told as one of that; along another smooth
-  /// join, as one of the patch into which its region extends. Sets the tangent anew; false if there
-  /// is none.
+  /// join, as one of the patch into which its region extends. Sets the tangent and the joins anew;
+  /// false if there is none.
   bool settle();
+  /// How far beyond its join a contact that runs along it may be, as a parameter.
+  double join_distance(std::size_t contact) const;
   /// Turns the tangent into the element of the contact, which has just come over its border, where
   /// the direction stands still at first: the element is flat there, and tells no sense.
   void head_into(std::size_t contact);
@@ -69,6 +75,9 @@ class CurvePoint {
 
  private:
   CommonSupport predicted(double length) const;
+  bool runs_along(std::size_t contact, const ContactExit& exit) const;
+  bool extends_over(std::size_t contact, const ContactExit& exit) const;
+  void find_joins();
   static double square(const dvec3& x) { return glm::dot(x, x); }
 
   const ContactSystem& system_;

@@ -94,13 +94,17 @@ std::optional<ElementChange> ElementChanges::first(const CommonSupport& next, do
   return first;
 }
 
-/// How far below zero a contact's margin may be for rounding.
+/// How far below zero a contact's margin may be for rounding, or for running along a join.
 double ElementChanges::slack(int contact, const ContactExit& exit) const {
   const double size =
       std::min(1.0, exit_length(geometry_, point_.at.contact[std::size_t(contact)], exit));
   const double limit = std::max(margin_slack_limit, margin_noise_limit * geometry_.rounding());
-  if (geometry_.rounding() >= limit * size) return limit;
-  return std::max(margin_slack, geometry_.rounding() / size);
+  const auto i = std::size_t(contact);
+  const bool along = exit.kind == ContactExit::Kind::side && point_.join[i] &&
+                     *point_.join[i] == all_sides[std::size_t(exit.index)];
+  const double least = along ? point_.join_distance(i) : margin_slack;
+  if (geometry_.rounding() >= limit * size) return std::max(limit, least);
+  return std::max(least, geometry_.rounding() / size);
 }
 
 std::pair<int, Side> ElementChanges::pole_crossed(const CommonSupport& next) const {

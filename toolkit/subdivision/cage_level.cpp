@@ -551,6 +551,7 @@ std::vector<CellPatch> CageLevel::patches() const {
         std::array<dvec3, gregory_points> net;
         for (int k = 0; k < gregory_points; ++k) net[to_size(k)] = points[to_size(vertices[k])].x;
         patch.points = quartic_of_gregory(net, topology.regular_corners(face));
+        patch.degree = 4;
         continue;
       }
       const Far::PatchTable::PatchHandle handle{array, i, i * loop_points};
@@ -559,6 +560,7 @@ std::vector<CellPatch> CageLevel::patches() const {
         known = loop_matrices.emplace(param.GetBoundary(), loop_to_bezier(*table, handle)).first;
       }
       patch.points.assign(quartic_points, dvec3(0.0));
+      patch.degree = 4;
       for (int r = 0; r < quartic_points; ++r) {
         for (int k = 0; k < loop_points; ++k) {
           patch.points[to_size(r)] += known->second(r, k) * points[to_size(vertices[k])].x;

@@ -34,6 +34,7 @@ struct CellPatch {
   /// triangle, (i, j) counts towards the second and third corner: (0,0) .. (4,0), (0,1) .. (3,1),
   /// .. (0,4).
   std::vector<dvec3> points;
+  int degree = 3;
   /// Of the sides from each corner to the next: the surface goes on smoothly there.
   std::array<bool, 4> smooth = {};
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "taut/subdivision/reparametrize.h"
+#include "taut/subdivision/triangle_points.h"
 #include "taut/surface/point_grid.h"
 #include "taut/surface/side_joins.h"
 
@@ -269,6 +270,7 @@ void take_side(std::vector<SurfacePatch>& patches, int side, int from) {
   if (patch.exact) return;
   const BezierCurve other = border(patches[to_size(from / 4)].bezier, all_sides[to_size(from % 4)]);
   const Side own = all_sides[to_size(side % 4)];
+  if (patch.bezier.degree_u != 3) return;  // its sides are those of its neighbours
   const bool along = along_v(own);
   const int fixed = at_upper_end(own) ? 3 : 0;
   const dvec3 start = dvec3(along ? patch.bezier.at(fixed, 0) : patch.bezier.at(0, fixed));
@@ -280,22 +282,33 @@ void take_side(std::vector<SurfacePatch>& patches, int side, int from) {
   }
 }
 
-/// The points of a quartic triangle's sides.
-constexpr std::array<std::array<std::size_t, 5>, 3> side_points = {
-    {{0, 1, 2, 3, 4}, {4, 8, 11, 13, 14}, {14, 12, 9, 5, 0}}};
+/// The points of a triangle's sides.
+std::array<std::vector<std::size_t>, 3> side_points(const SurfaceTriangle& triangle) {
+  const std::size_t n = triangle_degree_of(triangle.points.size());
+  std::array<std::vector<std::size_t>, 3> sides;
+  for (std::size_t k = 0; k <= n; ++k) {
+    sides[0].push_back(triangle_point(n, k, 0));
+    sides[1].push_back(triangle_point(n, n - k, k));
+    sides[2].push_back(triangle_point(n, 0, n - k));
+  }
+  return sides;
+}
 
 /// Gives a triangle that is not exact the side of another, numbered 3 * triangle + side.
 void take_side(std::vector<SurfaceTriangle>& triangles, int side, int from) {
   SurfaceTriangle& triangle = triangles[to_size(side / 3)];
   if (triangle.exact) return;
   const std::vector<dvec3>& other = triangles[to_size(from / 3)].points;
-  const auto& own_points = side_points[to_size(side % 3)];
-  const auto& points = side_points[to_size(from % 3)];
+  if (other.size() != triangle.points.size()) return;  // its sides are those of its neighbours
+  const auto all_points = side_points(triangle);
+  const auto& own_points = all_points[to_size(side % 3)];
+  const auto& points = all_points[to_size(from % 3)];
   const dvec3 start = triangle.points[own_points.front()];
   const bool reversed =
       glm::distance(start, other[points.back()]) < glm::distance(start, other[points.front()]);
-  for (std::size_t i = 0; i < 5; ++i) {
-    triangle.points[own_points[i]] = other[points[reversed ? 4 - i : i]];
+  const std::size_t n = points.size() - 1;
+  for (std::size_t i = 0; i <= n; ++i) {
+    triangle.points[own_points[i]] = other[points[reversed ? n - i : i]];
   }
 }
 
@@ -333,9 +346,10 @@ std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles) {
   std::vector<PolygonSide> sides;
   sides.reserve(3 * triangles.size());
   for (const SurfaceTriangle& t : triangles) {
-    for (const auto& s : side_points) {
-      const auto p = [&](std::size_t i) { return t.points[s[i]]; };
-      sides.push_back({p(0), p(4), (p(0) + 4.0 * p(1) + 6.0 * p(2) + 4.0 * p(3) + p(4)) / 16.0});
+    for (const auto& s : side_points(t)) {
+      BezierCurve side;
+      for (const std::size_t i : s) side.points.push_back(homogeneous(t.points[i]));
+      sides.push_back({t.points[s.front()], t.points[s.back()], point(side, 0.5)});
     }
   }
   const SideGraph graph(sides, 3);

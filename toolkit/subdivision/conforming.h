@@ -16,7 +16,8 @@ struct SurfacePatch {
   bool exact = true;  ///< otherwise it stands for the surface there
 };
 
-/// A quartic triangle of it; points as CellPatch has them, sides from each corner to the next.
+/// A triangle of it, quartic or of degree six; points as CellPatch has them, sides from each corner
+/// to the next.
 struct SurfaceTriangle {
   std::vector<dvec3> points;
   int cage_face = 0;

@@ -10,7 +10,9 @@
 #include "taut/core/tolerances.h"
 #include "taut/subdivision/cage_level.h"
 #include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/smooth_caps.h"
 #include "taut/subdivision/touch_test.h"
+#include "taut/subdivision/triangle_points.h"
 
 namespace taut {
 namespace {
@@ -57,20 +59,51 @@ std::vector<int> connected_sets(const CageLevel& level, const std::vector<std::s
   return set;
 }
 
-std::array<dvec3, 4> corners(const CellPatch& patch) {
+bool is_quad(const CellPatch& patch) {
+  const std::size_t n = to_size(patch.degree) + 1;
+  return patch.points.size() == n * n;
+}
+
+/// In their order; of a triangle three.
+std::vector<dvec3> corners(const CellPatch& patch) {
   const auto& p = patch.points;
-  if (p.size() == 16) return {p[0], p[3], p[12], p[15]};
-  return {p[0], p[4], p[14], p[14]};
+  const std::size_t n = to_size(patch.degree);
+  if (is_quad(patch)) return {p.front(), p[n * (n + 1)], p.back(), p[n]};
+  return {p.front(), p[n], p.back()};
 }
 
 double least_side(const CellPatch& patch) {
-  const auto& p = patch.points;
-  const std::vector<std::array<std::size_t, 2>> sides =
-      p.size() == 16 ? std::vector<std::array<std::size_t, 2>>{{0, 3}, {3, 15}, {15, 12}, {12, 0}}
-                     : std::vector<std::array<std::size_t, 2>>{{0, 4}, {4, 14}, {14, 0}};
-  double least = glm::distance(p[sides[0][0]], p[sides[0][1]]);
-  for (const auto& [a, b] : sides) least = std::min(least, glm::distance(p[a], p[b]));
+  const std::vector<dvec3> c = corners(patch);
+  double least = glm::distance(c.back(), c.front());
+  for (std::size_t k = 1; k < c.size(); ++k) least = std::min(least, glm::distance(c[k - 1], c[k]));
   return least;
+}
+
+/// The patch's points with another corner first, or back from that.
+std::vector<dvec3> turned(const CellPatch& patch, std::size_t corner, bool back = false) {
+  const std::size_t n = to_size(patch.degree);
+  std::vector<dvec3> result(patch.points.size());
+  const auto copy = [&](std::size_t to, std::size_t from) {
+    result[back ? from : to] = patch.points[back ? to : from];
+  };
+  if (is_quad(patch)) {
+    for (std::size_t i = 0; i <= n; ++i) {
+      for (std::size_t j = 0; j <= n; ++j) {
+        const std::array<std::array<std::size_t, 2>, 4> from = {
+            {{i, j}, {n - j, i}, {n - i, n - j}, {j, n - i}}};
+        copy(i * (n + 1) + j, from[corner][0] * (n + 1) + from[corner][1]);
+      }
+    }
+  } else {
+    for (std::size_t j = 0; j <= n; ++j) {
+      for (std::size_t i = 0; i + j <= n; ++i) {
+        const std::array<std::size_t, 3> counts = {n - i - j, i, j};  // towards each corner
+        copy(triangle_point(n, i, j),
+             triangle_point(n, counts[(4 - corner) % 3], counts[(5 - corner) % 3]));
+      }
+    }
+  }
+  return result;
 }
 
 /// Refines a cage.
@@ -92,6 +125,7 @@ class Refinement {
   void take_regular();
   void sort_out();
   void finish_or_refine(const std::vector<std::size_t>& region);
+  void smooth_fan(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, double enough) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
   void emit(std::size_t cell);
@@ -129,10 +163,10 @@ LimitSurface Refinement::run() {
 void Refinement::emit(std::size_t cell) {
   CellPatch& patch = patches_[cell];
   const int face = level_.cells()[cell].cage_face;
-  if (patch.points.size() == 16) {
+  if (is_quad(patch)) {
     SurfacePatch surface;
-    surface.bezier.degree_u = surface.bezier.degree_v = 3;
-    surface.bezier.points.reserve(16);
+    surface.bezier.degree_u = surface.bezier.degree_v = patch.degree;
+    surface.bezier.points.reserve(patch.points.size());
     for (const dvec3& p : patch.points) surface.bezier.points.push_back(homogeneous(p));
     surface.cage_face = face;
     surface.exact = patch.kind == CellPatch::Kind::regular;
@@ -156,7 +190,7 @@ void Refinement::take_regular() {
   }
   for (std::size_t c = 0; c < patches_.size(); ++c) {
     if (patches_[c].kind != CellPatch::Kind::regular) continue;
-    const std::array<dvec3, 4> points = corners(patches_[c]);
+    const std::vector<dvec3> points = corners(patches_[c]);
     known.insert(known.end(), points.begin(), points.end());
     const int region = level_.cells()[c].region;
     if (region >= 0) {
@@ -255,6 +289,61 @@ Surroundings Refinement::near(const std::vector<std::size_t>& region,
   return result;
 }
 
+/// Lets the caps of a region that is all cells around one inner vertex meet smoothly there.
+void Refinement::smooth_fan(const std::vector<std::size_t>& region) {
+  const std::size_t n = region.size();
+  if (n < 3) return;
+  const auto vertices = [&](std::size_t k) { return level_.vertices(region[k]); };
+  // The vertex that all have, and where.
+  const auto place_in = [&](std::size_t k, int vertex) {
+    const std::span<const int> own = vertices(k);
+    return to_size(to_int(std::find(own.begin(), own.end(), vertex) - own.begin()));
+  };
+  const std::span<const int> first = vertices(0);
+  const auto centre = std::find_if(first.begin(), first.end(), [&](int v) {
+    for (std::size_t k = 1; k < n; ++k) {
+      if (place_in(k, v) == vertices(k).size()) return false;
+    }
+    return true;
+  });
+  if (centre == first.end()) return;
+  // The cells from spoke to spoke.
+  std::vector<std::size_t> order;
+  std::vector<std::size_t> corner;
+  for (std::size_t k = 0; order.size() < n;) {
+    const std::span<const int> own = vertices(k);
+    const std::size_t at = place_in(k, *centre);
+    const std::size_t before = (at + own.size() - 1) % own.size();
+    const auto& smooth = patches_[region[k]].smooth;
+    if (!smooth[at] || !smooth[before]) return;
+    order.push_back(k);
+    corner.push_back(at);
+    std::size_t next = 0;
+    while (next < n) {
+      const std::span<const int> other = vertices(next);
+      const std::size_t there = place_in(next, *centre);
+      if (other[(there + 1) % other.size()] == own[before]) break;
+      ++next;
+    }
+    const bool closes = order.size() == n && next == order.front();
+    if (next == n || (!closes && std::find(order.begin(), order.end(), next) != order.end()))
+      return;
+    k = next;
+  }
+  std::vector<std::vector<dvec3>> nets;
+  nets.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) nets.push_back(turned(patches_[region[order[i]]], corner[i]));
+  const bool quads = is_quad(patches_[region.front()]);
+  std::vector<std::vector<dvec3>> caps =
+      quads ? smooth_quad_caps(nets) : smooth_triangle_caps(nets);
+  for (std::size_t i = 0; i < n; ++i) {
+    CellPatch& patch = patches_[region[order[i]]];
+    patch.points = std::move(caps[i]);
+    patch.degree += 2;
+    patch.points = turned(patch, corner[i], true);
+  }
+}
+
 void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
   const bool has_caps = std::all_of(region.begin(), region.end(), [&](std::size_t c) {
     return patches_[c].kind == CellPatch::Kind::cap && !patches_[c].semi_sharp;
@@ -264,6 +353,7 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
         depth_ >= level_limit || std::any_of(region.begin(), region.end(), [&](std::size_t c) {
           return least_side(patches_[c]) < least_side_;
         });
+    smooth_fan(region);
     const double bound =
         bound_of(region, small ? std::numeric_limits<double>::infinity() : tolerance_);
     if (bound <= tolerance_ || small) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "taut/subdivision/triangle_points.h"
+
 namespace taut {
 namespace {
 
@@ -88,21 +90,23 @@ BezierPatch tapered(const BezierPatch& patch, double w0, double w1) {
 }
 
 BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<dvec3, 4>& corners) {
+  const int n = static_cast<int>(triangle_degree_of(triangle.size()));
   // The barycentric coordinates over the quadrilateral, and their powers.
-  std::array<std::array<Net, 5>, 3> power;
+  std::array<std::vector<Net>, 3> power;
   for (int b = 0; b < 3; ++b) {
-    Net coordinate{1, {corners[0][b], corners[1][b], corners[2][b], corners[3][b]}};
+    const Net coordinate{1, {corners[0][b], corners[1][b], corners[2][b], corners[3][b]}};
     auto& powers = power[to_size(b)];
+    powers.resize(to_size(n + 1));
     for (std::size_t k = 1; k < powers.size(); ++k) powers[k] = product(powers[k - 1], coordinate);
   }
   BezierPatch result;
-  result.degree_u = result.degree_v = 4;
-  std::vector<dvec3> sum(25, dvec3(0.0));
+  result.degree_u = result.degree_v = n;
+  std::vector<dvec3> sum(to_size((n + 1) * (n + 1)), dvec3(0.0));
   std::size_t point = 0;
-  for (int j = 0; j <= 4; ++j) {
-    for (int i = 0; i + j <= 4; ++i, ++point) {
-      const double multinomial = binomial(4, i) * binomial(4 - i, j);
-      const Net basis = product(product(power[0][to_size(4 - i - j)], power[1][to_size(i)]),
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i + j <= n; ++i, ++point) {
+      const double multinomial = binomial(n, i) * binomial(n - i, j);
+      const Net basis = product(product(power[0][to_size(n - i - j)], power[1][to_size(i)]),
                                 power[2][to_size(j)]);
       for (std::size_t k = 0; k < sum.size(); ++k) {
         sum[k] += multinomial * basis.c[k] * triangle[point];

@@ -17,9 +17,9 @@ namespace taut {
 /// @pre polynomial with weights one; w0 and w1 in [0, 1]
 BezierPatch tapered(const BezierPatch& patch, double w0, double w1);
 
-/// The quadrilateral of a triangular patch of degree four (points as CellPatch has them) with these
+/// The quadrilateral of a triangular patch of degree n (points as CellPatch has them) with these
 /// barycentric corners, (0, 0), (0, 1), (1, 0) and (1, 1), weights of the patch's first, second and
-/// third corner. Of degree (4, 4).
+/// third corner. Of degree (n, n).
 BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<dvec3, 4>& corners);
 
 BezierPatch reversed_u(const BezierPatch& patch);
