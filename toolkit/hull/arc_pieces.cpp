@@ -57,8 +57,15 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
       move_to(geometry, pieces[k - 1].rulings.back(), pieces[k].rulings.back());
     if (k > 0 && k + 1 < pieces.size()) {
       // One contact crosses its border here, the other one in the piece's other end.
-      move_to(geometry, pieces[k - 1].rulings.back(), pieces[k - 1].rulings.back());
-      move_to(geometry, pieces[k + 1].rulings.front(), pieces[k + 1].rulings.front());
+      Ruling& before = pieces[k - 1].rulings.back();
+      Ruling& after = pieces[k + 1].rulings.front();
+      move_to(geometry, before, before);
+      move_to(geometry, after, after);
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (!same_element(before.contact[i], after.contact[i])) continue;
+        after.contact[i] = before.contact[i];
+        after.point[i] = before.point[i];
+      }
     }
     pieces.erase(pieces.begin() + std::ptrdiff_t(k));
   }

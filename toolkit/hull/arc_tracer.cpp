@@ -71,6 +71,7 @@ class Trace {
   bool is_sound() const;
   void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(on_joins(ruling)); }
   Ruling on_joins(Ruling ruling) const;
+  void end_on_joins(const std::array<Contact, CommonSupport::capacity>& before);
 
   Pace ended(TracedArc::End end) {
     arc_.end = end;
@@ -175,18 +176,32 @@ void Trace::begin_piece(const Ruling& first) {
   changes_.begin();
 }
 
-/// The ruling with contacts that run along a join on it where they are beyond.
+/// The ruling with contacts that are beyond a smooth join, and have not left their patch, on it.
 Ruling Trace::on_joins(Ruling ruling) const {
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = ruling.contact[i];
-    if (!point_.join[i] || !same_element(c, point_.at.contact[i])) continue;
-    double& t = along_v(*point_.join[i]) ? c.u : c.v;
-    const bool beyond = at_upper_end(*point_.join[i]) ? t > 1 : t < 0;
-    if (!beyond) continue;
-    t = std::clamp(t, 0.0, 1.0);
+    if (c.kind != SourceKind::face) continue;
+    const dvec2 inside(std::clamp(c.u, 0.0, 1.0), std::clamp(c.v, 0.0, 1.0));
+    if (inside == dvec2(c.u, c.v)) continue;
+    c.u = inside.x;
+    c.v = inside.y;
     ruling.point[i] = geometry_.point(c);
   }
   return ruling;
+}
+
+/// Puts the last ruling's contacts that have been told since as ones of the patches beyond joins,
+/// being hardly off them, on the joins.
+void Trace::end_on_joins(const std::array<Contact, CommonSupport::capacity>& before) {
+  Ruling& last = arc_.pieces.back().rulings.back();
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Contact& now = point_.at.contact[k];
+    if (same_element(now, before[k]) || !same_element(last.contact[k], before[k])) continue;
+    const std::optional<Contact> own = expressed_in(geometry_, now, before[k]);
+    if (!own) continue;
+    last.contact[k] = *own;
+    last.point[k] = geometry_.point(*own);
+  }
 }
 
 /// All numbers are finite: Newton's method may end in anything on surfaces without tangent planes.
@@ -314,7 +329,9 @@ Trace::Pace Trace::exchange(const ElementChange& event) {
   point_.at.contact[i] = *over;
   point_.at.evaluate(geometry_);
   if (other_kind && has_moved_ && ends_widened()) return ended(TracedArc::End::plane);
+  const std::array<Contact, CommonSupport::capacity> before = point_.at.contact;
   if (!point_.settle()) return lost("a separating curve has no tangent");
+  end_on_joins(before);
   point_.head_into(i);
   begin_piece(point_.at.ruling());
   step_ = std::max(0.5 * step_, shortest_step);

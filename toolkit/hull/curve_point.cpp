@@ -74,20 +74,25 @@ bool CurvePoint::is_followed(Ruling from, const Ruling& to) const {
   return std::all_of(merging_shares.begin(), merging_shares.end(), holds);
 }
 
-/// The contact is on the side of its patch and moves along it, to within rounding. That of a
-/// patch's second derivatives turns the way of a contact by the more the smaller the patch is.
-bool CurvePoint::runs_along(std::size_t contact, const ContactExit& exit) const {
+/// What rounding does to the place of a contact across a side, where it is stationary, as a
+/// parameter, and to its way as a slope: the more the smaller the patch is.
+double CurvePoint::rounding_across(std::size_t contact, Side side) const {
   const ContactJet& j = at.jet[contact];
+  const double second = std::abs(glm::dot(along_v(side) ? j.dxx : j.dyy, at.n));
+  const double rounding = geometry_.rounding();
+  return rounding < turn_limit * second ? rounding / second : turn_limit;
+}
+
+/// The contact is on the side of its patch and moves along it, to within rounding.
+bool CurvePoint::runs_along(std::size_t contact, const ContactExit& exit) const {
   const LinearEquation e = exit_margin(geometry_, at, int(contact), exit);
   const double rate = glm::dot(e.parameter[contact], tangent.parameter[contact]);
-  const bool across_u = along_v(all_sides[std::size_t(exit.index)]);
+  const Side side = all_sides[std::size_t(exit.index)];
   // As lengths: about a pole parameters are less exact.
-  const double size = std::min(1.0, glm::length(j.dx[across_u ? 0 : 1]));
-  const double second = std::abs(glm::dot(across_u ? j.dxx : j.dyy, at.n));
-  const double rounding = geometry_.rounding();
-  const double turn = rounding < turn_limit * second ? rounding / second : turn_limit;
-  const double slack = std::max(border_slack, rounding);
-  return std::abs(e.residual) * size <= slack && std::abs(rate) * size <= std::max(slack, turn);
+  const double size = std::min(1.0, glm::length(at.jet[contact].dx[along_v(side) ? 0 : 1]));
+  const double slack = std::max(border_slack, geometry_.rounding());
+  return std::abs(e.residual) * size <= slack &&
+         std::abs(rate) * size <= std::max(slack, rounding_across(contact, side));
 }
 
 /// The contact moves over the side where the direction turns into its own region.
@@ -139,10 +144,12 @@ void CurvePoint::find_joins() {
   }
 }
 
-double CurvePoint::join_distance(std::size_t contact) const {
-  if (!join[contact]) return 0;
-  const double size = glm::length(at.jet[contact].dx[along_v(*join[contact]) ? 0 : 1]);
-  return border_slack / std::max(size, least_size);
+double CurvePoint::join_distance(std::size_t contact, Side side) const {
+  if (geometry_.patch(at.contact[contact]).borders[std::size_t(side)].kind != BorderKind::smooth)
+    return 0;
+  const double size = glm::length(at.jet[contact].dx[along_v(side) ? 0 : 1]);
+  const double along = border_slack / std::max(size, least_size);
+  return join[contact] == side ? along : std::min(along, rounding_across(contact, side));
 }
 
 void CurvePoint::head_into(std::size_t contact) {

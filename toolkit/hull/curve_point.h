@@ -58,8 +58,9 @@ class CurvePoint {
   /// join, as one of the patch into which its region extends. Sets the tangent and the joins anew;
   /// false if there is none.
   bool settle();
-  /// How far beyond its join a contact that runs along it may be, as a parameter.
-  double join_distance(std::size_t contact) const;
+  /// How far beyond a smooth join, a side of its patch, a contact may be and not be told to have
+  /// left it, as a parameter: by rounding, or while it runs along it.
+  double join_distance(std::size_t contact, Side side) const;
   /// Turns the tangent into the element of the contact, which has just come over its border, where
   /// the direction stands still at first: the element is flat there, and tells no sense.
   void head_into(std::size_t contact);
@@ -75,6 +76,7 @@ class CurvePoint {
 
  private:
   CommonSupport predicted(double length) const;
+  double rounding_across(std::size_t contact, Side side) const;
   bool runs_along(std::size_t contact, const ContactExit& exit) const;
   bool extends_over(std::size_t contact, const ContactExit& exit) const;
   void find_joins();

@@ -99,10 +99,11 @@ double ElementChanges::slack(int contact, const ContactExit& exit) const {
   const double size =
       std::min(1.0, exit_length(geometry_, point_.at.contact[std::size_t(contact)], exit));
   const double limit = std::max(margin_slack_limit, margin_noise_limit * geometry_.rounding());
-  const auto i = std::size_t(contact);
-  const bool along = exit.kind == ContactExit::Kind::side && point_.join[i] &&
-                     *point_.join[i] == all_sides[std::size_t(exit.index)];
-  const double least = along ? point_.join_distance(i) : margin_slack;
+  const double least =
+      exit.kind == ContactExit::Kind::side
+          ? std::max(margin_slack,
+                     point_.join_distance(std::size_t(contact), all_sides[std::size_t(exit.index)]))
+          : margin_slack;
   if (geometry_.rounding() >= limit * size) return std::max(limit, least);
   return std::max(least, geometry_.rounding() / size);
 }
