@@ -131,6 +131,7 @@ std::vector<NamedCage> smooth_cages() {
 std::vector<CageCrease> rim(const ControlCage& cage, double sharpness) {
   const int ring = int(cage.points.size() - 2) / 2;
   std::vector<CageCrease> creases;
+  creases.reserve(std::size_t(ring));
   for (int i = 0; i < ring; ++i) creases.push_back({{2 + i, 2 + (i + 1) % ring}, sharpness});
   return creases;
 }
@@ -143,10 +144,8 @@ std::vector<NamedCage> tagged_cages() {
       ControlCage cage = dome_cage(scheme, 5);
       cage.creases = rim(cage, sharpness);
       all.push_back({name + ", rim of sharpness " + std::to_string(sharpness), cage});
-      cage.chaikin = true;
       cage.creases.resize(cage.creases.size() / 2);
       if (sharpness < 1) continue;
-      cage.chaikin = false;
       cage.corners = {{0, sharpness}};
       all.push_back({name + ", half a rim and a corner " + std::to_string(sharpness), cage});
     }
@@ -159,7 +158,20 @@ std::vector<NamedCage> tagged_cages() {
     ControlCage open = dome_cage(scheme, 5);
     open.faces.erase(open.faces.begin(), open.faces.begin() + 3);
     all.push_back({name + ", open", open});
+    open.boundary = taut::CageBoundary::edge_only;
+    all.push_back({name + ", open without corners", open});
+    open.boundary = taut::CageBoundary::none;
+    all.push_back({name + ", without surface at the boundary", open});
+    ControlCage uneven = dome_cage(scheme, 5);
+    uneven.creases = rim(uneven, 1.4);
+    for (std::size_t k = 0; k < uneven.creases.size(); k += 3) uneven.creases[k].sharpness = 2.7;
+    uneven.chaikin = true;
+    all.push_back({name + ", uneven rim by Chaikin", uneven});
   }
+  ControlCage triangles = dome_cage(CageScheme::loop, 5);
+  triangles.scheme = CageScheme::catmark;
+  triangles.smooth_triangles = true;
+  all.push_back({"smooth triangles", triangles});
   ControlCage eight = cube_cage();
   eight.creases = {{{0, 1}, 8.0}};
   all.push_back({"cube with an edge of sharpness 8", eight});

@@ -18,8 +18,10 @@ using taut::CageScheme;
 
 struct Primvar {
   dvec3 x = dvec3(0.0);
+  // NOLINTBEGIN(readability-identifier-naming): the names are OpenSubdiv's
   void Clear(void* = nullptr) { x = dvec3(0.0); }
   void AddWithWeight(const Primvar& other, double weight) { x += weight * other.x; }
+  // NOLINTEND(readability-identifier-naming)
 };
 
 Sdc::Options options_of(const ControlCage& cage) {
