@@ -24,10 +24,9 @@ namespace {
 
 using namespace taut_test;  // NOLINT: cages and reference answers
 
-/// What is asked of support values, and how well their truths are to be known (but for contact
-/// along whole curves), as shares of the diagonal.
+// As shares of the diagonal:
+/// What is asked of support values.
 constexpr double required = 1e-9;
-constexpr double known = 1e-12;
 /// Of support queries (support_accuracy) and limit masks.
 constexpr double rounding = 2e-12;
 
@@ -102,17 +101,27 @@ std::vector<dvec3> normals_of_stand_ins(const Scene& scene, std::size_t most, Ra
   return result;
 }
 
+/// How much is asked.
+struct Effort {
+  double known = 1e-12;       ///< how well truths are to be known
+  double undecided = 0.1;     ///< share of the directions in which they may be known less
+  std::size_t special = 100;  ///< most directions of each special kind
+  int random = 200;           ///< random directions
+};
+
 /// Special ones, those of the places where patches are not exact, and random others.
-std::vector<dvec3> directions_for(const Scene& scene, const LimitSupport& truth, int count) {
+std::vector<dvec3> directions_for(const Scene& scene, const LimitSupport& truth,
+                                  const Effort& effort) {
   Random random(17);
   std::vector<dvec3> all = special_directions(random);
+  all.resize(std::min(all.size(), effort.special));
   const auto append = [&](const std::vector<dvec3>& more) {
     all.insert(all.end(), more.begin(), more.end());
   };
-  append(normals_of_extraordinary_vertices(cage_of(scene.model()), truth, scene.diagonal(), 30,
-                                           random));
-  append(normals_of_stand_ins(scene, 60, random));
-  append(random_directions(random, count));
+  append(normals_of_extraordinary_vertices(cage_of(scene.model()), truth, scene.diagonal(),
+                                           effort.special / 3, random));
+  append(normals_of_stand_ins(scene, effort.special / 2, random));
+  append(random_directions(random, effort.random));
   return all;
 }
 
@@ -122,31 +131,36 @@ std::string text_of(const dvec3& n) {
   return out.str();
 }
 
-void expect_support_values(const char* file, Scheme scheme, int levels, int count) {
-  const std::optional<Model> model = read_cage(file, scheme, default_cage_accuracy);
-  if (!model) GTEST_SKIP() << file << " is not there";
-  const Scene scene(*model);
+/// Within what the model promises, and `allowed` of the diagonal.
+void expect_support_values(const Model& model, const std::string& name, int levels, double allowed,
+                           const Effort& effort) {
+  const Scene scene(model);
   const double unit = 1 / scene.diagonal();
-  const double promised = model->deviation_bound() * unit + rounding;
-  const LimitSupport truth(cage_of(*model), levels);
+  const double promised = model.deviation_bound() * unit + rounding;
+  const LimitSupport truth(cage_of(model), levels);
   SupportQuery query(scene);
   int undecided = 0;
   double most = 0;
-  const std::vector<dvec3> directions = directions_for(scene, truth, count);
+  const std::vector<dvec3> directions = directions_for(scene, truth, effort);
   for (const dvec3& n : directions) {
-    const SupportRange range = truth(n, known * scene.diagonal());
+    const SupportRange range = truth(n, effort.known * scene.diagonal());
     const double unknown = double(range.upper - range.lower) * unit;
-    ASSERT_GE(unknown, 0);
-    if (unknown > known) ++undecided;
+    ASSERT_GE(unknown, 0) << name;
+    if (unknown > effort.known) ++undecided;
     const ModelSupport s = support(query, scene, n);
     const double error = double(std::max(range.lower - s.h, s.h - range.upper)) * unit;
     most = std::max(most, error);
-    EXPECT_LE(error, std::min(required, promised)) << text_of(n);
-    EXPECT_LE(double(range.lower - s.h_bound) * unit, promised) << text_of(n);
+    EXPECT_LE(error, std::min(allowed, promised)) << name << " " << text_of(n);
+    EXPECT_LE(double(range.lower - s.h_bound) * unit, promised) << name << " " << text_of(n);
   }
-  EXPECT_LE(10 * undecided, int(directions.size()));
-  testing::Test::RecordProperty("largest_error",
-                                std::to_string(1e12 * most) + "e-12 of the diagonal");
+  EXPECT_LE(undecided, effort.undecided * double(directions.size())) << name;
+  testing::Test::RecordProperty("largest error of " + name, std::to_string(1e12 * most) + "e-12");
+}
+
+void expect_support_values(const char* file, Scheme scheme, int levels) {
+  const std::optional<Model> model = read_cage(file, scheme, default_cage_accuracy);
+  if (!model) GTEST_SKIP() << file << " is not there";
+  expect_support_values(*model, file, levels, required, {});
 }
 
 /// Planes that the hull's boundary records: of rulings and of facets, with the points on them.
@@ -194,11 +208,10 @@ void expect_supporting_hull(const char* file, Scheme scheme, int levels, double 
   ASSERT_TRUE(hull.boundary->unresolved.empty());
   const LimitSupport truth(cage_of(*model), levels);
   const double diagonal = taut::diagonal(model->control_box());
-  // (Model::deviation_bound of A17 is a thousand times what is true of its support values.)
   const double off =
       std::max(required * diagonal, std::min(model->deviation_bound(), accuracy * diagonal));
   for (const Plane& plane : planes_of(*hull.boundary, 200)) {
-    const SupportRange range = truth(plane.n, known * diagonal);
+    const SupportRange range = truth(plane.n, Effort().known * diagonal);
     for (const dvec3& p : plane.points) {
       EXPECT_LE(glm::dot(p, plane.n), range.upper + off) << text_of(plane.n);
       EXPECT_GE(glm::dot(p, plane.n), range.lower - off) << text_of(plane.n);
@@ -207,7 +220,7 @@ void expect_supporting_hull(const char* file, Scheme scheme, int levels, double 
   const std::vector<dvec3> points = points_of(hull);
   Random random(23);
   for (const dvec3& n : random_directions(random, 60)) {
-    const SupportRange range = truth(n, known * diagonal);
+    const SupportRange range = truth(n, Effort().known * diagonal);
     double h = glm::dot(points.front(), n);
     for (const dvec3& p : points) h = std::max(h, glm::dot(p, n));
     EXPECT_LE(h, range.upper + off) << text_of(n);
@@ -264,26 +277,36 @@ TEST(LimitSupport, OfCubes) {
   }
 }
 
+TEST(CageSupport, OfCagesInCode) {
+  // The top of a torus is a crest; at the end of a surface that goes on in a hole what is around a
+  // face is higher than it by as much as its size.
+  constexpr Effort effort = {.known = 1e-10, .undecided = 0.6, .special = 20, .random = 10};
+  for (const auto& [name, cage] : all_cages()) {
+    if (cage.points.size() > 32) continue;
+    expect_support_values(cage_model(cage, 1e-5), name, 3, 1e-5, effort);
+  }
+}
+
 TEST(CageSupport, OfACarWithCreases) {
-  expect_support_values("A15_osd_car_creases_boundary.obj", Scheme::catmark, 3, 100);
+  expect_support_values("A15_osd_car_creases_boundary.obj", Scheme::catmark, 3);
 }
 TEST(CageSupport, OfSheetsWithCornersAndBoundary) {
-  expect_support_values("A16_osd_edgecorner_boundary.obj", Scheme::catmark, 5, 200);
+  expect_support_values("A16_osd_edgecorner_boundary.obj", Scheme::catmark, 5);
 }
 TEST(CageSupport, OfANonManifoldCage) {
-  expect_support_values("A17_osd_nonmanifold_edges.obj", Scheme::catmark, 5, 200);
+  expect_support_values("A17_osd_nonmanifold_edges.obj", Scheme::catmark, 5);
 }
 TEST(CageSupport, OfSemiSharpIcosahedra) {
-  expect_support_values("A18_osd_loop_icos_semisharp.obj", Scheme::loop, 5, 200);
+  expect_support_values("A18_osd_loop_icos_semisharp.obj", Scheme::loop, 5);
 }
 TEST(CageSupport, OfATorus) {
-  expect_support_values("A19_torus_quad_smooth.off", Scheme::catmark, 5, 200);
+  expect_support_values("A19_torus_quad_smooth.off", Scheme::catmark, 5);
 }
 TEST(CageSupport, OfATriangulatedCube) {
-  expect_support_values("A20_cube_binary.ply", Scheme::catmark, 5, 200);
+  expect_support_values("A20_cube_binary.ply", Scheme::catmark, 5);
 }
 TEST(CageSupport, OfATriangulatedCubeByLoop) {
-  expect_support_values("A20_cube_binary.ply", Scheme::loop, 5, 200);
+  expect_support_values("A20_cube_binary.ply", Scheme::loop, 5);
 }
 
 TEST(CageSupport, OfTheHullOfSheetsWithCornersAndBoundary) {
