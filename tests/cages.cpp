@@ -1,10 +1,6 @@
 #include "cages.h"
 
-#include <opensubdiv/far/primvarRefiner.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "models.h"
@@ -14,56 +10,7 @@
 namespace taut_test {
 namespace {
 
-namespace Far = OpenSubdiv::Far;
-namespace Sdc = OpenSubdiv::Sdc;
-
 constexpr double turn = 2 * std::numbers::pi;
-
-struct Primvar {
-  dvec3 x = dvec3(0.0);
-  void Clear(void* = nullptr) { x = dvec3(0.0); }
-  void AddWithWeight(const Primvar& other, double weight) { x += weight * other.x; }
-};
-
-std::unique_ptr<Far::TopologyRefiner> refiner_of(const ControlCage& cage) {
-  std::vector<int> sizes;
-  std::vector<int> vertices;
-  for (const auto& face : cage.faces) {
-    sizes.push_back(int(face.size()));
-    vertices.insert(vertices.end(), face.begin(), face.end());
-  }
-  std::vector<int> creases;
-  std::vector<float> crease_weights;
-  for (const auto& crease : cage.creases) {
-    creases.insert(creases.end(), crease.vertices.begin(), crease.vertices.end());
-    crease_weights.push_back(float(crease.sharpness));
-  }
-  std::vector<int> corners;
-  std::vector<float> corner_weights;
-  for (const auto& corner : cage.corners) {
-    corners.push_back(corner.vertex);
-    corner_weights.push_back(float(corner.sharpness));
-  }
-  Far::TopologyDescriptor d;
-  d.numVertices = int(cage.points.size());
-  d.numFaces = int(sizes.size());
-  d.numVertsPerFace = sizes.data();
-  d.vertIndicesPerFace = vertices.data();
-  d.numCreases = int(crease_weights.size());
-  d.creaseVertexIndexPairs = creases.data();
-  d.creaseWeights = crease_weights.data();
-  d.numCorners = int(corner_weights.size());
-  d.cornerVertexIndices = corners.data();
-  d.cornerWeights = corner_weights.data();
-  d.numHoles = int(cage.holes.size());
-  d.holeIndices = cage.holes.data();
-  Sdc::Options options;
-  options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-  using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  const auto scheme = cage.scheme == CageScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
-  return std::unique_ptr<Far::TopologyRefiner>(
-      Factory::Create(d, Factory::Options(scheme, options)));
-}
 
 }  // namespace
 
@@ -166,33 +113,87 @@ ControlCage sheet_cage(int m, int n) {
   return cage;
 }
 
-std::vector<LimitPoint> limit_points(const ControlCage& cage, int levels) {
-  const std::unique_ptr<Far::TopologyRefiner> refiner = refiner_of(cage);
-  Far::TopologyRefiner::UniformOptions uniform(levels);
-  uniform.fullTopologyInLastLevel = true;
-  refiner->RefineUniform(uniform);
-  const Far::PrimvarRefinerReal<double> interpolate(*refiner);
-  std::vector<Primvar> points(cage.points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].x = cage.points[i];
-  for (int level = 1; level <= levels; ++level) {
-    std::vector<Primvar> next(std::size_t(refiner->GetLevel(level).GetNumVertices()));
-    interpolate.Interpolate(level, points, next);
-    points = std::move(next);
+std::vector<NamedCage> smooth_cages() {
+  std::vector<NamedCage> all;
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    for (const int n : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 50}) {
+      all.push_back({std::string(name_of(scheme)) + " of valence " + std::to_string(n),
+                     dome_cage(scheme, n)});
+    }
+    all.push_back({std::string(name_of(scheme)) + " tetrahedron", tetrahedron_cage(scheme)});
   }
-  std::vector<Primvar> x(points.size());
-  std::vector<Primvar> du(points.size());
-  std::vector<Primvar> dv(points.size());
-  interpolate.Limit(points, x, du, dv);
-  const Far::TopologyLevel finest = refiner->GetLevel(levels);
-  std::vector<LimitPoint> result;
-  for (int v = 0; v < finest.GetNumVertices(); ++v) {
-    const auto faces = finest.GetVertexFaces(v);
-    bool used = false;
-    for (int k = 0; k < faces.size(); ++k) used = used || !finest.IsFaceHole(faces[k]);
-    const auto i = std::size_t(v);
-    if (used) result.push_back({x[i].x, taut::unit(glm::cross(du[i].x, dv[i].x))});
+  all.push_back({"cube", cube_cage()});
+  all.push_back({"torus", torus_cage(6, 5)});
+  all.push_back({"torus of triangles", triangle_torus_cage(6, 5)});
+  return all;
+}
+
+std::vector<CageCrease> rim(const ControlCage& cage, double sharpness) {
+  const int ring = int(cage.points.size() - 2) / 2;
+  std::vector<CageCrease> creases;
+  creases.reserve(std::size_t(ring));
+  for (int i = 0; i < ring; ++i) creases.push_back({{2 + i, 2 + (i + 1) % ring}, sharpness});
+  return creases;
+}
+
+std::vector<NamedCage> tagged_cages() {
+  std::vector<NamedCage> all;
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    const std::string name = name_of(scheme);
+    for (const double sharpness : {0.5, 1.0, 2.3, 4.0}) {
+      ControlCage cage = dome_cage(scheme, 5);
+      cage.creases = rim(cage, sharpness);
+      all.push_back({name + ", rim of sharpness " + std::to_string(sharpness), cage});
+      cage.creases.resize(cage.creases.size() / 2);
+      if (sharpness < 1) continue;
+      cage.corners = {{0, sharpness}};
+      all.push_back({name + ", half a rim and a corner " + std::to_string(sharpness), cage});
+    }
+    ControlCage sharp = dome_cage(scheme, 6);
+    sharp.creases = rim(sharp, taut::infinite_sharpness);
+    all.push_back({name + ", sharp rim", sharp});
+    ControlCage hole = dome_cage(scheme, 4);
+    hole.holes = {0, 4};
+    all.push_back({name + ", holes", hole});
+    ControlCage open = dome_cage(scheme, 5);
+    open.faces.erase(open.faces.begin(), open.faces.begin() + 3);
+    all.push_back({name + ", open", open});
+    open.boundary = taut::CageBoundary::edge_only;
+    all.push_back({name + ", open without corners", open});
+    open.boundary = taut::CageBoundary::none;
+    all.push_back({name + ", without surface at the boundary", open});
+    ControlCage uneven = dome_cage(scheme, 5);
+    uneven.creases = rim(uneven, 1.4);
+    for (std::size_t k = 0; k < uneven.creases.size(); k += 3) uneven.creases[k].sharpness = 2.7;
+    uneven.chaikin = true;
+    all.push_back({name + ", uneven rim by Chaikin", uneven});
   }
-  return result;
+  ControlCage triangles = dome_cage(CageScheme::loop, 5);
+  triangles.scheme = CageScheme::catmark;
+  triangles.smooth_triangles = true;
+  all.push_back({"smooth triangles", triangles});
+  ControlCage eight = cube_cage();
+  eight.creases = {{{0, 1}, 8.0}};
+  all.push_back({"cube with an edge of sharpness 8", eight});
+  ControlCage box = cube_cage();
+  for (const auto& f : box.faces) {
+    for (std::size_t k = 0; k < 4; ++k) box.creases.push_back({{f[k], f[(k + 1) % 4]}, 10});
+  }
+  all.push_back({"cube with sharp edges", box});
+  all.push_back({"sheet", sheet_cage(3, 4)});
+  return all;
+}
+
+std::vector<NamedCage> all_cages() {
+  std::vector<NamedCage> all = smooth_cages();
+  for (NamedCage& cage : tagged_cages()) all.push_back(std::move(cage));
+  return all;
+}
+
+double size_of(const ControlCage& cage) {
+  taut::Box box;
+  for (const dvec3& p : cage.points) box.include(p);
+  return diagonal(box);
 }
 
 taut::Model cage_model(const ControlCage& cage, double accuracy) {

@@ -8,6 +8,7 @@
 
 namespace taut_test {
 
+using taut::CageCrease;
 using taut::CageScheme;
 using taut::ControlCage;
 using taut::dvec3;
@@ -28,14 +29,25 @@ ControlCage dome_cage(CageScheme scheme, int valence);
 ControlCage sheet_cage(int m, int n);
 /// @}
 
-/// A limit point of a uniformly refined cage, by OpenSubdiv's limit masks.
-struct LimitPoint {
-  dvec3 x;
-  dvec3 normal;  ///< unit; zero where there is none
-};
+/// The edges of a dome's rim about its top.
+std::vector<CageCrease> rim(const ControlCage& dome, double sharpness);
 
-/// Those of all vertices that are faces' corners, after so many levels of uniform refinement.
-std::vector<LimitPoint> limit_points(const ControlCage& cage, int levels);
+/// @name Cages of both schemes to try things on, and what they are
+/// @{
+struct NamedCage {
+  std::string name;
+  ControlCage cage;
+};
+/// Closed and without tags; valences of 3 to 12 and 50.
+std::vector<NamedCage> smooth_cages();
+/// With creases and corners, semi-sharp and sharp, holes and boundaries.
+std::vector<NamedCage> tagged_cages();
+/// All of them.
+std::vector<NamedCage> all_cages();
+/// @}
+
+/// The diagonal of the control points' box.
+double size_of(const ControlCage& cage);
 
 /// The cage as a model of one part.
 taut::Model cage_model(const ControlCage& cage, double accuracy = 1e-9);

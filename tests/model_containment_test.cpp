@@ -11,6 +11,7 @@
 #include "containment_checks.h"
 #include "error_checks.h"
 #include "freeform.h"
+#include "refined_cage.h"
 #include "taut/containment/closed_surface.h"
 #include "taut/io/read_model.h"
 

@@ -8,6 +8,7 @@
 
 #include "cages.h"
 #include "models.h"
+#include "refined_cage.h"
 #include "taut/bounds/scene.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
@@ -25,83 +26,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: cages
-
-struct NamedCage {
-  std::string name;
-  ControlCage cage;
-};
-
-std::vector<NamedCage> smooth_cages() {
-  std::vector<NamedCage> all;
-  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
-    for (const int n : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 50}) {
-      all.push_back({std::string(name_of(scheme)) + " of valence " + std::to_string(n),
-                     dome_cage(scheme, n)});
-    }
-    all.push_back({std::string(name_of(scheme)) + " tetrahedron", tetrahedron_cage(scheme)});
-  }
-  all.push_back({"cube", cube_cage()});
-  all.push_back({"torus", torus_cage(6, 5)});
-  all.push_back({"torus of triangles", triangle_torus_cage(6, 5)});
-  return all;
-}
-
-/// Edges about a vertex, and the rim of a dome's top.
-std::vector<CageCrease> rim(const ControlCage& cage, double sharpness) {
-  const int ring = int(cage.points.size() - 2) / 2;
-  std::vector<CageCrease> creases;
-  for (int i = 0; i < ring; ++i) creases.push_back({{2 + i, 2 + (i + 1) % ring}, sharpness});
-  return creases;
-}
-
-std::vector<NamedCage> tagged_cages() {
-  std::vector<NamedCage> all;
-  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
-    const std::string name = name_of(scheme);
-    for (const double sharpness : {0.5, 1.0, 2.3, 4.0}) {
-      ControlCage cage = dome_cage(scheme, 5);
-      cage.creases = rim(cage, sharpness);
-      all.push_back({name + ", rim of sharpness " + std::to_string(sharpness), cage});
-      cage.chaikin = true;
-      cage.creases.resize(cage.creases.size() / 2);
-      if (sharpness < 1) continue;
-      cage.chaikin = false;
-      cage.corners = {{0, sharpness}};
-      all.push_back({name + ", half a rim and a corner " + std::to_string(sharpness), cage});
-    }
-    ControlCage sharp = dome_cage(scheme, 6);
-    sharp.creases = rim(sharp, infinite_sharpness);
-    all.push_back({name + ", sharp rim", sharp});
-    ControlCage hole = dome_cage(scheme, 4);
-    hole.holes = {0, 4};
-    all.push_back({name + ", holes", hole});
-    ControlCage open = dome_cage(scheme, 5);
-    open.faces.erase(open.faces.begin(), open.faces.begin() + 3);
-    all.push_back({name + ", open", open});
-  }
-  ControlCage eight = cube_cage();
-  eight.creases = {{{0, 1}, 8.0}};
-  all.push_back({"cube with an edge of sharpness 8", eight});
-  ControlCage box = cube_cage();
-  for (const auto& f : box.faces) {
-    for (std::size_t k = 0; k < 4; ++k) box.creases.push_back({{f[k], f[(k + 1) % 4]}, 10});
-  }
-  all.push_back({"cube with sharp edges", box});
-  all.push_back({"sheet", sheet_cage(3, 4)});
-  return all;
-}
-
-std::vector<NamedCage> all_cages() {
-  std::vector<NamedCage> all = smooth_cages();
-  for (NamedCage& cage : tagged_cages()) all.push_back(std::move(cage));
-  return all;
-}
-
-double size_of(const ControlCage& cage) {
-  Box box;
-  for (const dvec3& p : cage.points) box.include(p);
-  return diagonal(box);
-}
 
 /// Points known by place.
 class PointSet {

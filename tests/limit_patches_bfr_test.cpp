@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bfr_surface.h"
+#include "cages.h"
+#include "taut/io/read_model.h"
+#include "taut/subdivision/limit_patches.h"
+
+// Limit positions and normals against OpenSubdiv's Bfr, whose evaluation is of its own making but
+// for the masks of subdivision.
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: cages
+
+/// Where a point is nearest to a patch.
+struct Foot {
+  double distance = std::numeric_limits<double>::infinity();
+  dvec3 normal = dvec3(0.0);
+  double extent = 0;  ///< the patch's
+};
+
+/// By the method of Levenberg and Marquardt from one of 9 x 9 parameters, within the patch. Its
+/// sides may be points, and all of it a curve.
+Foot foot_on(const BezierPatch& patch, const dvec3& x) {
+  constexpr int grid = 8;
+  double u = 0;
+  double v = 0;
+  double best = std::numeric_limits<double>::infinity();
+  const auto try_at = [&](double s, double t) {
+    const double d = glm::distance(point(patch, s, t), x);
+    if (d >= best) return false;
+    best = d;
+    u = s;
+    v = t;
+    return true;
+  };
+  for (int i = 0; i <= grid; ++i) {
+    for (int j = 0; j <= grid; ++j) try_at(double(i) / grid, double(j) / grid);
+  }
+  double damping = 1e-3;
+  for (int k = 0; k < 60 && damping < 1e6; ++k) {
+    const PatchJet1 jet = jet1(patch, u, v);
+    const dvec3 off = x - jet.S;
+    const double trace = glm::dot(jet.Su, jet.Su) + glm::dot(jet.Sv, jet.Sv);
+    const double uu = glm::dot(jet.Su, jet.Su) + damping * trace;
+    const double uv = glm::dot(jet.Su, jet.Sv);
+    const double vv = glm::dot(jet.Sv, jet.Sv) + damping * trace;
+    const double determinant = uu * vv - uv * uv;
+    if (determinant <= 0) break;
+    const double a = glm::dot(jet.Su, off);
+    const double b = glm::dot(jet.Sv, off);
+    const double du = (vv * a - uv * b) / determinant;
+    const double dv = (uu * b - uv * a) / determinant;
+    const bool nearer = try_at(std::clamp(u + du, 0.0, 1.0), std::clamp(v + dv, 0.0, 1.0));
+    damping *= nearer ? 0.01 : 30;
+  }
+  return {best, unit_normal(patch, u, v), 0};
+}
+
+double distance(const Box& box, const dvec3& x) {
+  return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
+}
+
+/// Patches with the boxes of their control points.
+class FacePatches {
+ public:
+  explicit FacePatches(const ControlCage& cage, const LimitSurface& surface)
+      : patches_(cage.faces.size()) {
+    for (const SurfacePatch& patch : surface.patches) {
+      Box box;
+      for (const dvec4& p : patch.bezier.points) box.include(dvec3(p));
+      patches_[std::size_t(patch.cage_face)].push_back({&patch, box});
+    }
+  }
+
+  /// On the face's exact patches within `reach`, the nearest.
+  Foot foot(int face, const dvec3& x, double reach) const {
+    Foot nearest;
+    for (const auto& [patch, box] : patches_[std::size_t(face)]) {
+      if (!patch->exact || distance(box, x) > reach) continue;
+      const Foot foot = foot_on(patch->bezier, x);
+      if (foot.distance >= nearest.distance) continue;
+      nearest = foot;
+      nearest.extent = diagonal(box);
+    }
+    return nearest;
+  }
+
+  /// The box of a patch that stands for the surface is as near as its own size.
+  bool is_near_stand_in(int face, const dvec3& x) const {
+    const auto& all = patches_[std::size_t(face)];
+    return std::any_of(all.begin(), all.end(), [&](const BoxedPatch& p) {
+      return !p.patch->exact && distance(p.box, x) <= diagonal(p.box);
+    });
+  }
+
+ private:
+  struct BoxedPatch {
+    const SurfacePatch* patch;
+    Box box;
+  };
+  std::vector<std::vector<BoxedPatch>> patches_;
+};
+
+/// Of Bfr's normals within its Gregory patches.
+constexpr double gregory_normal_error = 0.05;
+
+/// Points that were on exact patches.
+struct Compared {
+  int exactly = 0;
+  int roughly = 0;  ///< where Bfr ends in Gregory patches
+};
+
+void expect_on(const FacePatches& patches, int face, const BfrPoint& p, double size,
+               const std::string& name, Compared& compared) {
+  const double rounding = 1e-15 * size;
+  const bool exact = p.error <= rounding;
+  const double allowed = exact ? rounding : p.error;
+  const Foot foot = patches.foot(face, p.x, 2 * allowed);
+  if (foot.distance > allowed && patches.is_near_stand_in(face, p.x)) return;
+  ++(exact ? compared.exactly : compared.roughly);
+  EXPECT_LE(foot.distance, allowed) << name << ", face " << face;
+  if (p.normal == dvec3(0.0)) return;
+  const double normal_error = exact ? 1e-12 + 8 * rounding / foot.extent : gregory_normal_error;
+  EXPECT_LE(glm::length(glm::cross(foot.normal, p.normal)), normal_error)
+      << name << ", face " << face;
+}
+
+/// By face: it touches one that has a vertex more than once.
+std::vector<bool> degenerate_faces(const ControlCage& cage) {
+  std::vector<bool> repeated(cage.points.size());
+  for (const std::vector<int>& face : cage.faces) {
+    for (const int v : face) {
+      if (std::count(face.begin(), face.end(), v) > 1) repeated[std::size_t(v)] = true;
+    }
+  }
+  std::vector<bool> result;
+  for (const std::vector<int>& face : cage.faces) {
+    result.push_back(
+        std::any_of(face.begin(), face.end(), [&](int v) { return repeated[std::size_t(v)]; }));
+  }
+  return result;
+}
+
+/// At `count` random places anywhere in faces, and as many near their corners. Faces with a vertex
+/// twice, and those beside them, are left out: there patches are not exact.
+void expect_patches(const ControlCage& cage, double accuracy, int count, const std::string& name) {
+  Random random(29);
+  LimitOptions options;
+  options.accuracy = accuracy;
+  const LimitSurface surface = limit_patches(cage, options);
+  const FacePatches patches(cage, surface);
+  const BfrSurface bfr(cage);
+  const double size = size_of(cage);
+  const std::vector<bool> left_out = degenerate_faces(cage);
+  Compared compared;
+  int places = 0;
+  for (int k = 0; k < count; ++k) {
+    const int face = pick(random, 0, int(cage.faces.size()) - 1);
+    if (left_out[std::size_t(face)] || !bfr.has_surface(face)) continue;
+    const double near = log_uniform(random, 1e-4, 0.5);
+    expect_on(patches, face, bfr.point(face, random), size, name, compared);
+    expect_on(patches, face, bfr.point_near_corner(face, near, random), size, name, compared);
+    places += 2;
+  }
+  EXPECT_GT(5 * (compared.exactly + compared.roughly), 3 * places) << name;
+  EXPECT_GT(2 * compared.exactly, places) << name;
+}
+
+TEST(LimitPatches, AreWhatBfrEvaluates) {
+  for (const auto& [name, cage] : all_cages()) expect_patches(cage, 1e-6, 200, name);
+}
+
+void expect_patches(const char* file, Scheme scheme, int count) {
+  const char* const folder = std::getenv("TAUT_MODELS");
+  if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS names no folder with models";
+  const std::filesystem::path path = std::filesystem::path(folder) / file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  Model model;
+  ReadOptions options;
+  options.scheme = scheme;
+  options.cage_accuracy = 0.1;  // of the cage alone there is need
+  read_model(path, model, options);
+  expect_patches(*model.parts().at(0).cages().at(0).cage, default_cage_accuracy, count, file);
+}
+
+TEST(LimitPatches, OfACarAreWhatBfrEvaluates) {
+  expect_patches("A15_osd_car_creases_boundary.obj", Scheme::catmark, 3000);
+}
+TEST(LimitPatches, OfSheetsAreWhatBfrEvaluates) {
+  expect_patches("A16_osd_edgecorner_boundary.obj", Scheme::catmark, 300);
+}
+TEST(LimitPatches, OfANonManifoldCageAreWhatBfrEvaluates) {
+  expect_patches("A17_osd_nonmanifold_edges.obj", Scheme::catmark, 1000);
+}
+TEST(LimitPatches, OfSemiSharpIcosahedraAreWhatBfrEvaluates) {
+  expect_patches("A18_osd_loop_icos_semisharp.obj", Scheme::loop, 1000);
+}
+TEST(LimitPatches, OfATorusAreWhatBfrEvaluates) {
+  expect_patches("A19_torus_quad_smooth.off", Scheme::catmark, 300);
+}
+TEST(LimitPatches, OfATriangulatedCubeAreWhatBfrEvaluates) {
+  expect_patches("A20_cube_binary.ply", Scheme::catmark, 300);
+  expect_patches("A20_cube_binary.ply", Scheme::loop, 300);
+}
+
+}  // namespace
+}  // namespace taut
