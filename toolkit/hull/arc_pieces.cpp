@@ -9,6 +9,16 @@
 namespace taut {
 namespace {
 
+/// The same contacts, and with them the same direction: that of a patch tells it.
+bool has_contacts(const Ruling& a, const Ruling& b) {
+  const auto same = [](const Contact& c, const Contact& d) {
+    return same_element(c, d) && c.u == d.u && c.v == d.v;
+  };
+  const bool on_face =
+      a.contact[0].kind == SourceKind::face || a.contact[1].kind == SourceKind::face;
+  return on_face && same(a.contact[0], b.contact[0]) && same(a.contact[1], b.contact[1]);
+}
+
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
 /// they reach there.
 void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
@@ -34,6 +44,37 @@ void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   }
 }
 
+/// The smooth join along which all of the piece's contacts i run.
+std::optional<Side> join_along(const ContactGeometry& geometry, const ArcPiece& piece,
+                               std::size_t i) {
+  const Contact& any = piece.rulings.front().contact[i];
+  if (any.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    if (geometry.patch(any).borders[std::size_t(side)].kind != BorderKind::smooth) continue;
+    const bool along = std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
+      const Contact& c = r.contact[i];
+      return (along_v(side) ? c.u : c.v) == (at_upper_end(side) ? 1 : 0);
+    });
+    if (along) return side;
+  }
+  return std::nullopt;
+}
+
+/// A contact that has come to run along a smooth join is told as one of the patch into which its
+/// region extends.
+void tell_along_joins(const ContactGeometry& geometry, ArcPiece& piece) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<Side> side = join_along(geometry, piece, i);
+    if (!side) continue;
+    const ContactExit exit{ContactExit::Kind::side, int(*side)};
+    const Ruling& middle = piece.rulings[piece.rulings.size() / 2];
+    if (!extends_over(geometry, CommonSupport(geometry, middle), int(i), exit)) continue;
+    for (Ruling& r : piece.rulings) {
+      if (const auto over = beyond(geometry, r.contact[i], exit)) r.contact[i] = *over;
+    }
+  }
+}
+
 }  // namespace
 
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
@@ -45,30 +86,32 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
     const double shortest = k == 0 || k + 1 == pieces.size() ? tied : shortest_piece;
     const Ruling& a = rulings.front();
     return std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& b) {
-      return square(b.n - a.n) + square(b.point[0] - a.point[0]) + square(b.point[1] - a.point[1]) <
-             shortest * shortest;
+      return has_contacts(a, b) ||
+             square(b.n - a.n) + square(b.point[0] - a.point[0]) + square(b.point[1] - a.point[1]) <
+                 shortest * shortest;
     });
   };
-  for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
-    if (!is_empty(k)) continue;
-    // What begins and ends the arc is told by its first ruling and its last.
-    if (k == 0) move_to(geometry, pieces[1].rulings.front(), pieces[0].rulings.front());
-    if (k + 1 == pieces.size())
-      move_to(geometry, pieces[k - 1].rulings.back(), pieces[k].rulings.back());
-    if (k > 0 && k + 1 < pieces.size()) {
-      // One contact crosses its border here, the other one in the piece's other end.
-      Ruling& before = pieces[k - 1].rulings.back();
-      Ruling& after = pieces[k + 1].rulings.front();
-      move_to(geometry, before, before);
-      move_to(geometry, after, after);
-      for (std::size_t i = 0; i < 2; ++i) {
-        if (!same_element(before.contact[i], after.contact[i])) continue;
-        after.contact[i] = before.contact[i];
-        after.point[i] = before.point[i];
+  // Leaving a piece out shortens those about it.
+  for (std::size_t count = 0; count != pieces.size();) {
+    count = pieces.size();
+    for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
+      if (!is_empty(k)) continue;
+      // What begins and ends the arc is told by its first ruling and its last.
+      if (k == 0) move_to(geometry, pieces[1].rulings.front(), pieces[0].rulings.front());
+      if (k + 1 == pieces.size())
+        move_to(geometry, pieces[k - 1].rulings.back(), pieces[k].rulings.back());
+      if (k > 0 && k + 1 < pieces.size()) {
+        // One contact crosses its border here, the other one in the piece's other end.
+        Ruling& before = pieces[k - 1].rulings.back();
+        Ruling& after = pieces[k + 1].rulings.front();
+        move_to(geometry, before, before);
+        move_to(geometry, after, after);
+        set_places(after, before);
       }
+      pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
-    pieces.erase(pieces.begin() + std::ptrdiff_t(k));
   }
+  for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
   turn_ends(geometry, pieces);
 }
 
@@ -80,6 +123,14 @@ void reverse(std::vector<ArcPiece>& pieces) {
       std::swap(r.contact[0], r.contact[1]);
       std::swap(r.point[0], r.point[1]);
     }
+  }
+}
+
+void set_places(Ruling& ruling, const Ruling& other) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!same_element(ruling.contact[i], other.contact[i])) continue;
+    ruling.contact[i] = other.contact[i];
+    ruling.point[i] = other.point[i];
   }
 }
 

@@ -21,6 +21,9 @@ void reverse(std::vector<ArcPiece>& pieces);
 /// Both contacts are of the same elements.
 bool same_elements(const Ruling& a, const Ruling& b);
 
+/// Puts contacts of the same elements where the other ruling has them.
+void set_places(Ruling& ruling, const Ruling& other);
+
 /// Appends pieces that go on where these end.
 void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more);
 

@@ -68,6 +68,7 @@ class Trace {
   Pace exchange(const ElementChange& event);
   Pace advance();
   void begin_piece(const Ruling& first);
+  void continue_in_piece();
   bool is_sound() const;
   void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(on_joins(ruling)); }
   Ruling on_joins(Ruling ruling) const;
@@ -174,6 +175,19 @@ void Trace::begin_piece(const Ruling& first) {
   lenient_ = false;
   push(first);
   changes_.begin();
+}
+
+/// Begins a piece where the last one ends: a contact that stays in its element does so in the same
+/// place, which steps too short to count may have left.
+void Trace::continue_in_piece() {
+  Ruling first = point_.at.ruling();
+  const Ruling last = arc_.pieces.back().rulings.back();
+  if (arc_.pieces.back().rulings.size() < 2 && arc_.pieces.size() > 1) {
+    // It is dropped: the one before ends there.
+    set_places(arc_.pieces[arc_.pieces.size() - 2].rulings.back(), last);
+  }
+  set_places(first, last);
+  begin_piece(first);
 }
 
 /// The ruling with contacts that are beyond a smooth join, and have not left their patch, on it.
@@ -323,6 +337,9 @@ Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
 /// On to the next element, at the exit where the contact stands.
 Trace::Pace Trace::exchange(const ElementChange& event) {
   const auto i = std::size_t(event.contact);
+  Ruling& last = arc_.pieces.back().rulings.back();
+  last.contact[i] = point_.at.contact[i];
+  last.point[i] = point_.at.jet[i].x;
   const std::optional<Contact> over = beyond(geometry_, point_.at.contact[i], event.exit);
   if (!over) return lost("a separating curve has no next element");
   const bool other_kind = over->kind != point_.at.contact[i].kind;
@@ -333,7 +350,7 @@ Trace::Pace Trace::exchange(const ElementChange& event) {
   if (!point_.settle()) return lost("a separating curve has no tangent");
   end_on_joins(before);
   point_.head_into(i);
-  begin_piece(point_.at.ruling());
+  continue_in_piece();
   step_ = std::max(0.5 * step_, shortest_step);
   return Pace::on;
 }

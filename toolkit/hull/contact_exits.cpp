@@ -401,6 +401,15 @@ double exit_length(const ContactGeometry& geometry, const Contact& c, const Cont
   return 0;
 }
 
+bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                  const ContactExit& exit) {
+  const auto k = std::size_t(i);
+  const LinearEquation e = exit_margin(geometry, s, i, exit);
+  const dvec3 inward = i == 0 ? s.d() : -s.d();
+  const std::optional<dvec2> rate = parameter_rate(s.jet[k], s.n, inward);
+  return rate && glm::dot(e.parameter[k], *rate) < 0;
+}
+
 bool leads_over_border(const ContactExit& exit) {
   return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
 }

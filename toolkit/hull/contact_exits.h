@@ -32,6 +32,11 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 /// moves the margin by is a length over it.
 double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
 
+/// Of two contacts that part, i the one of them: where the direction turns into its own region, it
+/// moves over the exit at which it stands. False where its element is flat.
+bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                  const ContactExit& exit);
+
 /// To the same point in another element, not into what an edge or a vertex bounds.
 bool leads_over_border(const ContactExit& exit);
 

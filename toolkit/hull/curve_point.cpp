@@ -95,14 +95,6 @@ bool CurvePoint::runs_along(std::size_t contact, const ContactExit& exit) const 
          std::abs(rate) * size <= std::max(slack, rounding_across(contact, side));
 }
 
-/// The contact moves over the side where the direction turns into its own region.
-bool CurvePoint::extends_over(std::size_t contact, const ContactExit& exit) const {
-  const LinearEquation e = exit_margin(geometry_, at, int(contact), exit);
-  const dvec3 inward = contact == 0 ? at.d() : -at.d();
-  const std::optional<dvec2> rate = parameter_rate(at.jet[contact], at.n, inward);
-  return rate && glm::dot(e.parameter[contact], *rate) < 0;
-}
-
 bool CurvePoint::settle() {
   const CurveTangent* before = tangent.n == dvec3(0.0) ? nullptr : &tangent;
   const std::optional<CurveTangent> t = system_.tangent(at, before);
@@ -116,7 +108,7 @@ bool CurvePoint::settle() {
       if (!runs_along(i, exit)) continue;
       const std::optional<Contact> over = beyond(geometry_, c, exit);
       if (!over || over->kind == SourceKind::vertex) continue;
-      if (over->kind == SourceKind::face && !extends_over(i, exit)) continue;
+      if (over->kind == SourceKind::face && !extends_over(geometry_, at, int(i), exit)) continue;
       at.contact[i] = *over;
       changed = true;
       break;

@@ -78,7 +78,6 @@ class CurvePoint {
   CommonSupport predicted(double length) const;
   double rounding_across(std::size_t contact, Side side) const;
   bool runs_along(std::size_t contact, const ContactExit& exit) const;
-  bool extends_over(std::size_t contact, const ContactExit& exit) const;
   void find_joins();
   static double square(const dvec3& x) { return glm::dot(x, x); }
 
