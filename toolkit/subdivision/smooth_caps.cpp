@@ -297,6 +297,8 @@ std::vector<Points> smooth_quad_caps(std::span<const Points> nets) {
   const double turn = 2 * std::cos(2 * std::numbers::pi / double(n));
   std::vector<SpokeEnds> ends;
   std::vector<Net> given;
+  ends.reserve(n);
+  given.reserve(n);
   for (const Points& points : nets) given.emplace_back(std::size_t{3}, points);
   for (const Net& net : given) ends.push_back(spoke_ends(net));
   const Fan fan(std::move(ends), {}, {turn, 0, 0});
