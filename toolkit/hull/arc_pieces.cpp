@@ -106,7 +106,7 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
         Ruling& after = pieces[k + 1].rulings.front();
         move_to(geometry, before, before);
         move_to(geometry, after, after);
-        set_places(after, before);
+        set_places(geometry, after, before);
       }
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
@@ -126,10 +126,15 @@ void reverse(std::vector<ArcPiece>& pieces) {
   }
 }
 
-void set_places(Ruling& ruling, const Ruling& other) {
+void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& other) {
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!same_element(ruling.contact[i], other.contact[i])) continue;
-    ruling.contact[i] = other.contact[i];
+    auto own = expressed_in(geometry, other.contact[i], ruling.contact[i]);
+    if (!own) {
+      const Contact place = moved_to_border(geometry, other.contact[i], shortest_piece);
+      own = expressed_in(geometry, place, ruling.contact[i]);
+    }
+    if (!own) continue;
+    ruling.contact[i] = *own;
     ruling.point[i] = other.point[i];
   }
 }

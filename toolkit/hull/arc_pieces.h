@@ -21,8 +21,8 @@ void reverse(std::vector<ArcPiece>& pieces);
 /// Both contacts are of the same elements.
 bool same_elements(const Ruling& a, const Ruling& b);
 
-/// Puts contacts of the same elements where the other ruling has them.
-void set_places(Ruling& ruling, const Ruling& other);
+/// Puts contacts where the other ruling has them, in their own elements, as far as these reach there.
+void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& other);
 
 /// Appends pieces that go on where these end.
 void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more);

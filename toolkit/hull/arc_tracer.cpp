@@ -185,9 +185,9 @@ void Trace::continue_in_piece() {
   const Ruling last = arc_.pieces.back().rulings.back();
   if (arc_.pieces.back().rulings.size() < 2 && arc_.pieces.size() > 1) {
     // It is dropped: the one before ends there.
-    set_places(arc_.pieces[arc_.pieces.size() - 2].rulings.back(), last);
+    set_places(geometry_, arc_.pieces[arc_.pieces.size() - 2].rulings.back(), last);
   }
-  set_places(first, last);
+  set_places(geometry_, first, last);
   begin_piece(first);
 }
 

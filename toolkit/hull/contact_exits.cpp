@@ -565,7 +565,7 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
   return own;
 }
 
-Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
+Contact moved_to_border(const ContactGeometry& geometry, Contact c, double distance) {
   const ContactJet j = geometry.jet(c);
   // Along a pole all parameters are its point, and the one that is there tells where from.
   const std::optional<Side> pole = pole_side(geometry, c);
@@ -575,7 +575,11 @@ Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
   };
   if (j.dimension == 2 && !(pole && along_v(*pole))) snap(c.v, j.dx[1]);
   if (j.dimension >= 1 && !(pole && !along_v(*pole))) snap(c.u, j.dx[0]);
-  return geometry.canonical(c);
+  return c;
+}
+
+Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance) {
+  return geometry.canonical(moved_to_border(geometry, c, distance));
 }
 
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n) {

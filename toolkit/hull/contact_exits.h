@@ -86,9 +86,12 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 /// higher of these ends.
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n);
 
+/// The contact on those borders and ends of its element from which it is no farther than this.
+Contact moved_to_border(const ContactGeometry& geometry, Contact c, double distance);
+
 /// The contact in its canonical form where it lies within rounding of a border, an end or a pole:
 /// no farther than `distance`.
-Contact snapped(const ContactGeometry& geometry, Contact c, double distance);
+Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance);
 
 /// A patch's contact on a side across which it is level, to within rounding: its curvature tells no
 /// place. Where the third derivative tells it, that place. None elsewhere.
