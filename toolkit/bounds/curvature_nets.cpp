@@ -122,11 +122,28 @@ CurvatureNets::CurvatureNets(const BezierPatch& patch, const std::array<bool, 4>
   uu_ = form(2, 0);
   uv_ = form(1, 1);
   vv_ = form(0, 2);
+  const NetShape common{std::max({uu_.shape.p, uv_.shape.p, vv_.shape.p}),
+                        std::max({uu_.shape.q, uv_.shape.q, vv_.shape.q})};
+  uu_ = uu_.raised(common);
+  uv_ = uv_.raised(common);
+  vv_ = vv_.raised(common);
   const ScaledNet<dvec3> quotient = divided(normals, {1, 1}, normal_size);
   normals_ = {quotient.shape, unscaled(quotient),
               net.rounding_bound * (net.shape.p + 1.0) * (net.shape.q + 1.0),
               largest(unscaled(quotient))};
   if (!sound) uu_.error = std::numeric_limits<double>::infinity();
+}
+
+template <class Entry>
+CurvatureNets::Net<Entry> CurvatureNets::Net<Entry>::raised(NetShape to) const {
+  const auto own = scaled<Entry>(
+      shape, [&](int i, int j) { return entries[std::size_t(i * (shape.q + 1) + j)]; });
+  const auto one = scaled<double>({to.p - shape.p, to.q - shape.q}, [](int, int) { return 1.0; });
+  ScaledNet<Entry> product(to);
+  add_product(own, one, 0, 0, product, [](const Entry& a, double b) { return b * a; });
+  // Convex combinations, each of so many terms with factors of a few roundings.
+  const double roundings = (one.shape.p + 1.0) * (one.shape.q + 1.0) + 8;
+  return {to, unscaled(product), error + roundings * rounding_unit * size, size};
 }
 
 Interval CurvatureNets::range(const Net<double>& net, const Interval& u, const Interval& v) {
@@ -140,20 +157,17 @@ SecondForm CurvatureNets::over(const Interval& u, const Interval& v) const {
   return {range(uu_, u, v), range(uv_, u, v), range(vv_, u, v)};
 }
 
-Interval CurvatureNets::range(const Net<double>& net) {
-  const auto [least, most] = std::minmax_element(net.entries.begin(), net.entries.end());
-  return {*least - net.error, *most + net.error};
-}
-
+/// At a point the form is a convex combination of those of the nets' entries, and what is between
+/// definite forms of one sign is definite.
 int CurvatureNets::definite_sign() const {
-  SecondForm form;
-  form.uu = range(uu_);
-  if (form.uu.lower <= 0 && form.uu.upper >= 0) return 0;
-  form.vv = range(vv_);
-  if (form.vv.lower <= 0 && form.vv.upper >= 0) return 0;
-  form.uv = range(uv_);
-  if (form.surely_negative()) return -1;
-  return form.surely_positive() ? 1 : 0;
+  const auto all = [&](const auto& is_so) {
+    for (std::size_t k = 0; k < uu_.entries.size(); ++k) {
+      if (!is_so(SecondForm{uu_.around(k), uv_.around(k), vv_.around(k)})) return false;
+    }
+    return true;
+  };
+  if (all([](const SecondForm& form) { return form.surely_negative(); })) return -1;
+  return all([](const SecondForm& form) { return form.surely_positive(); }) ? 1 : 0;
 }
 
 /// Convex combinations, one after the other along a line of the net, each of one rounding.

@@ -45,14 +45,17 @@ class CurvatureNets {
     double error = 0;  ///< of an entry
     double size = 0;   ///< of the largest entry
 
+    /// Holds an entry's true value.
+    Interval around(std::size_t k) const { return {entries[k] - error, entries[k] + error}; }
+    /// Of a higher degree.
+    Net<Entry> raised(NetShape to) const;
     Net<Entry> upper_half(Direction direction, Net<Entry>& lower) const;
   };
   CurvatureNets() = default;
-  static Interval range(const Net<double>& net);
   static Interval range(const Net<double>& net, const Interval& u, const Interval& v);
 
   Net<dvec3> normals_;
-  Net<double> uu_, uv_, vv_;
+  Net<double> uu_, uv_, vv_;  // of one degree
 };
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "taut/bounds/scene_content.h"
@@ -26,6 +27,7 @@ class ReachTest::Search {
     for (const PatchRectangle& r : except) {
       except_.push_back({r, scene_.element({r.instance, SourceKind::face, r.patch, 0, 0})});
     }
+    if (!std::is_sorted(except_.begin(), except_.end())) std::sort(except_.begin(), except_.end());
     finest_ = finest;
     splits_ = 0;
     frame_.set(corners);
@@ -140,19 +142,16 @@ class ReachTest::Search {
     for (std::size_t k = 0; k < net.x.size(); ++k) {
       heights_[k] = local_.heights({net.x[k], net.y[k], net.z[k]}) + net.w[k] * offset_;
     }
-    const bool own = std::any_of(except_.begin(), except_.end(), [&](const Exception& e) {
-      return e.region.instance == instance_ && e.element == cell.element;
-    });
+    own_ = exceptions_of(instance_, cell.element);
     const double* w = element.rational ? net.w.data() : nullptr;
-    element_ = cell.element;
-    return net_below(element.shape, own, heights_.data(), w, cell.coons.level, cell.coons.u(),
+    return net_below(element.shape, heights_.data(), w, cell.coons.level, cell.coons.u(),
                      cell.coons.v(), 0);
   }
 
   /// `g` holds the heights of the cell's control points, times the weights `w` where rational.
-  bool net_below(NetShape shape, bool own, const dvec4* g, const double* w, int level,
-                 const Interval& u, const Interval& v, std::size_t depth) {
-    if (own && is_excepted(u, v)) return true;
+  bool net_below(NetShape shape, const dvec4* g, const double* w, int level, const Interval& u,
+                 const Interval& v, std::size_t depth) {
+    if (is_excepted(u, v)) return true;
     const auto size = std::size_t(shape.size());
     dvec4 highest(-std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < size; ++k) highest = glm::max(highest, w ? g[k] / w[k] : g[k]);
@@ -178,7 +177,7 @@ class ReachTest::Search {
       if (shape.q == 0 && k % 2 == 1) continue;  // a curve has only two halves
       const Interval half_u = k < 2 ? Interval{u.lower, middle_u} : Interval{middle_u, u.upper};
       const Interval half_v = k % 2 ? Interval{middle_v, v.upper} : Interval{v.lower, middle_v};
-      if (!net_below(shape, own, heights[k], weights[k], level + 1, half_u, half_v, depth + 1)) {
+      if (!net_below(shape, heights[k], weights[k], level + 1, half_u, half_v, depth + 1)) {
         return false;
       }
     }
@@ -188,14 +187,22 @@ class ReachTest::Search {
   struct Exception {
     PatchRectangle region;
     int element;
+
+    std::pair<int, int> place() const { return {region.instance, element}; }
+    bool operator<(const Exception& other) const { return place() < other.place(); }
   };
 
+  std::span<const Exception> exceptions_of(int instance, int element) const {
+    const Exception sought{{instance, -1, {}, {}}, element};
+    const auto [first, last] = std::equal_range(except_.begin(), except_.end(), sought);
+    return {first, last};
+  }
   /// The rectangle of the element that is looked at lies in one of the regions.
   bool is_excepted(const Interval& u, const Interval& v) const {
-    return std::any_of(except_.begin(), except_.end(), [&](const Exception& e) {
+    return std::any_of(own_.begin(), own_.end(), [&](const Exception& e) {
       const PatchRectangle& r = e.region;
-      return r.instance == instance_ && e.element == element_ && u.lower >= r.u.lower &&
-             u.upper <= r.u.upper && v.lower >= r.v.lower && v.upper <= r.v.upper;
+      return u.lower >= r.u.lower && u.upper <= r.u.upper && v.lower >= r.v.lower &&
+             v.upper <= r.v.upper;
     });
   }
 
@@ -210,8 +217,8 @@ class ReachTest::Search {
   std::vector<dvec4> limits_;  // of x . n by each of the points
   const ScenePart* part_ = nullptr;
   int instance_ = -1;
-  int element_ = -1;
-  std::vector<Exception> except_;
+  std::vector<Exception> except_;   // sorted
+  std::span<const Exception> own_;  // of the element that is looked at
   int finest_ = 0;
   int splits_ = 0;
   std::vector<dvec4> heights_;

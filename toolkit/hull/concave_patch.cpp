@@ -13,6 +13,8 @@ namespace {
 /// Determinant of the second fundamental form, as a share of what the second derivatives' lengths
 /// allow, that is negligible.
 constexpr double negligible = 1e-9;
+/// Halvings of a rectangle by which it is tried to show that it is curved one way.
+constexpr int proof_depth = 6;
 
 BezierPatch bezier_of(const SceneElement& element) {
   BezierPatch patch{element.shape.p, element.shape.q, {}};
@@ -46,6 +48,11 @@ bool are_disjoint(const Interval& a, const Interval& b) {
 
 bool ParameterRectangle::overlaps(const ParameterRectangle& other) const {
   return !are_disjoint(u, other.u) && !are_disjoint(v, other.v);
+}
+
+bool ParameterRectangle::contains(const ParameterRectangle& other) const {
+  return u.lower <= other.u.lower && other.u.upper <= u.upper && v.lower <= other.v.lower &&
+         other.v.upper <= v.upper;
 }
 
 ConcavePatch::ConcavePatch(const SceneElement& element, const Patch& patch)
@@ -117,8 +124,19 @@ bool ConcavePatch::is_concave(int node, const dvec3& m) {
     const double sign = glm::dot(pyramid->axis, m) > 0 ? 1 : -1;
     return within_right_angle(*pyramid, sign, m);
   }
+  return sign(node, proof_depth) != 0 && faces(node, m);
+}
+
+/// That of the normals for which the rectangle is concave, as its own nets or those of smaller ones
+/// show, so many halvings below; 0 if they do not.
+double ConcavePatch::sign(int node, int depth) {
   look(node);
-  return at(node).sign != 0 && faces(node, m);
+  if (at(node).sign != 0 || depth <= at(node).depth) return at(node).sign;
+  at(node).depth = depth;
+  if (!(curvature(cell(node).middle()) > 0)) return 0;
+  const double lower = sign(child(node, 0), depth - 1);
+  if (lower != 0 && sign(child(node, 1), depth - 1) == lower) at(node).sign = lower;
+  return at(node).sign;
 }
 
 /// Of a node of known sign: all its normals, with that sign, are within a right angle of m.

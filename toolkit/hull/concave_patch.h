@@ -16,6 +16,7 @@ struct ParameterRectangle {
   Interval v = {0, 1};
 
   bool overlaps(const ParameterRectangle& other) const;
+  bool contains(const ParameterRectangle& other) const;
   dvec2 middle() const { return {u.at(0.5), v.at(0.5)}; }
 };
 
@@ -62,6 +63,7 @@ class ConcavePatch {
     std::vector<dvec3> points;  ///< none until they are asked for
     bool known = false;
     double sign = 0;  ///< of the normals for which it is concave; 0: not known to be
+    int depth = 0;    ///< of the tree below it that did not show it to be
     std::optional<NormalPyramid> pyramid;  ///< where the sign is known
     std::unique_ptr<CurvatureNets> nets;   ///< where it may be asked for
     Mark mark;
@@ -69,6 +71,7 @@ class ConcavePatch {
   Node& at(int node) { return nodes_[std::size_t(node)]; }
   bool faces(int node, const dvec3& m);
   void look(int node);
+  double sign(int node, int depth);
   void halve(int node);
 
   BezierPatch bezier_;

@@ -34,8 +34,11 @@ constexpr int directions_for_edges = 3;
 /// A pyramid that is this many cells of the spread samples wide needs no query of its own.
 constexpr double dense_samples = 4;
 
-/// Patches of a task; each task makes its own queries.
-constexpr std::size_t patches_per_task = 8;
+/// Patches of a task, between these, so that there are many tasks for all threads; each task makes
+/// its own queries and domes.
+constexpr std::size_t least_patches_per_task = 8;
+constexpr std::size_t most_patches_per_task = 256;
+constexpr std::size_t tasks = 64;
 
 /// By how many of its own sizes a cell is surrounded at most where the whole patch is too curved,
 /// and then half as many, down to one. What is close to the cell must be inside: where the two
@@ -571,9 +574,12 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   std::vector<PatchResult> results(places.size());
   Pool<ConcaveSurroundings> surroundings(
       [&] { return std::make_unique<ConcaveSurroundings>(scene); });
+  const std::size_t patches_per_task =
+      std::clamp(places.size() / tasks, least_patches_per_task, most_patches_per_task);
   parallel_for(places.size(), patches_per_task, options.threads,
                [&](std::size_t begin, std::size_t end) {
                  const Pool<ConcaveSurroundings>::Lease lent = surroundings.lease();
+                 (*lent).begin_anew();  // whichever tasks had it before
                  Tools tools(scene, *lent);
                  for (std::size_t k = begin; k < end; ++k) {
                    options.progress.check();
