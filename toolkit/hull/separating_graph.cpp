@@ -37,8 +37,8 @@ constexpr double beside_plane = 1.25;
 constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
-/// Cells of support queries after which it is given up, too: hundreds of times what generic models
-/// take, some seconds.
+/// Cells of support queries after which it is given up, too, and how many more a sample and a
+/// refined cell may take: hundreds of times what generic models take, some seconds.
 constexpr long least_cells = 5'000'000;
 constexpr long cells_a_sample = 2'000;
 constexpr int depth_limit = 40;
@@ -334,6 +334,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
     progress_.check();
     const std::size_t count = left.size();
     left = built_.uncrossed(refinement.refined(left), refined_margin);
+    cell_limit_ += cells_a_sample * long(left.size());
     part_cells(left);
     left = built_.uncrossed(left, refined_margin);
     fewer = left.size() < count;
