@@ -118,7 +118,7 @@ TEST(CageHull, OfSheetsWithCornersAndBoundary) {
 }
 TEST(CageHull, OfANonManifoldCage) { expect_whole("A17_osd_nonmanifold_edges.obj", 1e-9); }
 TEST(CageHull, OfAnOffTorus) { expect_whole("A19_torus_quad_smooth.off", 1e-9); }
-TEST(CageHull, OfATriangulatedCube) { expect_whole("A20_cube_binary.ply", 1e-3); }
+TEST(CageHull, OfATriangulatedCube) { expect_whole("A20_cube_binary.ply", 1e-9); }
 
 }  // namespace
 }  // namespace taut

@@ -319,7 +319,16 @@ TEST(CageSupport, OfTheHullOfATorus) {
   expect_supporting_hull("A19_torus_quad_smooth.off", Scheme::catmark, 5, 1e-9);
 }
 TEST(CageSupport, OfTheHullOfATriangulatedCube) {
-  expect_supporting_hull("A20_cube_binary.ply", Scheme::catmark, 5, 1e-3);
+  expect_supporting_hull("A20_cube_binary.ply", Scheme::catmark, 5, 1e-9);
+}
+TEST(CageSupport, OfTheHullOfATriangulatedCubeByLoop) {
+  expect_supporting_hull("A20_cube_binary.ply", Scheme::loop, 5, 1e-9);
+}
+TEST(CageSupport, OfTheHullOfSemiSharpIcosahedra) {
+  expect_supporting_hull("A18_osd_loop_icos_semisharp.obj", Scheme::loop, 5, 1e-9);
+}
+TEST(CageSupport, OfTheHullOfACarWithCreases) {
+  expect_supporting_hull("A15_osd_car_creases_boundary.obj", Scheme::catmark, 3, 1e-9);
 }
 
 }  // namespace
