@@ -21,7 +21,8 @@ void reverse(std::vector<ArcPiece>& pieces);
 /// Both contacts are of the same elements.
 bool same_elements(const Ruling& a, const Ruling& b);
 
-/// Puts contacts where the other ruling has them, in their own elements, as far as these reach there.
+/// Puts contacts where the other ruling has them, in their own elements, as far as these reach
+/// there.
 void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& other);
 
 /// Appends pieces that go on where these end.
