@@ -1,0 +1,29 @@
+#pragma once
+
+#include <opensubdiv/far/topologyRefiner.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "taut/surface/control_cage.h"
+
+namespace taut {
+
+/// Faces with their tags, as OpenSubdiv takes them.
+struct Description {
+  std::vector<int> sizes;
+  std::vector<int> vertices;
+  std::vector<int> crease_vertices;
+  std::vector<float> crease_sharpness;
+  std::vector<int> corner_vertices;
+  std::vector<float> corner_sharpness;
+  std::vector<int> holes;
+  std::size_t point_count = 0;
+};
+
+/// @throws BackendError if OpenSubdiv does not take the faces
+std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> make_refiner(
+    const Description& description, CageScheme scheme, const OpenSubdiv::Sdc::Options& options);
+
+}  // namespace taut
