@@ -184,9 +184,17 @@ std::vector<NamedCage> tagged_cages() {
   return all;
 }
 
+std::vector<NamedCage> degenerate_cages() {
+  ControlCage top = cube_cage();
+  top.faces[1] = {4, 5, 7, 7};
+  top.faces.push_back({4, 7, 6, 6});
+  return {{"cube with degenerate quads", top}};
+}
+
 std::vector<NamedCage> all_cages() {
   std::vector<NamedCage> all = smooth_cages();
   for (NamedCage& cage : tagged_cages()) all.push_back(std::move(cage));
+  for (NamedCage& cage : degenerate_cages()) all.push_back(std::move(cage));
   return all;
 }
 

@@ -42,6 +42,8 @@ struct NamedCage {
 std::vector<NamedCage> smooth_cages();
 /// With creases and corners, semi-sharp and sharp, holes and boundaries.
 std::vector<NamedCage> tagged_cages();
+/// With faces that have a vertex twice.
+std::vector<NamedCage> degenerate_cages();
 /// All of them.
 std::vector<NamedCage> all_cages();
 /// @}

@@ -53,8 +53,9 @@ struct CageLevel::Topology {
 
   Far::TopologyLevel level() const { return refiner->GetLevel(0); }
 
-  void build(const Description& description) {
-    refiner = make_refiner(description, scheme, options);
+  template <class Faces>
+  void build(const Faces& faces) {
+    refiner = make_refiner(faces, scheme, options);
     const Far::TopologyLevel base = level();
     near_semi_sharp.assign(points.size(), false);
     for (int v = 0; v < base.GetNumVertices(); ++v) {
@@ -276,17 +277,15 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
   topology.refiner->Unrefine();
   const Far::TopologyLevel base = topology.level();
   faces = with_surroundings(base, std::move(faces));
-  Extraction cut(base);
-  for (std::size_t i = 0; i < faces.size(); ++i) cut.add_face(faces[i], i >= own);
-  const Description description = cut.take();
+  const Extraction cut(base, std::move(faces), own);
   const std::unique_ptr<Far::TopologyRefiner> refiner =
-      make_refiner(description, topology.scheme, topology.options);
+      make_refiner(cut, topology.scheme, topology.options);
   Far::TopologyRefiner::UniformOptions uniform(1);
   uniform.fullTopologyInLastLevel = true;
   refiner->RefineUniform(uniform);
-  std::vector<Primvar> coarse(cut.originals().size());
+  std::vector<Primvar> coarse(cut.vertices().size());
   for (std::size_t i = 0; i < coarse.size(); ++i) {
-    coarse[i].x = topology.points[to_size(cut.originals()[i])];
+    coarse[i].x = topology.points[to_size(cut.vertices()[i])];
   }
   const Far::TopologyLevel fine = refiner->GetLevel(1);
   std::vector<Primvar> children(to_size(fine.GetNumVertices()));
@@ -306,18 +305,14 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
   }
   const std::size_t own_children = child_faces.size();
   child_faces = with_surroundings(fine, std::move(child_faces));
-  Extraction part(fine);
-  for (std::size_t i = 0; i < child_faces.size(); ++i) {
-    part.add_face(child_faces[i], i >= own_children);
-  }
-  const Description child_description = part.take();
+  const Extraction part(fine, std::move(child_faces), own_children);
   next.topology_->scheme = topology.scheme;
   next.topology_->options = topology.options;
-  next.topology_->points.reserve(part.originals().size());
-  for (const int v : part.originals()) {
+  next.topology_->points.reserve(part.vertices().size());
+  for (const int v : part.vertices()) {
     next.topology_->points.push_back(children[to_size(v)].x);
   }
-  next.topology_->build(child_description);
+  next.topology_->build(part);
   return next;
 }
 

@@ -10,6 +10,8 @@
 
 namespace taut {
 
+class Extraction;
+
 /// Faces with their tags, as OpenSubdiv takes them.
 struct Description {
   std::vector<int> sizes;
@@ -22,8 +24,13 @@ struct Description {
   std::size_t point_count = 0;
 };
 
-/// @throws BackendError if OpenSubdiv does not take the faces
+/// @name OpenSubdiv's refiners
+/// @throws BackendError if it does not take the faces
+/// @{
 std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> make_refiner(
     const Description& description, CageScheme scheme, const OpenSubdiv::Sdc::Options& options);
+std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> make_refiner(
+    const Extraction& extraction, CageScheme scheme, const OpenSubdiv::Sdc::Options& options);
+/// @}
 
 }  // namespace taut
