@@ -27,6 +27,9 @@ ControlCage triangle_torus_cage(int m, int n);
 ControlCage dome_cage(CageScheme scheme, int valence);
 /// m x n quads of a bulging sheet over [-1, 1]^2, open.
 ControlCage sheet_cage(int m, int n);
+/// A dome for the scheme loop with two triangles on one of its edges, which share the other two: in
+/// all levels there are edges with the same ends.
+ControlCage two_sided_fin_cage();
 /// @}
 
 /// The edges of a dome's rim about its top.
