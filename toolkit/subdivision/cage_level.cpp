@@ -94,7 +94,7 @@ struct CageLevel::Topology {
     std::vector<Primvar> all(points.size() + to_size(table.GetNumLocalPoints()));
     for (std::size_t i = 0; i < points.size(); ++i) all[i].x = points[i];
     if (table.GetNumLocalPoints() == 0) return all;
-    // Of Loop caps, weights are rounded to single precision, but so is their sum.
+    // Relative to one of the points: sums of weights are off 1 by up to some 1e-14.
     const Far::StencilTableReal<double>& stencils = *table.GetLocalPointStencilTable<double>();
     for (int i = 0; i < stencils.GetNumStencils(); ++i) {
       const Far::StencilReal<double> stencil = stencils.GetStencil(i);
