@@ -243,7 +243,8 @@ std::vector<CellPatch> CageLevel::patches() const {
       patch.degree = 4;
       for (int r = 0; r < quartic_points; ++r) {
         for (int k = 0; k < loop_points; ++k) {
-          patch.points[to_size(r)] += known->second(r, k) * points[to_size(vertices[k])].x;
+          patch.points[to_size(r)] +=
+              known->second[to_size(r)][to_size(k)] * points[to_size(vertices[k])].x;
         }
       }
     }

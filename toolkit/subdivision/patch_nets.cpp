@@ -60,7 +60,7 @@ std::vector<dvec3> bezier_net(std::array<dvec3, 16> p, int boundary) {
 LoopMatrix loop_to_bezier(const Far::PatchTable& table,
                           const Far::PatchTable::PatchHandle& handle) {
   Eigen::Matrix<double, quartic_points, quartic_points> bernstein;
-  LoopMatrix basis;
+  Eigen::Matrix<double, quartic_points, loop_points> basis;
   int row = 0;
   for_each_quartic_point([&](int a, int b) {
     const double u = a / 4.0;
@@ -73,8 +73,14 @@ LoopMatrix loop_to_bezier(const Far::PatchTable& table,
         [&](int i, int j) { bernstein(row, column++) = quartic_bernstein(i, j, u, v); });
     ++row;
   });
-  LoopMatrix m = bernstein.fullPivLu().solve(basis);
-  return (m * 48.0).array().round() / 48.0;
+  basis = bernstein.fullPivLu().solve(basis).eval();
+  LoopMatrix result;
+  for (int r = 0; r < quartic_points; ++r) {
+    for (int k = 0; k < loop_points; ++k) {
+      result[to_size(r)][to_size(k)] = std::round(48 * basis(r, k)) / 48;
+    }
+  }
+  return result;
 }
 
 std::vector<dvec3> quartic_of_gregory(const std::array<dvec3, gregory_points>& net,

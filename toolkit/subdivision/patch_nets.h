@@ -2,7 +2,6 @@
 
 #include <opensubdiv/far/patchTable.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -19,7 +18,7 @@ std::vector<dvec3> bezier_net(std::array<dvec3, 16> p, int boundary);
 
 constexpr int loop_points = 12;
 constexpr int quartic_points = 15;
-using LoopMatrix = Eigen::Matrix<double, quartic_points, loop_points>;
+using LoopMatrix = std::array<std::array<double, loop_points>, quartic_points>;
 
 /// The Bezier points of a box spline's triangle, from its twelve control points, by its basis at as
 /// many parameters. The matrix is of 48ths, to which it is rounded.
