@@ -184,9 +184,32 @@ std::vector<NamedCage> tagged_cages() {
   return all;
 }
 
+std::vector<NamedCage> degenerate_cages() {
+  ControlCage top = cube_cage();
+  top.faces[1] = {4, 5, 7, 7};
+  top.faces.push_back({4, 7, 6, 6});
+  ControlCage folded = cube_cage();
+  folded.points.insert(folded.points.end(), {{1, 0, 2}, {2, 0, 2}, {1, 1, 3}});
+  folded.faces.push_back({8, 9, 8, 10});
+  ControlCage triangle = dome_cage(CageScheme::loop, 5);
+  triangle.faces.push_back({0, 2, 2});
+  return {{"cube with degenerate quads", top},
+          {"cube and a folded quad", folded},
+          {"loop with a degenerate triangle", triangle}};
+}
+
+ControlCage two_sided_fin_cage() {
+  ControlCage cage = dome_cage(CageScheme::loop, 5);
+  const int tip = int(cage.points.size());
+  cage.points.push_back(1.5 * (cage.points[0] + cage.points[2]));
+  cage.faces.insert(cage.faces.end(), {{0, 2, tip}, {2, 0, tip}});
+  return cage;
+}
+
 std::vector<NamedCage> all_cages() {
   std::vector<NamedCage> all = smooth_cages();
   for (NamedCage& cage : tagged_cages()) all.push_back(std::move(cage));
+  for (NamedCage& cage : degenerate_cages()) all.push_back(std::move(cage));
   return all;
 }
 

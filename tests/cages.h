@@ -27,6 +27,9 @@ ControlCage triangle_torus_cage(int m, int n);
 ControlCage dome_cage(CageScheme scheme, int valence);
 /// m x n quads of a bulging sheet over [-1, 1]^2, open.
 ControlCage sheet_cage(int m, int n);
+/// A dome for the scheme loop with two triangles on one of its edges, which share the other two: in
+/// all levels there are edges with the same ends.
+ControlCage two_sided_fin_cage();
 /// @}
 
 /// The edges of a dome's rim about its top.
@@ -42,6 +45,8 @@ struct NamedCage {
 std::vector<NamedCage> smooth_cages();
 /// With creases and corners, semi-sharp and sharp, holes and boundaries.
 std::vector<NamedCage> tagged_cages();
+/// With faces that have a vertex twice.
+std::vector<NamedCage> degenerate_cages();
 /// All of them.
 std::vector<NamedCage> all_cages();
 /// @}

@@ -1,17 +1,15 @@
 #include "taut/subdivision/cage_level.h"
 
-#include <opensubdiv/far/error.h>
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/primvarRefiner.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <map>
 
-#include "taut/core/error.h"
+#include "taut/subdivision/extraction.h"
+#include "taut/subdivision/patch_nets.h"
+#include "taut/subdivision/refiner.h"
+#include "taut/subdivision/sheets.h"
 
 namespace taut {
 namespace {
@@ -32,22 +30,6 @@ struct Primvar {
   // NOLINTEND(readability-identifier-naming)
 };
 
-/// Faces with their tags, as OpenSubdiv takes them.
-struct Description {
-  std::vector<int> sizes;
-  std::vector<int> vertices;
-  std::vector<int> crease_vertices;
-  std::vector<float> crease_sharpness;
-  std::vector<int> corner_vertices;
-  std::vector<float> corner_sharpness;
-  std::vector<int> holes;
-  std::size_t point_count = 0;
-};
-
-Sdc::SchemeType scheme_type(CageScheme scheme) {
-  return scheme == CageScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
-}
-
 Sdc::Options::VtxBoundaryInterpolation interpolation(CageBoundary boundary) {
   switch (boundary) {
     case CageBoundary::edge_only:
@@ -58,309 +40,6 @@ Sdc::Options::VtxBoundaryInterpolation interpolation(CageBoundary boundary) {
       return Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER;
   }
 }
-
-/// What OpenSubdiv says of a mistake goes into the exception, not to the terminal.
-std::string& last_error() {
-  thread_local std::string message;
-  return message;
-}
-
-void keep_error(Far::ErrorType, const char* message) { last_error() = message; }
-void pass_warning(const char*) {}
-
-std::unique_ptr<Far::TopologyRefiner> make_refiner(const Description& description,
-                                                   CageScheme scheme, const Sdc::Options& options) {
-  static const bool silenced = [] {
-    Far::SetErrorCallback(keep_error);
-    Far::SetWarningCallback(pass_warning);
-    return true;
-  }();
-  static_cast<void>(silenced);
-  Far::TopologyDescriptor d;
-  d.numVertices = to_int(description.point_count);
-  d.numFaces = to_int(description.sizes.size());
-  d.numVertsPerFace = description.sizes.data();
-  d.vertIndicesPerFace = description.vertices.data();
-  d.numCreases = to_int(description.crease_sharpness.size());
-  d.creaseVertexIndexPairs = description.crease_vertices.data();
-  d.creaseWeights = description.crease_sharpness.data();
-  d.numCorners = to_int(description.corner_sharpness.size());
-  d.cornerVertexIndices = description.corner_vertices.data();
-  d.cornerWeights = description.corner_sharpness.data();
-  d.numHoles = to_int(description.holes.size());
-  d.holeIndices = description.holes.data();
-  using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  last_error().clear();
-  std::unique_ptr<Far::TopologyRefiner> refiner(
-      Factory::Create(d, Factory::Options(scheme_type(scheme), options)));
-  if (!refiner) {
-    throw BackendError("OpenSubdiv does not take the cage" +
-                       (last_error().empty() ? std::string() : ": " + last_error()));
-  }
-  return refiner;
-}
-
-/// Some faces of a level as a cage of their own.
-class Extraction {
- public:
-  explicit Extraction(const Far::TopologyLevel& level)
-      : level_(level), number_(to_size(level.GetNumVertices()), -1) {}
-
-  void add_face(int face, bool hole) {
-    if (hole) out_.holes.push_back(to_int(out_.sizes.size()));
-    const auto vertices = level_.GetFaceVertices(face);
-    out_.sizes.push_back(vertices.size());
-    for (int i = 0; i < vertices.size(); ++i) out_.vertices.push_back(number(vertices[i]));
-    const auto edges = level_.GetFaceEdges(face);
-    for (int i = 0; i < edges.size(); ++i) edges_.push_back(edges[i]);
-  }
-
-  Description take() {
-    std::sort(edges_.begin(), edges_.end());
-    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-    for (const int e : edges_) {
-      const float sharpness = level_.GetEdgeSharpness(e);
-      if (sharpness <= 0) continue;
-      const auto ends = level_.GetEdgeVertices(e);
-      for (int k = 0; k < 2; ++k) out_.crease_vertices.push_back(number_[to_size(ends[k])]);
-      out_.crease_sharpness.push_back(sharpness);
-    }
-    for (std::size_t i = 0; i < originals_.size(); ++i) {
-      const float sharpness = level_.GetVertexSharpness(originals_[i]);
-      if (sharpness <= 0) continue;
-      out_.corner_vertices.push_back(to_int(i));
-      out_.corner_sharpness.push_back(sharpness);
-    }
-    out_.point_count = originals_.size();
-    return std::move(out_);
-  }
-
-  /// The level's vertices, in the order of the new ones.
-  const std::vector<int>& originals() const { return originals_; }
-
- private:
-  int number(int vertex) {
-    int& n = number_[to_size(vertex)];
-    if (n < 0) {
-      n = to_int(originals_.size());
-      originals_.push_back(vertex);
-    }
-    return n;
-  }
-
-  const Far::TopologyLevel& level_;
-  std::vector<int> number_;
-  std::vector<int> originals_;
-  std::vector<int> edges_;
-  Description out_;
-};
-
-/// Some faces and, behind them, all others that touch their vertices.
-std::vector<int> with_surroundings(const Far::TopologyLevel& level, std::vector<int> faces) {
-  std::vector<bool> taken(to_size(level.GetNumFaces()));
-  for (const int f : faces) taken[to_size(f)] = true;
-  const std::size_t own = faces.size();
-  for (std::size_t i = 0; i < own; ++i) {
-    const auto vertices = level.GetFaceVertices(faces[i]);
-    for (int k = 0; k < vertices.size(); ++k) {
-      const auto around = level.GetVertexFaces(vertices[k]);
-      for (int j = 0; j < around.size(); ++j) {
-        if (taken[to_size(around[j])]) continue;
-        taken[to_size(around[j])] = true;
-        faces.push_back(around[j]);
-      }
-    }
-  }
-  return faces;
-}
-
-/// A B-spline's 16 control points to the Bezier points of its piece; `boundary`: bits of the sides
-/// v = 0, u = 1, v = 1, u = 0, beyond which the spline is continued straight.
-std::vector<dvec3> bezier_net(std::array<dvec3, 16> p, int boundary) {
-  // Point (column i along u, row j along v) is p[4 j + i].
-  const auto extend = [&](int edge, int from, int step_across, int step_along) {
-    if ((boundary & edge) == 0) return;
-    for (int k = 0; k < 4; ++k) {
-      dvec3* const x = p.data() + from + k * step_along;
-      *x = 2.0 * x[step_across] - x[2 * step_across];
-    }
-  };
-  extend(1, 0, 4, 1);
-  extend(4, 12, -4, 1);
-  extend(2, 3, -1, 4);
-  extend(8, 0, 1, 4);
-  const auto convert = [](const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
-    return std::array<dvec3, 4>{(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0,
-                                (b + 4.0 * c + d) / 6.0};
-  };
-  std::array<std::array<dvec3, 4>, 4> rows;  // [j][i]
-  for (std::size_t j = 0; j < 4; ++j) {
-    rows[j] = convert(p[4 * j], p[4 * j + 1], p[4 * j + 2], p[4 * j + 3]);
-  }
-  std::vector<dvec3> net(16);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto column = convert(rows[0][i], rows[1][i], rows[2][i], rows[3][i]);
-    for (std::size_t j = 0; j < 4; ++j) net[4 * i + j] = column[j];
-  }
-  return net;
-}
-
-constexpr int loop_points = 12;
-constexpr int quartic_points = 15;
-
-/// Calls visit(i, j) for the points of a quartic triangle in their order.
-template <class Visit>
-void for_each_quartic_point(const Visit& visit) {
-  for (int j = 0; j <= 4; ++j) {
-    for (int i = 0; i + j <= 4; ++i) visit(i, j);
-  }
-}
-
-double quartic_bernstein(int i, int j, double u, double v) {
-  constexpr std::array<double, 5> factorial = {1, 1, 2, 6, 24};
-  const int k = 4 - i - j;
-  return 24 / (factorial[to_size(i)] * factorial[to_size(j)] * factorial[to_size(k)]) *
-         std::pow(u, i) * std::pow(v, j) * std::pow(1 - u - v, k);
-}
-
-using LoopMatrix = Eigen::Matrix<double, quartic_points, loop_points>;
-
-/// The Bezier points of a box spline's triangle, from its twelve control points, by its basis at as
-/// many parameters. The matrix is of 48ths, to which it is rounded.
-LoopMatrix loop_to_bezier(const Far::PatchTable& table,
-                          const Far::PatchTable::PatchHandle& handle) {
-  Eigen::Matrix<double, quartic_points, quartic_points> bernstein;
-  LoopMatrix basis;
-  int row = 0;
-  for_each_quartic_point([&](int a, int b) {
-    const double u = a / 4.0;
-    const double v = b / 4.0;
-    double weights[loop_points];
-    table.EvaluateBasis(handle, u, v, weights);
-    for (int k = 0; k < loop_points; ++k) basis(row, k) = weights[k];
-    int column = 0;
-    for_each_quartic_point(
-        [&](int i, int j) { bernstein(row, column++) = quartic_bernstein(i, j, u, v); });
-    ++row;
-  });
-  LoopMatrix m = bernstein.fullPivLu().solve(basis);
-  return (m * 48.0).array().round() / 48.0;
-}
-
-/// Of OpenSubdiv's quartic Gregory triangle: of each corner itself, the points next to it on the
-/// sides that begin and that end there, and two for the one inside that is next to it, those for
-/// the same two sides; then the sides' middle points.
-constexpr int gregory_points = 18;
-
-/// The quartic triangle with the Gregory triangle's borders. It has its tangent planes, too, along
-/// sides between regular corners; between others the two points inside are averaged.
-std::vector<dvec3> quartic_of_gregory(const std::array<dvec3, gregory_points>& net,
-                                      const std::array<bool, 3>& regular) {
-  std::array<dvec3, 3> inside;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t next = (k + 1) % 3;
-    const std::size_t last = (k + 2) % 3;
-    const dvec3& begins = net[5 * k + 3];
-    const dvec3& ends = net[5 * k + 4];
-    const bool one = regular[k] && regular[next] != regular[last];
-    inside[k] = !one ? 0.5 * (begins + ends) : regular[next] ? begins : ends;
-  }
-  return {net[0],  net[1],    net[15],   net[7], net[5],  //
-          net[2],  inside[0], inside[1], net[6],          //
-          net[17], inside[2], net[16],                    //
-          net[11], net[12],                               //
-          net[10]};
-}
-
-/// Sheets of faces that meet in edges that are no manifold, parted there and in the ends of these:
-/// infinitely sharp as they are, each sheet has its own boundary along them.
-class Sheets {
- public:
-  explicit Sheets(const Far::TopologyLevel& level) : level_(level) {
-    for (int f = 0; f < level.GetNumFaces(); ++f) {
-      const auto vertices = level.GetFaceVertices(f);
-      description_.sizes.push_back(vertices.size());
-      first_.push_back(to_int(description_.vertices.size()));
-      description_.vertices.insert(description_.vertices.end(), to_size(vertices.size()), -1);
-      if (level.IsFaceHole(f)) description_.holes.push_back(f);
-    }
-    for (int v = 0; v < level.GetNumVertices(); ++v) part_vertex(v);
-    add_creases();
-    description_.point_count = originals_.size();
-  }
-
-  const Description& description() const { return description_; }
-  /// The level's vertices, in the order of the new ones.
-  const std::vector<int>& originals() const { return originals_; }
-
- private:
-  /// A copy for each set of faces about the vertex that manifold edges connect.
-  void part_vertex(int v) {
-    const auto faces = level_.GetVertexFaces(v);
-    const auto places = level_.GetVertexFaceLocalIndices(v);
-    std::vector<int> copy(to_size(faces.size()), -1);
-    for (int i = 0; i < faces.size(); ++i) {
-      if (copy[to_size(i)] >= 0) continue;
-      const int number = add_copy(v);
-      std::vector<int> reached = {i};
-      copy[to_size(i)] = number;
-      for (std::size_t k = 0; k < reached.size(); ++k) {
-        for (int j = 0; j < faces.size(); ++j) {
-          if (copy[to_size(j)] >= 0 || !are_joined(v, faces[reached[k]], faces[j])) continue;
-          copy[to_size(j)] = number;
-          reached.push_back(j);
-        }
-      }
-    }
-    for (int i = 0; i < faces.size(); ++i) {
-      description_.vertices[to_size(first_[to_size(faces[i])] + places[i])] = copy[to_size(i)];
-    }
-  }
-
-  int add_copy(int v) {
-    const int number = to_int(originals_.size());
-    originals_.push_back(v);
-    const bool corner =
-        level_.IsVertexNonManifold(v) && level_.GetVertexRule(v) == Sdc::Crease::RULE_CORNER;
-    const float sharpness = corner ? float(infinite_sharpness) : level_.GetVertexSharpness(v);
-    if (sharpness > 0) {
-      description_.corner_vertices.push_back(number);
-      description_.corner_sharpness.push_back(sharpness);
-    }
-    return number;
-  }
-
-  /// By a manifold edge at the vertex; one face is joined to itself.
-  bool are_joined(int v, int a, int b) const {
-    if (a == b) return true;
-    const auto edges = level_.GetVertexEdges(v);
-    return std::any_of(edges.begin(), edges.end(), [&](int e) {
-      const auto faces = level_.GetEdgeFaces(e);
-      return !level_.IsEdgeNonManifold(e) && faces.size() == 2 &&
-             ((faces[0] == a && faces[1] == b) || (faces[0] == b && faces[1] == a));
-    });
-  }
-
-  void add_creases() {
-    for (int f = 0; f < level_.GetNumFaces(); ++f) {
-      const auto edges = level_.GetFaceEdges(f);
-      for (int k = 0; k < edges.size(); ++k) {
-        const float sharpness = level_.GetEdgeSharpness(edges[k]);
-        if (sharpness <= 0) continue;
-        const int first = first_[to_size(f)];
-        for (const int corner : {k, (k + 1) % edges.size()}) {
-          description_.crease_vertices.push_back(description_.vertices[to_size(first + corner)]);
-        }
-        description_.crease_sharpness.push_back(sharpness);
-      }
-    }
-  }
-
-  const Far::TopologyLevel& level_;
-  Description description_;
-  std::vector<int> first_;  // of each face's vertices
-  std::vector<int> originals_;
-};
 
 }  // namespace
 
@@ -374,8 +53,9 @@ struct CageLevel::Topology {
 
   Far::TopologyLevel level() const { return refiner->GetLevel(0); }
 
-  void build(const Description& description) {
-    refiner = make_refiner(description, scheme, options);
+  template <class Faces>
+  void build(const Faces& faces) {
+    refiner = make_refiner(faces, scheme, options);
     const Far::TopologyLevel base = level();
     near_semi_sharp.assign(points.size(), false);
     for (int v = 0; v < base.GetNumVertices(); ++v) {
@@ -414,7 +94,7 @@ struct CageLevel::Topology {
     std::vector<Primvar> all(points.size() + to_size(table.GetNumLocalPoints()));
     for (std::size_t i = 0; i < points.size(); ++i) all[i].x = points[i];
     if (table.GetNumLocalPoints() == 0) return all;
-    // Of Loop caps, weights are rounded to single precision, but so is their sum.
+    // Relative to one of the points: sums of weights are off 1 by up to some 1e-14.
     const Far::StencilTableReal<double>& stencils = *table.GetLocalPointStencilTable<double>();
     for (int i = 0; i < stencils.GetNumStencils(); ++i) {
       const Far::StencilReal<double> stencil = stencils.GetStencil(i);
@@ -563,7 +243,8 @@ std::vector<CellPatch> CageLevel::patches() const {
       patch.degree = 4;
       for (int r = 0; r < quartic_points; ++r) {
         for (int k = 0; k < loop_points; ++k) {
-          patch.points[to_size(r)] += known->second(r, k) * points[to_size(vertices[k])].x;
+          patch.points[to_size(r)] +=
+              known->second[to_size(r)][to_size(k)] * points[to_size(vertices[k])].x;
         }
       }
     }
@@ -597,17 +278,15 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
   topology.refiner->Unrefine();
   const Far::TopologyLevel base = topology.level();
   faces = with_surroundings(base, std::move(faces));
-  Extraction cut(base);
-  for (std::size_t i = 0; i < faces.size(); ++i) cut.add_face(faces[i], i >= own);
-  const Description description = cut.take();
+  const Extraction cut(base, std::move(faces), own);
   const std::unique_ptr<Far::TopologyRefiner> refiner =
-      make_refiner(description, topology.scheme, topology.options);
+      make_refiner(cut, topology.scheme, topology.options);
   Far::TopologyRefiner::UniformOptions uniform(1);
   uniform.fullTopologyInLastLevel = true;
   refiner->RefineUniform(uniform);
-  std::vector<Primvar> coarse(cut.originals().size());
+  std::vector<Primvar> coarse(cut.vertices().size());
   for (std::size_t i = 0; i < coarse.size(); ++i) {
-    coarse[i].x = topology.points[to_size(cut.originals()[i])];
+    coarse[i].x = topology.points[to_size(cut.vertices()[i])];
   }
   const Far::TopologyLevel fine = refiner->GetLevel(1);
   std::vector<Primvar> children(to_size(fine.GetNumVertices()));
@@ -627,18 +306,14 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
   }
   const std::size_t own_children = child_faces.size();
   child_faces = with_surroundings(fine, std::move(child_faces));
-  Extraction part(fine);
-  for (std::size_t i = 0; i < child_faces.size(); ++i) {
-    part.add_face(child_faces[i], i >= own_children);
-  }
-  const Description child_description = part.take();
+  const Extraction part(fine, std::move(child_faces), own_children);
   next.topology_->scheme = topology.scheme;
   next.topology_->options = topology.options;
-  next.topology_->points.reserve(part.originals().size());
-  for (const int v : part.originals()) {
+  next.topology_->points.reserve(part.vertices().size());
+  for (const int v : part.vertices()) {
     next.topology_->points.push_back(children[to_size(v)].x);
   }
-  next.topology_->build(child_description);
+  next.topology_->build(part);
   return next;
 }
 

@@ -72,11 +72,16 @@ std::vector<dvec3> corners(const CellPatch& patch) {
   return {p.front(), p[n], p.back()};
 }
 
-double least_side(const CellPatch& patch) {
+/// Of the sides but those that are `point` long at most, which are points at all levels; 0 if all
+/// are.
+double least_side(const CellPatch& patch, double point) {
   const std::vector<dvec3> c = corners(patch);
-  double least = glm::distance(c.back(), c.front());
-  for (std::size_t k = 1; k < c.size(); ++k) least = std::min(least, glm::distance(c[k - 1], c[k]));
-  return least;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    const double length = glm::distance(c[k], c[(k + 1) % c.size()]);
+    if (length > point) least = std::min(least, length);
+  }
+  return std::isinf(least) ? 0 : least;
 }
 
 /// The patch's points with another corner first, or back from that.
@@ -114,7 +119,8 @@ class Refinement {
     Box box;
     for (const dvec3& p : cage.points) box.include(p);
     tolerance_ = options.accuracy * diagonal(box);
-    least_side_ = shortest_side * join_distance * diagonal(box);
+    point_side_ = join_distance * diagonal(box);
+    least_side_ = shortest_side * point_side_;
     result_.non_manifold_edges = level_.non_manifold_edges();
     result_.non_manifold_vertices = level_.non_manifold_vertices();
   }
@@ -136,6 +142,7 @@ class Refinement {
   const LimitOptions& options_;
   CageLevel level_;
   double tolerance_ = 0;
+  double point_side_ = 0;
   double least_side_ = 0;
   int depth_ = 0;
   std::vector<CellPatch> patches_;  // of the level's cells
@@ -351,7 +358,7 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
   if (has_caps && depth_ > 0) {
     const bool small =
         depth_ >= level_limit || std::any_of(region.begin(), region.end(), [&](std::size_t c) {
-          return least_side(patches_[c]) < least_side_;
+          return least_side(patches_[c], point_side_) < least_side_;
         });
     smooth_fan(region);
     const double bound =
