@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "taut/hull/contact_exits.h"
+#include "taut/surface/flatness.h"
 
 namespace taut {
 namespace {
@@ -13,6 +15,32 @@ constexpr double first_order = 0.2;
 constexpr int newton_limit = 60;
 /// Values of two contacts that differ by so little are equal.
 constexpr double parting_tie = 1e-15;
+/// Straight pieces of edges in a row.
+constexpr int run_limit = 64;
+
+/// From a vertex or the end of a piece, straight pieces of edges lead one after the other to the
+/// point. In a direction across them all of them support: no climb leads from one end to the other.
+bool leads_straight(const ContactGeometry& geometry, const Contact& from, const dvec3& x) {
+  std::vector<Contact> starts;
+  if (from.kind == SourceKind::edge && (from.u == 0 || from.u == 1)) starts.push_back(from);
+  for (const ContactExit& exit : exits(geometry, from)) {
+    const Contact at = at_exit(from, exit);
+    if (exit.kind == ContactExit::Kind::face || at.u != from.u) continue;
+    const std::optional<Contact> next = beyond(geometry, from, exit);
+    if (next && next->kind == SourceKind::edge) starts.push_back(*next);
+  }
+  return std::any_of(starts.begin(), starts.end(), [&](const Contact& start) {
+    std::optional<Contact> at = start;
+    for (int k = 0; k < run_limit && at && at->kind == SourceKind::edge; ++k) {
+      if (!is_straight(geometry.curve(*at))) return false;
+      const int end = at->u < 0.5 ? 1 : 0;
+      at->u = end;
+      if (glm::distance(geometry.point(*at), x) < branch_distance(geometry)) return true;
+      at = beyond(geometry, *at, {ContactExit::Kind::end, end});
+    }
+    return false;
+  });
+}
 
 }  // namespace
 
@@ -41,7 +69,11 @@ bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighti
   const auto leads = [&](const Sighting& from, const Sighting& to) {
     if (is_near(geometry, from, to)) return true;
     const std::optional<Contact> c = climbed(geometry, from.contact, to.n);
-    return c && glm::distance(geometry.point(*c), to.x) < same;
+    if (!c) return false;
+    const dvec3 x = geometry.point(*c);
+    if (glm::distance(x, to.x) < same) return true;
+    return std::abs(glm::dot(to.x - x, to.n)) <= geometry.tie() &&
+           leads_straight(geometry, *c, to.x);
   };
   return leads(a, b) && leads(b, a);
 }
