@@ -18,61 +18,69 @@ namespace {
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 int to_int(std::size_t n) { return static_cast<int>(n); }
 
-/// A side of a polygon: its ends and its middle.
-struct PolygonSide {
-  dvec3 from, to, middle;
-};
+/// Of a side's length: halves are known by their ends up to rounding.
+constexpr double half_side_tolerance = 1e-9;
 
-/// Polygons with a number of sides each, that meet along sides or parts of them.
+/// Rounds in which sides are divided: as many as levels that meet, at most.
+constexpr int round_limit = 64;
+
+/// Sides of polygons that meet along whole sides, or of which some meet the parts of others.
+///
+/// Polygons have ranks: 0 for those that are exact. Where an exact side meets parts of others, its
+/// middle is a corner of theirs, and so are those of the halves that meet parts. What other sides
+/// meet may be elsewhere: it is found by going along unjoined sides from the one end to the other.
 class SideGraph {
  public:
-  /// Polygon i has the sides k i .. k i + k - 1.
-  SideGraph(const std::vector<PolygonSide>& sides, int sides_per_polygon) : k_(sides_per_polygon) {
-    Box box;
-    for (const PolygonSide& side : sides) box.include(side.from);
-    const double tolerance = join_tolerance(box);
-    PointGrid grid(box, tolerance);
-    int count = 0;
-    const auto node = [&](const dvec3& p) {
-      int found = -1;
-      grid.visit_near(p, [&](int n) { found = found < 0 ? n : std::min(found, n); });
-      if (found < 0) grid.insert(p, found = count++);
-      return found;
-    };
-    edge_of_.reserve(sides.size());
-    for (const PolygonSide& side : sides) {
-      const int a = node(side.from);
-      const int b = node(side.to);
-      const auto [entry, is_new] = numbers_.try_emplace(key(a, b), to_int(edges_.size()));
-      if (is_new) edges_.push_back({a, b, {}});
-      edges_[to_size(entry->second)].sides.push_back(to_int(edge_of_.size()));
-      edge_of_.push_back(entry->second);
-    }
+  /// Polygon i has the sides k i .. k i + k - 1. Sides of no length take no part.
+  SideGraph(std::vector<BezierCurve> curves, std::vector<int> ranks, int sides_per_polygon)
+      : k_(sides_per_polygon),
+        curves_(std::move(curves)),
+        ranks_(std::move(ranks)),
+        box_(box_of(curves_)),
+        grid_(box_, join_tolerance(box_)) {
+    edge_of_.reserve(curves_.size());
+    starts_.reserve(curves_.size());
+    for (int side = 0; side < to_int(curves_.size()); ++side) add_side(side);
     split_.assign(edges_.size(), false);
     fixed_.assign(edges_.size(), false);
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      int middle = -1;
-      grid.visit_near(sides[to_size(edges_[e].sides.front())].middle, [&](int n) { middle = n; });
-      if (middle < 0) continue;
-      const auto first = numbers_.find(key(edges_[e].a, middle));
-      const auto second = numbers_.find(key(middle, edges_[e].b));
-      if (first == numbers_.end() || second == numbers_.end()) continue;
-      split_[e] = true;
-      for (const std::size_t fixed : {e, to_size(first->second), to_size(second->second)}) {
-        fixed_[fixed] = true;
+  }
+
+  /// Calls visit(side, other side, reversed) for sides that meet whole, one of each edge with all
+  /// others: one of the least rank.
+  template <class Visit>
+  void visit_joined(const Visit& visit) const {
+    for (const EdgeNode& edge : edges_) {
+      const int first = leading_side(edge);
+      for (const int other : edge.sides) {
+        if (other != first) visit(first, other, starts_[to_size(first)] != starts_[to_size(other)]);
       }
     }
   }
 
-  /// Calls visit(side, other side) for those that meet whole, in twos.
-  template <class Visit>
-  void visit_pairs(const Visit& visit) const {
-    for (const EdgeNode& edge : edges_) {
-      if (edge.sides.size() == 2) visit(edge.sides[0], edge.sides[1]);
+  /// Marks the sides that meet parts of others to be split.
+  void find_splits() {
+    for (int e = 0; e < to_int(edges_.size()); ++e) {
+      const EdgeNode& edge = edges_[to_size(e)];
+      passed_.clear();
+      if (ranks_[to_size(leading_side(edge) / k_)] == 0) {
+        split_at_middle(e);
+      } else if (edge.sides.size() == 1) {
+        split_along_others(e);
+      }
     }
   }
 
-  bool is_split(int side) const { return split_[to_size(edge_of_[to_size(side)])]; }
+  bool is_split(int side) const {
+    const int e = edge_of_[to_size(side)];
+    return e >= 0 && split_[to_size(e)];
+  }
+
+  /// The corner of others, if there is one, at which a side is split.
+  const dvec3* corner_within(int side) const {
+    const int e = edge_of_[to_size(side)];
+    const int n = e < 0 ? -1 : edges_[to_size(e)].middle;
+    return n < 0 ? nullptr : &positions_[to_size(n)];
+  }
 
   /// Splits further sides so that all polygons have an even number of such.
   void make_even() {
@@ -86,11 +94,130 @@ class SideGraph {
   struct EdgeNode {
     int a, b;
     std::vector<int> sides;
+    int middle = -1;  ///< the node at which it is split
   };
+
+  static Box box_of(const std::vector<BezierCurve>& curves) {
+    Box box;
+    for (const BezierCurve& curve : curves) box.include(euclidean(curve.points.front()));
+    return box;
+  }
 
   static std::uint64_t key(int a, int b) {
     const auto [low, high] = std::minmax(a, b);
     return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
+  }
+
+  int find_node(const dvec3& p) const {
+    int found = -1;
+    grid_.visit_near(p, [&](int n) { found = found < 0 ? n : std::min(found, n); });
+    return found;
+  }
+
+  int node(const dvec3& p) {
+    int n = find_node(p);
+    if (n < 0) {
+      n = to_int(positions_.size());
+      grid_.insert(p, n);
+      positions_.push_back(p);
+      edges_at_.emplace_back();
+    }
+    return n;
+  }
+
+  void add_side(int side) {
+    const BezierCurve& curve = curves_[to_size(side)];
+    const int a = node(euclidean(curve.points.front()));
+    const int b = node(euclidean(curve.points.back()));
+    starts_.push_back(a);
+    edge_of_.push_back(-1);
+    if (a == b) return;
+    const auto [entry, is_new] = numbers_.try_emplace(key(a, b), to_int(edges_.size()));
+    if (is_new) {
+      edges_.push_back({a, b, {}});
+      edges_at_[to_size(a)].push_back(entry->second);
+      edges_at_[to_size(b)].push_back(entry->second);
+    }
+    edges_[to_size(entry->second)].sides.push_back(side);
+    edge_of_.back() = entry->second;
+  }
+
+  int leading_side(const EdgeNode& edge) const {
+    return *std::min_element(edge.sides.begin(), edge.sides.end(), [&](int a, int b) {
+      return ranks_[to_size(a / k_)] < ranks_[to_size(b / k_)];
+    });
+  }
+
+  void split(int e, int middle) {
+    split_[to_size(e)] = true;
+    edges_[to_size(e)].middle = middle;
+    fixed_[to_size(e)] = true;
+    for (const int f : passed_) fixed_[to_size(f)] = true;
+  }
+
+  void split_at_middle(int e) {
+    const int side = leading_side(edges_[to_size(e)]);
+    const EdgeNode& edge = edges_[to_size(e)];
+    const bool forward = starts_[to_size(side)] == edge.a;
+    const int from = forward ? edge.a : edge.b;
+    const int to = forward ? edge.b : edge.a;
+    const int middle = find_node(point(curves_[to_size(side)], 0.5));
+    if (middle < 0 || middle == from || middle == to) return;
+    if (are_connected(side, {0, 0.5}, from, middle) && are_connected(side, {0.5, 1}, middle, to)) {
+      split(e, middle);
+    }
+  }
+
+  /// Other sides lie along this part of an exact one, between two nodes, one after the other.
+  bool are_connected(int side, Interval part, int from, int to) {
+    const auto edge = numbers_.find(key(from, to));
+    if (edge != numbers_.end()) {
+      passed_.push_back(edge->second);
+      return true;
+    }
+    const double t = 0.5 * (part.lower + part.upper);
+    const int middle = find_node(point(curves_[to_size(side)], t));
+    return middle >= 0 && middle != from && middle != to &&
+           are_connected(side, {part.lower, t}, from, middle) &&
+           are_connected(side, {t, part.upper}, middle, to);
+  }
+
+  /// Goes from end to end along unjoined sides of others that stay near.
+  void split_along_others(int e) {
+    const EdgeNode& edge = edges_[to_size(e)];
+    const dvec3& a = positions_[to_size(edge.a)];
+    const dvec3& b = positions_[to_size(edge.b)];
+    const dvec3 middle = point(curves_[to_size(edge.sides.front())], 0.5);
+    const double length = glm::distance(a, b);
+    std::unordered_map<int, int> came_along;  // node -> edge
+    std::queue<int> next;
+    next.push(edge.a);
+    came_along.emplace(edge.a, -1);
+    while (!next.empty() && came_along.count(edge.b) == 0) {
+      const int n = next.front();
+      next.pop();
+      for (const int f : edges_at_[to_size(n)]) {
+        const EdgeNode& other = edges_[to_size(f)];
+        if (other.sides.size() != 1 || other.sides.front() / k_ == edge.sides.front() / k_) continue;
+        const int end = other.a == n ? other.b : other.a;
+        const double distance = glm::distance(positions_[to_size(end)], middle);
+        if (distance > reach * length || !came_along.emplace(end, f).second) continue;
+        next.push(end);
+      }
+    }
+    if (came_along.count(edge.b) == 0) return;
+    int nearest = -1;
+    double least = middle_reach * length;
+    for (int n = edge.b; n != edge.a;) {
+      const int f = came_along.at(n);
+      passed_.push_back(f);
+      n = edges_[to_size(f)].a == n ? edges_[to_size(f)].b : edges_[to_size(f)].a;
+      const double distance = glm::distance(positions_[to_size(n)], middle);
+      if (n == edge.a || distance > least) continue;
+      least = distance;
+      nearest = n;
+    }
+    if (nearest >= 0) split(e, nearest);
   }
 
   bool is_odd(int polygon) const {
@@ -110,6 +237,7 @@ class SideGraph {
       next.pop();
       for (int i = 0; i < k_; ++i) {
         const int e = edge_of_[to_size(k_ * p + i)];
+        if (e < 0) continue;
         const EdgeNode& edge = edges_[to_size(e)];
         if (fixed_[to_size(e)] || edge.sides.size() > 2) continue;
         if (edge.sides.size() == 1) {
@@ -133,12 +261,25 @@ class SideGraph {
     }
   }
 
+  /// How far from the middle of a side, in its lengths, the corners are that others have along it,
+  /// and the one at which it is split. (On a half circle the ends are 0.71 away.)
+  static constexpr double reach = 0.75;
+  static constexpr double middle_reach = 0.25;
+
   int k_;
+  std::vector<BezierCurve> curves_;
+  std::vector<int> ranks_;  // per polygon
+  Box box_;
+  PointGrid grid_;
+  std::vector<dvec3> positions_;            // of nodes
+  std::vector<std::vector<int>> edges_at_;  // per node
   std::unordered_map<std::uint64_t, int> numbers_;
   std::vector<EdgeNode> edges_;
-  std::vector<int> edge_of_;  // per side
+  std::vector<int> edge_of_;  // per side, -1 for those of no length
+  std::vector<int> starts_;   // per side, its first node
   std::vector<bool> split_;   // per edge
-  std::vector<bool> fixed_;   // that are split by neighbours, and their halves
+  std::vector<bool> fixed_;   // that are split by neighbours, and what these have there
+  std::vector<int> passed_;   // edges along the one that is looked at
 };
 
 std::size_t index(Side side) { return static_cast<std::size_t>(side); }
@@ -214,7 +355,7 @@ void split_quad(const SurfacePatch& whole, const std::array<bool, 4>& split,
   }
 }
 
-/// Of a quartic triangle: corners by barycentric coordinates.
+/// Of a triangle: corners by barycentric coordinates.
 struct SubTriangle {
   std::array<dvec3, 3> corners;
   std::array<bool, 3> smooth = {};
@@ -247,9 +388,8 @@ std::vector<SubTriangle> bisected(const std::array<bool, 3>& smooth,
           {{c[k], m[l], c[n]}, {true, smooth[l], smooth[n]}}};
 }
 
-void add_quads(const SurfaceTriangle& triangle, const SubTriangle& part,
-               std::vector<SurfacePatch>& result) {
-  const auto& c = part.corners;
+void add_quads(const SurfaceTriangle& triangle, std::vector<SurfacePatch>& result) {
+  const std::array<dvec3, 3> c = {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)};
   const dvec3 centre = (c[0] + c[1] + c[2]) / 3.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t before = (k + 2) % 3;
@@ -259,113 +399,161 @@ void add_quads(const SurfaceTriangle& triangle, const SubTriangle& part,
     quad.bezier = quad_of_triangle(triangle.points, {c[k], to_last, to_next, centre});
     quad.cage_face = triangle.cage_face;
     quad.exact = triangle.exact;
-    quad.smooth = {part.smooth[before], true, part.smooth[k], true};
+    quad.smooth = {triangle.smooth[before], true, triangle.smooth[k], true};
     result.push_back(std::move(quad));
   }
 }
 
-/// Gives a bicubic patch that is not exact the side of another, numbered 4 * patch + side.
-void take_side(std::vector<SurfacePatch>& patches, int side, int from) {
-  SurfacePatch& patch = patches[to_size(side / 4)];
-  if (patch.exact) return;
-  const BezierCurve other = border(patches[to_size(from / 4)].bezier, all_sides[to_size(from % 4)]);
-  const Side own = all_sides[to_size(side % 4)];
-  if (patch.bezier.degree_u != 3) return;  // its sides are those of its neighbours
-  const bool along = along_v(own);
-  const int fixed = at_upper_end(own) ? 3 : 0;
-  const dvec3 start = dvec3(along ? patch.bezier.at(fixed, 0) : patch.bezier.at(0, fixed));
-  const bool is_reversed = glm::distance(start, dvec3(other.points.back())) <
-                           glm::distance(start, dvec3(other.points.front()));
-  for (int i = 0; i < 4; ++i) {
-    dvec4& p = along ? patch.bezier.at(fixed, i) : patch.bezier.at(i, fixed);
-    p = other.points[to_size(is_reversed ? 3 - i : i)];
-  }
+/// @name What rounds need of polygons
+/// @{
+constexpr int side_count(const SurfacePatch&) { return 4; }
+constexpr int side_count(const SurfaceTriangle&) { return 3; }
+
+BezierCurve side_curve(const SurfacePatch& patch, int side) {
+  return border(patch.bezier, all_sides[to_size(side)]);
 }
 
-/// The points of a triangle's sides.
-std::array<std::vector<std::size_t>, 3> side_points(const SurfaceTriangle& triangle) {
-  const std::size_t n = triangle_degree_of(triangle.points.size());
-  std::array<std::vector<std::size_t>, 3> sides;
+/// Where a triangle of a degree has the points of a side.
+std::vector<std::size_t> side_points(std::size_t n, int side) {
+  std::vector<std::size_t> points;
   for (std::size_t k = 0; k <= n; ++k) {
-    sides[0].push_back(triangle_point(n, k, 0));
-    sides[1].push_back(triangle_point(n, n - k, k));
-    sides[2].push_back(triangle_point(n, 0, n - k));
+    points.push_back(side == 0   ? triangle_point(n, k, 0)
+                     : side == 1 ? triangle_point(n, n - k, k)
+                                 : triangle_point(n, 0, n - k));
   }
-  return sides;
+  return points;
 }
 
-/// Gives a triangle that is not exact the side of another, numbered 3 * triangle + side.
-void take_side(std::vector<SurfaceTriangle>& triangles, int side, int from) {
-  SurfaceTriangle& triangle = triangles[to_size(side / 3)];
-  if (triangle.exact) return;
-  const std::vector<dvec3>& other = triangles[to_size(from / 3)].points;
-  if (other.size() != triangle.points.size()) return;  // its sides are those of its neighbours
-  const auto all_points = side_points(triangle);
-  const auto& own_points = all_points[to_size(side % 3)];
-  const auto& points = all_points[to_size(from % 3)];
-  const dvec3 start = triangle.points[own_points.front()];
-  const bool reversed =
-      glm::distance(start, other[points.back()]) < glm::distance(start, other[points.front()]);
-  const std::size_t n = points.size() - 1;
-  for (std::size_t i = 0; i <= n; ++i) {
-    triangle.points[own_points[i]] = other[points[reversed ? n - i : i]];
+BezierCurve side_curve(const SurfaceTriangle& triangle, int side) {
+  BezierCurve curve;
+  for (const std::size_t i : side_points(triangle_degree_of(triangle.points.size()), side)) {
+    curve.points.push_back(homogeneous(triangle.points[i]));
   }
+  return curve;
+}
+
+void set_side(SurfacePatch& patch, int number, BezierCurve curve) {
+  BezierPatch& bezier = patch.bezier;
+  const Side side = all_sides[to_size(number)];
+  const bool along = along_v(side);
+  const int degree = std::max(along ? bezier.degree_v : bezier.degree_u, curve.degree());
+  if (curve.degree() < degree) curve = elevated(curve, degree);
+  bezier = elevated(bezier, along ? bezier.degree_u : degree, along ? degree : bezier.degree_v);
+  const int fixed = !at_upper_end(side) ? 0 : along ? bezier.degree_u : bezier.degree_v;
+  for (int i = 0; i <= degree; ++i) {
+    (along ? bezier.at(fixed, i) : bezier.at(i, fixed)) = curve.points[to_size(i)];
+  }
+}
+
+void set_side(SurfaceTriangle& triangle, int side, BezierCurve curve) {
+  const auto degree = [&] { return to_int(triangle_degree_of(triangle.points.size())); };
+  while (degree() < curve.degree()) triangle.points = elevated_triangle(triangle.points);
+  if (curve.degree() < degree()) curve = elevated(curve, degree());
+  const std::vector<std::size_t> points = side_points(to_size(degree()), side);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    triangle.points[points[i]] = dvec3(curve.points[i]);
+  }
+}
+
+void divide(const SurfacePatch& patch, const std::array<bool, 4>& split,
+            std::vector<SurfacePatch>& result) {
+  split_quad(patch, split, result);
+}
+
+void divide(const SurfaceTriangle& triangle, const std::array<bool, 4>& split,
+            std::vector<SurfaceTriangle>& result) {
+  for (const SubTriangle& part : bisected(triangle.smooth, {split[0], split[1], split[2]})) {
+    SurfaceTriangle piece = triangle;
+    piece.points = sub_triangle(triangle.points, part.corners);
+    piece.smooth = part.smooth;
+    result.push_back(std::move(piece));
+  }
+}
+/// @}
+
+template <class Polygon>
+int rank_of(const Polygon& polygon) {
+  return polygon.exact ? 0 : polygon.may_touch ? 1 : 2;
+}
+
+/// Gives the halves of a side, which parts of a polygon have, to a corner of others.
+template <class Polygon>
+void move_middle(const BezierCurve& whole, const dvec3& corner, Polygon* first, Polygon* last) {
+  const dvec3 middle = point(whole, 0.5);
+  const double tolerance = half_side_tolerance * glm::distance(point(whole, 0), point(whole, 1));
+  for (Polygon* part = first; part != last; ++part) {
+    for (int side = 0; side < side_count(*part); ++side) {
+      const BezierCurve curve = side_curve(*part, side);
+      for (const dvec4& end : {whole.points.front(), whole.points.back()}) {
+        const auto is_half = [&](const dvec4& a, const dvec4& b) {
+          return same_point(euclidean(a), euclidean(end), tolerance) &&
+                 same_point(euclidean(b), middle, tolerance);
+        };
+        // Straight until the others' sides are known to be whole.
+        if (is_half(curve.points.front(), curve.points.back())) {
+          set_side(*part, side, {{end, homogeneous(corner)}});
+        } else if (is_half(curve.points.back(), curve.points.front())) {
+          set_side(*part, side, {{homogeneous(corner), end}});
+        }
+      }
+    }
+  }
+}
+
+/// Divides polygons until whole sides meet.
+template <class Polygon>
+std::vector<Polygon> divided(std::vector<Polygon> polygons, int k) {
+  for (int round = 0; round < round_limit && !polygons.empty(); ++round) {
+    std::vector<BezierCurve> curves;
+    std::vector<int> ranks;
+    curves.reserve(to_size(k) * polygons.size());
+    ranks.reserve(polygons.size());
+    for (const Polygon& polygon : polygons) {
+      ranks.push_back(rank_of(polygon));
+      for (int side = 0; side < k; ++side) curves.push_back(side_curve(polygon, side));
+    }
+    SideGraph graph(std::move(curves), std::move(ranks), k);
+    graph.visit_joined([&](int from, int side, bool reversed) {
+      Polygon& polygon = polygons[to_size(side / k)];
+      if (polygon.exact) return;
+      BezierCurve curve = side_curve(polygons[to_size(from / k)], from % k);
+      set_side(polygon, side % k, reversed ? taut::reversed(curve) : std::move(curve));
+    });
+    graph.find_splits();
+    if (k == 4) graph.make_even();
+    std::vector<Polygon> next;
+    next.reserve(polygons.size());
+    for (int p = 0; p < to_int(polygons.size()); ++p) {
+      const Polygon& whole = polygons[to_size(p)];
+      std::array<bool, 4> split = {};
+      for (int i = 0; i < k; ++i) split[to_size(i)] = graph.is_split(k * p + i);
+      const std::size_t first = next.size();
+      divide(whole, split, next);
+      if (whole.exact || next.size() == first + 1) continue;
+      for (int i = 0; i < k; ++i) {
+        const dvec3* const corner = graph.corner_within(k * p + i);
+        if (corner == nullptr) continue;
+        move_middle(side_curve(whole, i), *corner, next.data() + first, next.data() + next.size());
+      }
+    }
+    const bool done = next.size() == polygons.size();
+    polygons = std::move(next);
+    if (done) break;
+  }
+  return polygons;
 }
 
 }  // namespace
 
 std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches) {
-  std::vector<PolygonSide> sides;
-  sides.reserve(4 * patches.size());
-  for (const SurfacePatch& patch : patches) {
-    for (const Side side : all_sides) {
-      const auto at = [&](double t) {
-        const dvec2 uv = on_side(side, t);
-        return point(patch.bezier, uv.x, uv.y);
-      };
-      sides.push_back({at(0), at(1), at(0.5)});
-    }
-  }
-  SideGraph graph(sides, 4);
-  graph.visit_pairs([&](int a, int b) {
-    const bool other_way = !patches[to_size(a / 4)].exact && patches[to_size(b / 4)].exact;
-    take_side(patches, other_way ? a : b, other_way ? b : a);
-  });
-  graph.make_even();
-  std::vector<SurfacePatch> result;
-  result.reserve(patches.size());
-  for (int p = 0; p < to_int(patches.size()); ++p) {
-    std::array<bool, 4> split = {};
-    for (int i = 0; i < 4; ++i) split[to_size(i)] = graph.is_split(4 * p + i);
-    split_quad(patches[to_size(p)], split, result);
-  }
-  return result;
+  return divided(std::move(patches), 4);
 }
 
 std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles) {
-  std::vector<PolygonSide> sides;
-  sides.reserve(3 * triangles.size());
-  for (const SurfaceTriangle& t : triangles) {
-    for (const auto& s : side_points(t)) {
-      BezierCurve side;
-      for (const std::size_t i : s) side.points.push_back(homogeneous(t.points[i]));
-      sides.push_back({t.points[s.front()], t.points[s.back()], point(side, 0.5)});
-    }
-  }
-  const SideGraph graph(sides, 3);
-  graph.visit_pairs([&](int a, int b) {
-    const bool other_way = !triangles[to_size(a / 3)].exact && triangles[to_size(b / 3)].exact;
-    take_side(triangles, other_way ? a : b, other_way ? b : a);
-  });
   std::vector<SurfacePatch> result;
   result.reserve(3 * triangles.size());
-  for (int t = 0; t < to_int(triangles.size()); ++t) {
-    const SurfaceTriangle& triangle = triangles[to_size(t)];
-    const std::array<bool, 3> split = {graph.is_split(3 * t), graph.is_split(3 * t + 1),
-                                       graph.is_split(3 * t + 2)};
-    for (const SubTriangle& part : bisected(triangle.smooth, split)) {
-      add_quads(triangle, part, result);
-    }
+  for (const SurfaceTriangle& triangle : divided(std::move(triangles), 3)) {
+    add_quads(triangle, result);
   }
   return result;
 }

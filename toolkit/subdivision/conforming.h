@@ -13,7 +13,8 @@ struct SurfacePatch {
   int cage_face = 0;
   /// Indexed by Side: the surface goes on smoothly there.
   std::array<bool, 4> smooth = {};
-  bool exact = true;  ///< otherwise it stands for the surface there
+  bool exact = true;      ///< otherwise it stands for the surface there
+  bool may_touch = true;  ///< the hull
 };
 
 /// A triangle of it, quartic or of degree six; points as CellPatch has them, sides from each corner
@@ -23,6 +24,7 @@ struct SurfaceTriangle {
   int cage_face = 0;
   std::array<bool, 3> smooth = {};
   bool exact = true;
+  bool may_touch = true;
 };
 
 /// @name Patches that meet along whole sides

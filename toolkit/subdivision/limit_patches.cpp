@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
 
 #include "taut/core/tolerances.h"
@@ -124,11 +125,12 @@ class Refinement {
  private:
   void take_regular();
   void sort_out();
+  void emit_stand_ins();
   void finish_or_refine(const std::vector<std::size_t>& region);
   void smooth_fan(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, double enough) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
-  void emit(std::size_t cell);
+  void emit(std::size_t cell, bool may_touch = true);
   void count_irregular();
   void go_down();
   LimitSurface finish();
@@ -142,6 +144,7 @@ class Refinement {
   TouchTest touch_;
   std::vector<Surroundings> surroundings_;  // per region
   std::vector<std::size_t> refined_;        // cells that go down
+  std::vector<std::size_t> stand_ins_;      // caps that do not touch
   LimitSurface result_;
   std::vector<SurfaceTriangle> triangles_;
 };
@@ -153,6 +156,7 @@ LimitSurface Refinement::run() {
     take_regular();
     if (depth_ == 0) count_irregular();
     sort_out();
+    emit_stand_ins();
     result_.levels = depth_;
     if (refined_.empty()) break;
     go_down();
@@ -160,7 +164,7 @@ LimitSurface Refinement::run() {
   return finish();
 }
 
-void Refinement::emit(std::size_t cell) {
+void Refinement::emit(std::size_t cell, bool may_touch) {
   CellPatch& patch = patches_[cell];
   const int face = level_.cells()[cell].cage_face;
   if (is_quad(patch)) {
@@ -170,6 +174,7 @@ void Refinement::emit(std::size_t cell) {
     for (const dvec3& p : patch.points) surface.bezier.points.push_back(homogeneous(p));
     surface.cage_face = face;
     surface.exact = patch.kind == CellPatch::Kind::regular;
+    surface.may_touch = may_touch;
     // Sides run v = 0, u = 1, v = 1, u = 0.
     surface.smooth = {patch.smooth[3], patch.smooth[1], patch.smooth[0], patch.smooth[2]};
     result_.patches.push_back(std::move(surface));
@@ -177,7 +182,8 @@ void Refinement::emit(std::size_t cell) {
     triangles_.push_back({std::move(patch.points),
                           face,
                           {patch.smooth[0], patch.smooth[1], patch.smooth[2]},
-                          patch.kind == CellPatch::Kind::regular});
+                          patch.kind == CellPatch::Kind::regular,
+                          may_touch});
   }
 }
 
@@ -208,9 +214,10 @@ void Refinement::count_irregular() {
   });
 }
 
-/// Decides for all irregular cells: end caps stand for those that do not touch.
+/// Decides for all irregular cells that may touch.
 void Refinement::sort_out() {
   refined_.clear();
+  stand_ins_.clear();
   std::vector<std::size_t> touching;
   std::vector<dvec3> points;
   for (std::size_t c = 0; c < patches_.size(); ++c) {
@@ -220,7 +227,7 @@ void Refinement::sort_out() {
       level_.enclosure(c, points);
       points.insert(points.end(), patch.points.begin(), patch.points.end());
       if (!touch_.may_touch(points)) {
-        emit(c);
+        stand_ins_.push_back(c);
         continue;
       }
     }
@@ -237,6 +244,27 @@ void Refinement::sort_out() {
     if (k + 1 < order.size() && set[order[k + 1]] == set[order[k]]) continue;
     finish_or_refine(region);
     region.clear();
+  }
+}
+
+/// End caps stand for cells that do not touch, but for those at a vertex of one that goes down: they
+/// go with it, so that no side meets more than halves. (Else those between the cells around an
+/// extraordinary vertex would meet ever smaller ones towards it, and not where the caps have them.)
+void Refinement::emit_stand_ins() {
+  std::unordered_map<int, int> region_at;  // vertex -> region
+  for (const std::size_t c : refined_) {
+    for (const int v : level_.vertices(c)) region_at.emplace(v, level_.cells()[c].region);
+  }
+  for (const std::size_t c : stand_ins_) {
+    const std::span<const int> own = level_.vertices(c);
+    const auto v = std::find_if(own.begin(), own.end(),
+                                [&](int vertex) { return region_at.count(vertex) > 0; });
+    if (v == own.end()) {
+      emit(c, false);
+    } else {
+      level_.cells()[c].region = region_at.at(*v);
+      refined_.push_back(c);
+    }
   }
 }
 
