@@ -111,7 +111,7 @@ std::vector<dvec3> turned(const CellPatch& patch, std::size_t corner, bool back 
 class Refinement {
  public:
   Refinement(const ControlCage& cage, const LimitOptions& options)
-      : options_(options), level_(cage) {
+      : options_(options), level_(cage), middles_(to_int(cage.points.size())) {
     Box box;
     for (const dvec3& p : cage.points) box.include(p);
     tolerance_ = options.accuracy * diagonal(box);
@@ -137,6 +137,7 @@ class Refinement {
 
   const LimitOptions& options_;
   CageLevel level_;
+  EdgeMiddles middles_;
   double tolerance_ = 0;
   double least_side_ = 0;
   int depth_ = 0;
@@ -414,7 +415,7 @@ void Refinement::go_down() {
     region = n;
   }
   surroundings_ = std::move(left);
-  level_ = level_.refined(refined_);
+  level_ = level_.refined(refined_, middles_);
   ++depth_;
 }
 
