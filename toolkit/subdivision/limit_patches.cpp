@@ -168,12 +168,16 @@ LimitSurface Refinement::run() {
 void Refinement::emit(std::size_t cell, bool may_touch) {
   CellPatch& patch = patches_[cell];
   const int face = level_.cells()[cell].cage_face;
+  std::array<int, 4> v = {};
+  std::transform(level_.vertices(cell).begin(), level_.vertices(cell).end(), v.begin(),
+                 [&](int vertex) { return level_.number(vertex); });
   if (is_quad(patch)) {
     SurfacePatch surface;
     surface.bezier.degree_u = surface.bezier.degree_v = patch.degree;
     surface.bezier.points.reserve(patch.points.size());
     for (const dvec3& p : patch.points) surface.bezier.points.push_back(homogeneous(p));
     surface.cage_face = face;
+    surface.vertices = {v[0], v[3], v[1], v[2]};
     surface.exact = patch.kind == CellPatch::Kind::regular;
     surface.may_touch = may_touch;
     // Sides run v = 0, u = 1, v = 1, u = 0.
@@ -182,6 +186,7 @@ void Refinement::emit(std::size_t cell, bool may_touch) {
   } else {
     triangles_.push_back({std::move(patch.points),
                           face,
+                          {v[0], v[1], v[2]},
                           {patch.smooth[0], patch.smooth[1], patch.smooth[2]},
                           patch.kind == CellPatch::Kind::regular,
                           may_touch});
@@ -248,8 +253,8 @@ void Refinement::sort_out() {
   }
 }
 
-/// End caps stand for cells that do not touch, but for those at a vertex of one that goes down: they
-/// go with it, so that no side meets more than halves. (Else those between the cells around an
+/// End caps stand for cells that do not touch, but for those at a vertex of one that goes down:
+/// they go with it, so that no side meets more than halves. (Else those between the cells around an
 /// extraordinary vertex would meet ever smaller ones towards it, and not where the caps have them.)
 void Refinement::emit_stand_ins() {
   std::unordered_map<int, int> region_at;  // vertex -> region
@@ -421,7 +426,8 @@ void Refinement::go_down() {
 
 LimitSurface Refinement::finish() {
   std::vector<SurfacePatch>& patches = result_.patches;
-  patches = triangles_.empty() ? conforming(std::move(patches)) : conforming(std::move(triangles_));
+  patches = triangles_.empty() ? conforming(std::move(patches), middles_)
+                               : conforming(std::move(triangles_), middles_);
   std::stable_sort(
       patches.begin(), patches.end(),
       [](const SurfacePatch& a, const SurfacePatch& b) { return a.cage_face < b.cage_face; });
