@@ -168,8 +168,10 @@ std::vector<int> child_numbers(const Far::TopologyLevel& level, int child_count,
     const auto edges = level.GetFaceEdges(f);
     for (int k = 0; k < edges.size(); ++k) {
       const auto ends = level.GetEdgeVertices(edges[k]);
-      result[to_size(level.GetEdgeChildVertex(edges[k]))] =
-          middles.add(numbers[to_size(ends[0])], numbers[to_size(ends[1])]);
+      const int a = numbers[to_size(ends[0])];
+      const int b = numbers[to_size(ends[1])];
+      int& middle = result[to_size(level.GetEdgeChildVertex(edges[k]))];
+      if (middle < 0) middle = a == b ? middles.add_vertex() : middles.add(a, b);
     }
     if (scheme == CageScheme::loop) continue;
     result[to_size(level.GetFaceChildVertex(f))] = middles.add_vertex();
