@@ -302,9 +302,12 @@ void divide(const SurfaceTriangle& whole, const std::array<bool, 4>& split, Edge
   }
 }
 
-void add_quads(const SurfaceTriangle& triangle, std::vector<SurfacePatch>& result) {
+void add_quads(const SurfaceTriangle& triangle, EdgeMiddles& middles,
+               std::vector<SurfacePatch>& result) {
   const std::array<dvec3, 3> c = {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)};
   const dvec3 centre = (c[0] + c[1] + c[2]) / 3.0;
+  const std::array<int, 3>& v = triangle.vertices;
+  const int inner = middles.add_vertex();
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t before = (k + 2) % 3;
     const dvec3 to_next = 0.5 * (c[k] + c[(k + 1) % 3]);
@@ -312,6 +315,7 @@ void add_quads(const SurfaceTriangle& triangle, std::vector<SurfacePatch>& resul
     SurfacePatch quad;
     quad.bezier = quad_of_triangle(triangle.points, {c[k], to_last, to_next, centre});
     quad.cage_face = triangle.cage_face;
+    quad.vertices = {v[k], middles.add(v[k], v[before]), middles.add(v[k], v[(k + 1) % 3]), inner};
     quad.exact = triangle.exact;
     quad.smooth = {triangle.smooth[before], true, triangle.smooth[k], true};
     result.push_back(std::move(quad));
@@ -381,8 +385,8 @@ void set_side(SurfaceTriangle& triangle, int side, BezierCurve curve) {
 template <class Polygon>
 class Division {
  public:
-  Division(std::vector<Polygon> polygons, EdgeMiddles middles)
-      : polygons_(std::move(polygons)), middles_(std::move(middles)) {}
+  Division(std::vector<Polygon> polygons, EdgeMiddles& middles)
+      : polygons_(std::move(polygons)), middles_(middles) {}
 
   /// Divides polygons until whole sides meet.
   std::vector<Polygon> run() {
@@ -500,21 +504,21 @@ class Division {
   };
 
   std::vector<Polygon> polygons_;
-  EdgeMiddles middles_;
+  EdgeMiddles& middles_;
   std::vector<Place> places_;  // per vertex
 };
 
 }  // namespace
 
 std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches, EdgeMiddles middles) {
-  return Division<SurfacePatch>(std::move(patches), std::move(middles)).run();
+  return Division<SurfacePatch>(std::move(patches), middles).run();
 }
 
 std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, EdgeMiddles middles) {
   std::vector<SurfacePatch> result;
   for (const SurfaceTriangle& triangle :
-       Division<SurfaceTriangle>(std::move(triangles), std::move(middles)).run()) {
-    add_quads(triangle, result);
+       Division<SurfaceTriangle>(std::move(triangles), middles).run()) {
+    add_quads(triangle, middles, result);
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "taut/core/tolerances.h"
@@ -64,6 +65,8 @@ bool is_quad(const CellPatch& patch) {
   const std::size_t n = to_size(patch.degree) + 1;
   return patch.points.size() == n * n;
 }
+
+bool is_irregular(const CellPatch& patch) { return patch.kind != CellPatch::Kind::regular; }
 
 /// In their order; of a triangle three.
 std::vector<dvec3> corners(const CellPatch& patch) {
@@ -125,7 +128,7 @@ class Refinement {
  private:
   void take_regular();
   void sort_out();
-  void emit_stand_ins();
+  void emit_rest();
   void finish_or_refine(const std::vector<std::size_t>& region);
   void smooth_fan(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, double enough) const;
@@ -157,7 +160,7 @@ LimitSurface Refinement::run() {
     take_regular();
     if (depth_ == 0) count_irregular();
     sort_out();
-    emit_stand_ins();
+    emit_rest();
     result_.levels = depth_;
     if (refined_.empty()) break;
     go_down();
@@ -193,7 +196,7 @@ void Refinement::emit(std::size_t cell, bool may_touch) {
   }
 }
 
-/// Regular cells are done; their corners are points of the surface.
+/// The corners of regular cells are points of the surface.
 void Refinement::take_regular() {
   std::vector<dvec3> known;
   for (Surroundings& s : surroundings_) {
@@ -209,15 +212,12 @@ void Refinement::take_regular() {
       auto& own = surroundings_[to_size(region)].back();
       own.insert(own.end(), points.begin(), points.end());
     }
-    emit(c);
   }
   touch_.add(known);
 }
 
 void Refinement::count_irregular() {
-  result_.irregular_faces = std::count_if(patches_.begin(), patches_.end(), [](const CellPatch& p) {
-    return p.kind != CellPatch::Kind::regular;
-  });
+  result_.irregular_faces = std::count_if(patches_.begin(), patches_.end(), is_irregular);
 }
 
 /// Decides for all irregular cells that may touch.
@@ -253,24 +253,39 @@ void Refinement::sort_out() {
   }
 }
 
-/// End caps stand for cells that do not touch, but for those at a vertex of one that goes down:
-/// they go with it, so that no side meets more than halves. (Else those between the cells around an
-/// extraordinary vertex would meet ever smaller ones towards it, and not where the caps have them.)
-void Refinement::emit_stand_ins() {
+/// Emits regular cells, and the end caps that stand for cells that do not touch, but for those at a
+/// vertex of one that goes down: they go with it if they are in its sector between sharp edges,
+/// which is irregular about the vertex, or beyond such an edge. So no side meets more than halves;
+/// else those that end there would meet ever smaller ones.
+void Refinement::emit_rest() {
   std::unordered_map<int, int> region_at;  // vertex -> region
   for (const std::size_t c : refined_) {
     for (const int v : level_.vertices(c)) region_at.emplace(v, level_.cells()[c].region);
   }
-  for (const std::size_t c : stand_ins_) {
+  const auto goes_down = [&](std::size_t c, const auto& with) {
     const std::span<const int> own = level_.vertices(c);
-    const auto v = std::find_if(own.begin(), own.end(),
-                                [&](int vertex) { return region_at.count(vertex) > 0; });
-    if (v == own.end()) {
-      emit(c, false);
-    } else {
-      level_.cells()[c].region = region_at.at(*v);
-      refined_.push_back(c);
+    const auto v = std::find_if(own.begin(), own.end(), with);
+    if (v == own.end()) return false;
+    level_.cells()[c].region = region_at.at(*v);
+    refined_.push_back(c);
+    return true;
+  };
+  for (const std::size_t c : stand_ins_) {
+    if (!goes_down(c, [&](int v) { return region_at.count(v) > 0; })) emit(c, false);
+  }
+  std::unordered_set<int> sharp;  // of those vertices
+  for (const std::size_t c : refined_) {
+    const std::span<const int> own = level_.vertices(c);
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, own.size()); ++k) {
+      if (patches_[c].smooth[k]) continue;
+      for (const int v : {own[k], own[(k + 1) % own.size()]}) {
+        if (region_at.count(v) > 0) sharp.insert(v);
+      }
     }
+  }
+  for (std::size_t c = 0; c < patches_.size(); ++c) {
+    if (patches_[c].kind != CellPatch::Kind::regular) continue;
+    if (!goes_down(c, [&](int v) { return sharp.count(v) > 0; })) emit(c);
   }
 }
 
@@ -406,7 +421,10 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
 
 void Refinement::go_down() {
   std::sort(refined_.begin(), refined_.end());
-  if (depth_ == 0) result_.refined_faces = static_cast<long>(refined_.size());
+  if (depth_ == 0) {
+    result_.refined_faces = std::count_if(refined_.begin(), refined_.end(),
+                                          [&](std::size_t c) { return is_irregular(patches_[c]); });
+  }
   // Regions are numbered anew: only those of cells that go down are left.
   std::vector<Surroundings> left;
   std::vector<int> number(surroundings_.size(), -1);
