@@ -69,6 +69,7 @@ class Trace {
   Pace advance();
   void begin_piece(const Ruling& first);
   void continue_in_piece();
+  bool enter_level(std::size_t contact);
   bool is_sound() const;
   void push(const Ruling& ruling) { arc_.pieces.back().rulings.push_back(on_joins(ruling)); }
   Ruling on_joins(Ruling ruling) const;
@@ -238,7 +239,7 @@ std::optional<Trace::Pace> Trace::near_merging() {
     return std::nullopt;
   }
   if (ends_merged()) return Pace::ended;
-  if (apart < least_distance_at(point_))
+  if (apart < std::min(1.0, -rate) * least_distance_at(point_))
     return lost("two contacts approach each other and do not merge");
   // A third contact may yet surpass them.
   step_ = -0.5 * apart / rate;
@@ -334,6 +335,25 @@ Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
   return ended(TracedArc::End::plane);
 }
 
+/// The contact has come from an edge into a face that is level across it, where the system is
+/// singular: moves it to where the direction, by the third derivative, puts it in the face.
+bool Trace::enter_level(std::size_t contact) {
+  const Contact border = point_.at.contact[contact];
+  const std::optional<Contact> inside = inside_level(geometry_, border, point_.at.n);
+  if (!inside) return false;
+  const Ruling first = point_.at.ruling();
+  const CommonSupport before = point_.at;
+  point_.at.contact[contact] = *inside;
+  point_.at.evaluate(geometry_);
+  if (!point_.settle() || !same_element(point_.at.contact[contact], border)) {
+    point_.at = before;
+    return false;
+  }
+  begin_piece(first);
+  push(point_.at.ruling());
+  return true;
+}
+
 /// On to the next element, at the exit where the contact stands.
 Trace::Pace Trace::exchange(const ElementChange& event) {
   const auto i = std::size_t(event.contact);
@@ -346,6 +366,7 @@ Trace::Pace Trace::exchange(const ElementChange& event) {
   point_.at.contact[i] = *over;
   point_.at.evaluate(geometry_);
   if (other_kind && has_moved_ && ends_widened()) return ended(TracedArc::End::plane);
+  if (event.exit.kind == ContactExit::Kind::face && enter_level(i)) return Pace::on;
   const std::array<Contact, CommonSupport::capacity> before = point_.at.contact;
   if (!point_.settle()) return lost("a separating curve has no tangent");
   end_on_joins(before);

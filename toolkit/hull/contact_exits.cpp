@@ -410,6 +410,13 @@ bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i
   return rate && glm::dot(e.parameter[k], *rate) < 0;
 }
 
+bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& n) {
+  const double value = along_v(side) ? c.u : c.v;
+  if (value != (at_upper_end(side) ? 1 : 0)) return false;
+  const ContactJet j = geometry.jet(c);
+  return std::abs(glm::dot(along_v(side) ? j.dxx : j.dyy, n)) <= geometry.rounding();
+}
+
 bool leads_over_border(const ContactExit& exit) {
   return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
 }
@@ -569,6 +576,20 @@ Contact snapped(const ContactGeometry& geometry, Contact c, double distance) {
   if (j.dimension == 2 && !(pole && along_v(*pole))) snap(c.v, j.dx[1]);
   if (j.dimension >= 1 && !(pole && !along_v(*pole))) snap(c.u, j.dx[0]);
   return geometry.canonical(c);
+}
+
+std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n) {
+  const PatchJet3 j = geometry.patch_jet(c);
+  for (const Side side : all_sides) {
+    if (!is_level_across(geometry, c, side, n)) continue;
+    const double sense = at_upper_end(side) ? -1 : 1;
+    const double slope = sense * glm::dot(along_v(side) ? j.Su : j.Sv, n);
+    const double third = sense * glm::dot(along_v(side) ? j.Suuu : j.Svvv, n);
+    if (slope <= 0 || third >= 0) return std::nullopt;
+    (along_v(side) ? c.u : c.v) += sense * std::sqrt(-2 * slope / third);
+    return c;
+  }
+  return std::nullopt;
 }
 
 Contact turned_to(const ContactGeometry& geometry, Contact c, const Contact& beside) {

@@ -37,6 +37,9 @@ double exit_length(const ContactGeometry& geometry, const Contact& c, const Cont
 bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
                   const ContactExit& exit);
 
+/// A patch's contact lies on the side, and x . n has no second derivative across it but rounding.
+bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& n);
+
 /// To the same point in another element, not into what an edge or a vertex bounds.
 bool leads_over_border(const ContactExit& exit);
 
@@ -86,6 +89,10 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
 /// The contact in its canonical form where it lies within rounding of a border, an end or a pole:
 /// no farther than `distance`.
 Contact snapped(const ContactGeometry& geometry, Contact c, double distance);
+
+/// A patch's contact on a side across which it is level, to within rounding: its curvature tells no
+/// place. Where the third derivative tells it, that place. None elsewhere.
+std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n);
 
 /// The normal form of a contact on a collapsed side, where the parameter along the side is any: at
 /// that of a contact of the same element beside it, from which a curve comes. Others are as they

@@ -78,6 +78,7 @@ class CurvePoint {
   CommonSupport predicted(double length) const;
   double rounding_across(std::size_t contact, Side side) const;
   bool runs_along(std::size_t contact, const ContactExit& exit) const;
+  void move_to_edges();
   void find_joins();
   static double square(const dvec3& x) { return glm::dot(x, x); }
 

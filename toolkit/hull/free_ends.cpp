@@ -28,10 +28,11 @@ constexpr int start_steps = 12;
 constexpr int dip_limit = 40;
 
 constexpr int newton_limit = 20;
-/// Steps of a parameter below this end Newton's method; below the second one, if they do not get
-/// shorter, they are rounding.
+/// Steps of a parameter below this end Newton's method. Those below a length, if they do not get
+/// shorter, are rounding: so much of a parameter at most.
 constexpr double converged_step = 1e-14;
-constexpr double noise_step = 1e-8;
+constexpr double noise_length = 1e-8;
+constexpr double noise_limit = 1e-4;
 /// Of central difference quotients: their error slows Newton's method by its square.
 constexpr double difference = 1e-5;
 /// Gauss curvature, in the scene's frame, below which its extremum along a border is zero.
@@ -84,9 +85,18 @@ bool near_pole(const ContactGeometry& geometry, const Contact& c) {
 /// @name Roots
 /// @{
 
-/// Newton's method with difference quotients; within [-reach, reach] of the start.
+/// Steps of a contact's parameters that may be rounding.
+double noise_step(const ContactGeometry& geometry, const Contact& c) {
+  const ContactJet j = geometry.jet(c);
+  double size = glm::length(j.dx[0]);
+  if (j.dimension == 2) size = std::min(size, glm::length(j.dx[1]));
+  return size > noise_length / noise_limit ? noise_length / std::min(size, 1.0) : noise_limit;
+}
+
+/// Newton's method with difference quotients; within [-reach, reach] of the start. Steps below
+/// `noise` may be rounding.
 template <class Function>
-std::optional<double> root_near(const Function& f, double start, double reach) {
+std::optional<double> root_near(const Function& f, double start, double reach, double noise) {
   double t = start;
   double last = reach;
   for (int k = 0; k < newton_limit; ++k) {
@@ -95,7 +105,7 @@ std::optional<double> root_near(const Function& f, double start, double reach) {
     t += step;
     if (!(std::abs(t - start) <= reach)) return std::nullopt;
     const double length = std::abs(step);
-    if (length < converged_step || (length < noise_step && length > 0.5 * last)) return t;
+    if (length < converged_step || (length < noise && length > 0.5 * last)) return t;
     last = length;
   }
   return std::nullopt;
@@ -103,11 +113,11 @@ std::optional<double> root_near(const Function& f, double start, double reach) {
 
 /// Where the function touches zero: at an extremum that is one up to rounding.
 template <class Function>
-std::optional<double> touch_near(const Function& f, double start, double reach) {
+std::optional<double> touch_near(const Function& f, double start, double reach, double noise) {
   const auto slope = [&](double t) {
     return (f(t + difference) - f(t - difference)) / (2 * difference);
   };
-  const std::optional<double> t = root_near(slope, start, reach);
+  const std::optional<double> t = root_near(slope, start, reach, noise);
   return t && std::abs(f(*t)) <= least_touch ? t : std::nullopt;
 }
 
@@ -185,6 +195,7 @@ std::optional<dvec2> cusp_residual(const ContactGeometry& geometry, const Contac
 /// than `reach` or if the root is not a simple one.
 std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, double reach) {
   const dvec2 start(c.u, c.v);
+  const double noise = noise_step(geometry, c);
   double last = reach;
   for (int k = 0; k < newton_limit; ++k) {
     const std::optional<SurfaceBend> here = surface_bend(geometry, c);
@@ -207,7 +218,7 @@ std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, dou
     c.v += step.y;
     if (!(glm::distance(dvec2(c.u, c.v), start) <= reach)) return std::nullopt;
     const double length = glm::length(step);
-    if (length < converged_step || (length < noise_step && length > 0.5 * last)) {
+    if (length < converged_step || (length < noise && length > 0.5 * last)) {
       if (std::abs(det) < least_change * here->area) return std::nullopt;
       return c;
     }
@@ -389,7 +400,7 @@ std::optional<FreeEnd> piece_end(const ContactGeometry& geometry, Contact c, int
   if (own == Departure::above) return std::nullopt;
   if (own == Departure::level) {
     const auto twist = [&](double t) { return twist_at(geometry, c, t); };
-    if (!root_near(twist, double(end), level_reach)) return std::nullopt;
+    if (!root_near(twist, double(end), level_reach, noise_step(geometry, c))) return std::nullopt;
   }
   const dvec3 along = end == 0 ? b->along : -b->along;
   if (over->kind == SourceKind::vertex) return FreeEnd{n, *over, Kind::end, along};
@@ -618,7 +629,7 @@ class Polish {
   void edge() {
     for (const Contact& c : contacts_around()) {
       const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
-      const std::optional<double> t = root_near(twist, c.u, reach);
+      const std::optional<double> t = root_near(twist, c.u, reach, noise_step(geometry_, c));
       for (const double sign : {1.0, -1.0}) {
         if (t) keep(edge_end(geometry_, c, *t, sign));
         for (int end = 0; end < 2; ++end) {
@@ -647,11 +658,12 @@ class Polish {
   void on_border(const Contact& c, Side side) {
     const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
     const double start = along_v(side) ? c.v : c.u;
-    std::optional<double> t = root_near(curvature, start, reach);
+    const double noise = noise_step(geometry_, c);
+    std::optional<double> t = root_near(curvature, start, reach, noise);
     if (near_.kind == Kind::border) {
       // The parabolic curve may touch the edge: the end of two separating curves. Newton's method
       // on a double root leaves half of the digits.
-      const std::optional<double> touch = touch_near(curvature, start, reach);
+      const std::optional<double> touch = touch_near(curvature, start, reach, noise);
       if (touch && (!t || std::abs(*touch - *t) < double_root)) t = touch;
     }
     if (t) keep(border_end(geometry_, c, side, *t));

@@ -34,6 +34,9 @@ constexpr double least_distance = 2e-4;
 constexpr double least_distance_at_pole = 1e-6;
 constexpr double about_pole = 8;
 
+/// Rulings no longer than this may be such that rounding leaves nothing of the distance of heights.
+constexpr double tied_length = 1e-6;
+
 dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
 
 /// The direction in which two contacts merge at a common point: a face's normal; across the
@@ -198,7 +201,10 @@ class Merging {
   bool is_ahead(const FreeEnd& end, double length) const;
   bool end_beyond(const FreeEnd& end);
   std::optional<ElementChange> change_before(const FreeEnd& end) const;
+  std::optional<ElementChange> change_ahead(const FreeEnd& end) const;
   bool solve_change(ElementChange& event, double length) const;
+  bool tie_at_exit(ElementChange& event) const;
+  bool is_followed(const Ruling& from, const Ruling& to) const;
   CommonSupport near_end(const FreeEnd& end, double length) const;
   bool merge_at_pole();
   bool runs_into(const dvec3& pole);
@@ -434,19 +440,93 @@ std::optional<ElementChange> Merging::change_before(const FreeEnd& end) const {
   return event;
 }
 
+/// The same where the contacts run to the end side by side, each over a join into a patch in whose
+/// border the end lies: the first of them at the share of the way at which it meets its join.
+std::optional<ElementChange> Merging::change_ahead(const FreeEnd& end) const {
+  const double apart = point_.apart();
+  const double length = -apart / point_.rate_apart();
+  std::optional<ElementChange> event;
+  double first = 1;
+  for (int i = 0; i < 2; ++i) {
+    const auto k = std::size_t(i);
+    const Contact& own = point_.at.contact[k];
+    if (expressed_in(geometry_, end.contact, own)) continue;
+    const dvec2 rate = point_.tangent.parameter[k];
+    for (const ContactExit& exit : exits(geometry_, own)) {
+      if (!leads_over_border(exit)) continue;
+      const LinearEquation margin = exit_margin(geometry_, point_.at, i, exit);
+      const double falls = -length * glm::dot(margin.parameter[k], rate);
+      if (falls <= 0 || margin.residual >= first * falls) continue;
+      const double share = margin.residual / falls;
+      Contact border = own;
+      border.u = std::clamp(own.u + share * length * rate.x, 0.0, 1.0);
+      border.v = std::clamp(own.v + share * length * rate.y, 0.0, 1.0);
+      border = at_exit(border, exit);
+      const std::optional<Contact> over = beyond(geometry_, border, exit);
+      if (!over || !expressed_in(geometry_, end.contact, *over)) continue;
+      event.emplace();
+      event->contact = i;
+      event->exit = exit;
+      CommonSupport& s = event->support;
+      s = point_.at;
+      s.n = glm::normalize((1 - share) * point_.at.n + share * end.n);
+      for (std::size_t j = 0; j < 2; ++j) {
+        s.contact[j].u += share * length * point_.tangent.parameter[j].x;
+        s.contact[j].v += share * length * point_.tangent.parameter[j].y;
+      }
+      s.contact[k] = border;
+      s.evaluate(geometry_);
+      first = share;
+    }
+  }
+  if (!event || !solve_change(*event, (1 - first) * apart)) return std::nullopt;
+  return event;
+}
+
 /// Solves for the ruling of about this length with which a contact stands at its exit; from a start
 /// near it.
 bool Merging::solve_change(ElementChange& event, double length) const {
   CommonSupport& s = event.support;
+  const CommonSupport start = s;
   const bool solved = system_.settle(s, [&](const CommonSupport& now) {
     return exit_margin(geometry_, now, event.contact, event.exit);
   });
-  if (!solved) return false;
-  put_on_border(geometry_, event);
+  if (solved) {
+    put_on_border(geometry_, event);
+  } else {
+    s = start;
+    if (length > tied_length || !tie_at_exit(event)) return false;
+  }
   event.length = point_.length_to(s);
   const double apart = glm::length(s.d());
   return event.length > margin_slack && apart > 0.5 * length && apart < 2 * length &&
          point_.supports(s);
+}
+
+/// The same of contacts so near to each other that their heights are the same up to rounding, which
+/// leaves the system nothing: the direction is the normal of the one at its exit, and the other
+/// moves along the parameter in which it is curved to where that has it.
+bool Merging::tie_at_exit(ElementChange& event) const {
+  const auto i = std::size_t(event.contact);
+  CommonSupport& s = event.support;
+  put_on_border(geometry_, event);
+  if (s.contact[i].kind != SourceKind::face) return false;
+  const dvec3 normal = unit_normal(geometry_, s.contact[i]);
+  s.n = glm::dot(normal, s.n) < 0 ? -normal : normal;
+  Contact& other = s.contact[1 - i];
+  for (int k = 0; k < 2 && other.kind == SourceKind::face; ++k) {
+    // Where it stands across, the prediction tells as well as anything.
+    const ContactJet j = geometry_.jet(other);
+    const double uu = glm::dot(j.dxx, s.n);
+    const double vv = glm::dot(j.dyy, s.n);
+    if (std::abs(uu) > std::abs(vv)) {
+      other.u = std::clamp(other.u - glm::dot(j.dx[0], s.n) / uu, 0.0, 1.0);
+    } else {
+      other.v = std::clamp(other.v - glm::dot(j.dx[1], s.n) / vv, 0.0, 1.0);
+    }
+  }
+  s.evaluate(geometry_);
+  return std::abs(glm::dot(s.d(), s.n)) <= geometry_.rounding();
 }
 
 /// About where the contacts have approached each other to this length, before the free end.
@@ -479,12 +559,13 @@ bool Merging::end_beyond(const FreeEnd& end) {
   near.contact = snapped(geometry_, end.contact, shortest_piece);
   std::optional<Ruling> last = ruling_at(geometry_, near, point_.at.ruling());
   for (int k = 0; k < 2 && !last; ++k) {
-    const std::optional<ElementChange> event = change_before(end);
-    if (!event || !point_.is_followed(point_.at.ruling(), event->support.ruling())) return false;
+    std::optional<ElementChange> event = change_before(end);
+    if (!event) event = change_ahead(end);
+    if (!event || !is_followed(point_.at.ruling(), event->support.ruling())) return false;
     const auto i = std::size_t(event->contact);
     point_.at = event->support;
     push(point_.at.ruling());
-    const std::optional<Contact> over = expressed_in(geometry_, point_.at.contact[i], end.contact);
+    const std::optional<Contact> over = beyond(geometry_, point_.at.contact[i], event->exit);
     if (!over) return false;
     point_.at.contact[i] = *over;
     point_.at.evaluate(geometry_);
@@ -496,10 +577,15 @@ bool Merging::end_beyond(const FreeEnd& end) {
   return last.has_value();
 }
 
+/// From a ruling on, the rulings before another one are found, or so short that their heights tie.
+bool Merging::is_followed(const Ruling& from, const Ruling& to) const {
+  return glm::distance(from.point[0], from.point[1]) <= tied_length || point_.is_followed(from, to);
+}
+
 std::optional<MergedEnd> Merging::run() {
   if (!merge()) return std::nullopt;
   const std::vector<Ruling>& rulings = end_.pieces.back().rulings;
-  if (!point_.is_followed(rulings[rulings.size() - 2], rulings.back())) return std::nullopt;
+  if (!is_followed(rulings[rulings.size() - 2], rulings.back())) return std::nullopt;
   return std::move(end_);
 }
 
