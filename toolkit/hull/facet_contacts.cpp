@@ -230,7 +230,7 @@ std::optional<FacetContacts> ContactSet::complete() {
   if (!finite || !is_finite(n_)) return std::nullopt;
   while (points_.size() <= facet_corner_limit) {
     std::optional<FacetContacts> f = outline();
-    if (!f) return std::nullopt;
+    if (!f || f->contacts.empty()) return std::nullopt;
     bool grown = false;
     for (const Probe& probe : probes(*f)) {
       const std::optional<Contact> more = found(probe.towards);

@@ -36,8 +36,9 @@ struct FacetContacts {
 /// plane as a whole (ContactPlane), and of contacts found by support queries in directions turned a
 /// little all around and towards each of its sides. Begins with the contacts known, none or more.
 /// One or two contacts are no facet. None where there are more than facet_corner_limit contacts
-/// beside the pieces (contact along another curve), or where the outline is not certain. Contacts
-/// lower than others by no more than `slack`, beside tie(), count too.
+/// beside the pieces (contact along another curve), or where the outline is not certain: uncertain
+/// are those no wider than same_contact, as of copies that are nearly in one place. Contacts lower
+/// than others by no more than `slack`, beside tie(), count too.
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
                                             const dvec3& n, const std::vector<Contact>& known,
                                             const std::vector<Contact>& pieces = {},
