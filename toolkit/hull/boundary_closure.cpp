@@ -1,27 +1,33 @@
 #include "taut/hull/boundary_closure.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "taut/hull/curve_chains.h"
+#include "taut/surface/point_grid.h"
 
 namespace taut {
 namespace {
 
 /// The points in which curves end.
 int vertex_count(const HullBoundary& boundary) {
-  std::vector<dvec3> vertices;
-  const auto add = [&](const dvec3& p) {
-    for (const dvec3& q : vertices) {
-      if (glm::distance(p, q) < same_curve_end) return;
-    }
-    vertices.push_back(p);
-  };
+  std::vector<dvec3> ends;
+  Box box;
   for (const HullCurve& c : boundary.curves) {
     if (c.closed) continue;
-    add(c.points.front());
-    add(c.points.back());
+    for (const dvec3& p : {c.points.front(), c.points.back()}) {
+      ends.push_back(p);
+      box.include(p);
+    }
   }
-  return int(vertices.size());
+  PointGrid vertices(box, same_curve_end);
+  int count = 0;
+  for (const dvec3& p : ends) {
+    bool known = false;
+    vertices.visit_near(p, [&](int) { known = true; });
+    if (!known) vertices.insert(p, count++);
+  }
+  return count;
 }
 
 /// Of a face by itself. A closed scroll is an annulus, unless it is a cone.
