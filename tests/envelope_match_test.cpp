@@ -26,36 +26,45 @@ Model data_model(const std::string& name) {
   return model;
 }
 
-/// Sources, holes, structure and hull.
-void expect_match(Model model) {
-  const Scene scene(std::move(model));
-  const EnvelopeImages images(scene, {.size = size, .threads = 0, .progress = {}});
+/// Sources and holes; at most a share of the directions is near a change of source.
+void expect_sources(const EnvelopeImages& images, double near) {
   EXPECT_EQ(images.statistics().empty_pixels, 0);
   EXPECT_EQ(images.statistics().filled_pixels, 0);
-
   const SourceCounts sources = count_sources(images, directions, 1);
   EXPECT_EQ(sources.right + sources.near + sources.wrong, directions);
-  EXPECT_LT(sources.near, directions / 100);
+  EXPECT_LT(double(sources.near), near * directions);
   // More than 99.9%, of a tenth less than all, which may have been near a change of source.
   EXPECT_LT(1000 * sources.wrong, directions * 9 / 10);
+}
 
-  const EnvelopeMap map = trace_envelope(images);
-  const Hull hull = precise_hull(scene, {.relative = 1e-5, .progress = {}});
-  ASSERT_TRUE(hull.boundary);
+/// The structure of the exact hull, which is whole.
+void expect_structure(const MatchCounts& counts, const Hull& hull) {
   EXPECT_TRUE(hull.boundary->unresolved.empty());
-  const MatchCounts counts = match(images, map, hull);
   EXPECT_EQ(counts.curve_points_off, 0) << "of " << counts.curve_points;
   EXPECT_EQ(counts.wide_rulings_missed, 0) << "of " << counts.wide_rulings;
   EXPECT_LE(counts.narrow_rulings, counts.wide_rulings / 4);
   EXPECT_EQ(counts.triple_points_off, 0) << "of " << counts.triple_points;
   EXPECT_EQ(counts.wide_facets_missed, 0) << "of " << counts.wide_facets;
-  EXPECT_EQ(counts.regions_of_several, 0) << "of " << counts.wide_regions;
   // Patches of which the mesh has no vertex that tells.
   EXPECT_LE(counts.regions_of_none, hull.boundary->count(FaceKind::patch) - counts.patches);
   EXPECT_LE(counts.regions_of_none, 1 + counts.wide_regions / 20);
   EXPECT_EQ(counts.patches_split, 0) << "of " << counts.patches;
-  // What is not wide is the rest.
   EXPECT_LE(counts.wide_regions, hull.boundary->count(FaceKind::patch));
+}
+
+/// Sources, holes, structure and hull.
+void expect_match(Model model) {
+  const Scene scene(std::move(model));
+  const EnvelopeImages images(scene, {.size = size, .threads = 0, .progress = {}});
+  expect_sources(images, 0.01);
+
+  const EnvelopeMap map = trace_envelope(images);
+  const Hull hull = precise_hull(scene, {.relative = 1e-5, .progress = {}});
+  ASSERT_TRUE(hull.boundary);
+  const MatchCounts counts = match(images, map, hull);
+  expect_structure(counts, hull);
+  EXPECT_EQ(counts.regions_of_several, 0) << "of " << counts.wide_regions;
+  // What is not wide is the rest.
   EXPECT_GE(counts.wide_regions, hull.boundary->count(FaceKind::patch) * 9 / 10);
   EXPECT_GE(counts.wide_facets, hull.boundary->count(FaceKind::facet) * 3 / 4);
 
@@ -81,28 +90,17 @@ TEST(EnvelopeMatch, CarCage) {
   read_model(file, model, options);
   const Scene scene(std::move(model));
   const EnvelopeImages images(scene, {.size = size, .threads = 0, .progress = {}});
-  EXPECT_EQ(images.statistics().empty_pixels, 0);
-  EXPECT_EQ(images.statistics().filled_pixels, 0);
-
-  const SourceCounts sources = count_sources(images, directions, 1);
-  EXPECT_LT(sources.near, directions / 50);
-  EXPECT_LT(1000 * sources.wrong, directions * 9 / 10);
+  expect_sources(images, 0.02);
 
   const EnvelopeMap map = trace_envelope(images);
   const Hull hull = precise_hull(scene, {.relative = 1e-5, .progress = {}});
   ASSERT_TRUE(hull.boundary);
-  EXPECT_TRUE(hull.boundary->unresolved.empty());
   const MatchCounts counts = match(images, map, hull);
-  EXPECT_EQ(counts.curve_points_off, 0) << "of " << counts.curve_points;
-  EXPECT_EQ(counts.wide_rulings_missed, 0) << "of " << counts.wide_rulings;
+  expect_structure(counts, hull);
   EXPECT_GT(counts.wide_rulings, 10000);
-  EXPECT_EQ(counts.triple_points_off, 0) << "of " << counts.triple_points;
-  EXPECT_EQ(counts.wide_facets_missed, 0) << "of " << counts.wide_facets;
   EXPECT_GT(counts.wide_facets, 30);
-  EXPECT_EQ(counts.patches_split, 0) << "of " << counts.patches;
-  // Along its creases patches of one face of the cage are parted by less than a pixel.
+  // Patches of one face of the cage may be parted by less than a pixel.
   EXPECT_LE(counts.regions_of_several, counts.wide_regions / 20);
-  EXPECT_LE(counts.regions_of_none, hull.boundary->count(FaceKind::patch) - counts.patches);
   EXPECT_GE(counts.wide_regions, hull.boundary->count(FaceKind::patch) * 4 / 5);
 
   const Hull of_images = envelope_hull(images, map, {.relative = 1e-4, .progress = {}});
