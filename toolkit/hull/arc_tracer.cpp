@@ -357,6 +357,7 @@ bool Trace::enter_level(std::size_t contact) {
 /// On to the next element, at the exit where the contact stands.
 Trace::Pace Trace::exchange(const ElementChange& event) {
   const auto i = std::size_t(event.contact);
+  // The piece ends with the contact on its exit, which a step too short to count has not told.
   Ruling& last = arc_.pieces.back().rulings.back();
   last.contact[i] = point_.at.contact[i];
   last.point[i] = point_.at.jet[i].x;
