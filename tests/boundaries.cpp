@@ -105,6 +105,70 @@ TrimStretch on_arc(int piece, int contact) {
   return stretch;
 }
 
+/// A stretch of a region as it is passed about the face.
+struct FaceStretch {
+  StretchPlace place;
+  int curve;
+  dvec3 begin, end;
+};
+
+std::vector<FaceStretch> stretches_of(const ContactGeometry& geometry, const HullBoundary& boundary,
+                                      const HullFace& face) {
+  std::vector<FaceStretch> found;
+  for (std::size_t r = 0; r < face.regions.size(); ++r) {
+    const PatchRegion& region = face.regions[r];
+    const auto on_side_at = [&](Side side, double t) {
+      const dvec2 uv = on_side(side, t);
+      return geometry.point({region.instance, SourceKind::face, region.patch, uv.x, uv.y});
+    };
+    for (std::size_t l = 0; l < region.loops.size(); ++l) {
+      for (std::size_t k = 0; k < region.loops[l].size(); ++k) {
+        const TrimStretch& s = region.loops[l][k];
+        dvec3 begin, end;
+        if (s.arc >= 0) {
+          const auto& rulings =
+              boundary.arcs[std::size_t(s.arc)].pieces[std::size_t(s.piece)].rulings;
+          begin = rulings.front().point[std::size_t(s.contact)];
+          end = rulings.back().point[std::size_t(s.contact)];
+        } else {
+          begin = on_side_at(s.side, s.from);
+          end = on_side_at(s.side, s.to);
+        }
+        if (s.reversed != (region.sign < 0)) std::swap(begin, end);
+        found.push_back({{r, l, k}, s.curve, begin, end});
+      }
+    }
+  }
+  return found;
+}
+
+/// Puts the stretches about each patch in order, along its curves.
+void list_outlines(const ContactGeometry& geometry, HullBoundary& boundary) {
+  for (HullFace& face : boundary.faces) {
+    std::vector<FaceStretch> left = stretches_of(geometry, boundary, face);
+    for (const auto& loop : face.loops) {
+      std::vector<StretchPlace>& outline = face.outlines.emplace_back();
+      for (const auto& [curve, sense] : loop) {
+        const std::vector<dvec3>& points = boundary.curves[std::size_t(curve)].points;
+        dvec3 at = sense > 0 ? points.front() : points.back();
+        const auto count = std::count_if(left.begin(), left.end(),
+                                         [&](const auto& s) { return s.curve == curve; });
+        for (auto k = count; k > 0; --k) {
+          const auto gap = [&](const FaceStretch& s) {
+            return s.curve == curve ? glm::distance(s.begin, at) : 1e9;
+          };
+          const auto next =
+              std::min_element(left.begin(), left.end(),
+                               [&](const auto& a, const auto& b) { return gap(a) < gap(b); });
+          outline.push_back(next->place);
+          at = next->end;
+          left.erase(next);
+        }
+      }
+    }
+  }
+}
+
 PatchRegion region(int patch, std::vector<TrimStretch> loop) {
   return {0, patch, -1, {std::move(loop)}};
 }
@@ -163,6 +227,7 @@ KnownBoundary two_spheres_boundary(const dmat3& rotation, const dvec3& shift) {
   scroll.kind = FaceKind::scroll;
   scroll.scroll = {0, 0, 4};
   scroll.scroll_curves = {std::vector<int>{0}, std::vector<int>{1}};
+  list_outlines(geometry, boundary);
   return known;
 }
 
@@ -277,6 +342,7 @@ KnownBoundary outer_torus_boundary(const Shape& shape, double R, double r, HullC
   boundary.faces[0].loops = {{{0, -1}}, {{1, 1}}};
   boundary.curves = {circle_curve(known, geometry, rims[0], kind, {1, 0}),
                      circle_curve(known, geometry, rims[1], kind, {0, 2})};
+  list_outlines(geometry, boundary);
   return known;
 }
 
@@ -340,6 +406,7 @@ KnownBoundary cap_boundary(double height, const dmat3& rotation, const dvec3& sh
                     disc_facet(geometry, rim, rotation * dvec3(0, 0, -1), false)};
   boundary.faces[0].loops = {{{0, 1}}};
   boundary.curves = {circle_curve(known, geometry, rim, HullCurveKind::edge, {0, 1})};
+  list_outlines(geometry, boundary);
   return known;
 }
 
@@ -434,6 +501,7 @@ KnownBoundary paraboloid_boundary() {
     const std::vector<Contact>& ends = boundary.faces[std::size_t(1 + k)].contacts;
     boundary.arcs.push_back(crease_arc(geometry, boundary, {1 + k, 5}, ends[0], ends[1]));
   }
+  list_outlines(geometry, boundary);
   return known;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "taut/bounds/scene.h"
@@ -100,6 +102,13 @@ struct PatchRegion {
   std::vector<std::vector<TrimStretch>> loops;
 };
 
+/// One of the stretches about the regions of a face of the hull.
+struct StretchPlace {
+  std::size_t region = 0;   ///< of the face's regions
+  std::size_t loop = 0;     ///< of the region's loops
+  std::size_t stretch = 0;  ///< of the loop's stretches
+};
+
 /// A face of the hull's boundary.
 struct HullFace {
   FaceKind kind = FaceKind::facet;
@@ -110,6 +119,9 @@ struct HullFace {
   /// patch: its outlines, as curves (number, +1 along it or -1 against), the patch to the left seen
   /// from outside.
   std::vector<std::vector<std::pair<int, int>>> loops;
+  /// patch: per outline the stretches that make up its curves, in order, from the beginning of the
+  /// first curve on. Against their own direction if the region's sign is negative.
+  std::vector<std::vector<StretchPlace>> outlines;
   /// scroll: its rulings.
   ArcRange scroll;
   /// scroll: the curves along contacts 0 and 1, in order; none along a vertex.

@@ -1,6 +1,7 @@
 #include "taut/hull/stitch.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <span>
 #include <tuple>
@@ -52,6 +53,9 @@ class Stitcher {
   CurveElement crease(const CreaseTracks::Stretch& c) const;
   void make_rulings();
   void make_scroll_curves();
+  int curve_of(int stretch) const { return stretches_.curve_of(stretch); }
+  std::pair<std::vector<int>, bool> outline_from(int start) const;
+  StretchPlace place_in_face(int stretch) const;
   void make_loops();
   void add_chains(HullCurveKind kind, const std::vector<CurveElement>& elements);
   int add_curve(HullCurveKind kind, int left, int right, int source, std::vector<dvec3> points,
@@ -70,8 +74,9 @@ class Stitcher {
   HullBoundary boundary_;
   TrimStretches stretches_;
   std::vector<int> face_of_region_;
-  std::vector<std::vector<int>> scroll_of_;  // per arc and piece; -1 between vertices
-  std::vector<int> facet_of_;                // per node
+  std::vector<std::size_t> place_of_region_;  // among those of its face
+  std::vector<std::vector<int>> scroll_of_;   // per arc and piece; -1 between vertices
+  std::vector<int> facet_of_;                 // per node
   /// By arc, piece and contact: the curves along it, with their order.
   std::map<std::tuple<int, int, int>, std::vector<std::pair<double, int>>> along_scroll_;
 };
@@ -99,6 +104,9 @@ void Stitcher::make_patches() {
     face.source = stretches_.source_of(r);
     boundary_.faces.push_back(std::move(face));
   }
+  std::vector<std::size_t> regions_of(boundary_.faces.size(), 0);
+  for (const int face : face_of_region_)
+    place_of_region_.push_back(regions_of[std::size_t(face)]++);
 }
 
 /// Scrolls: runs of pieces of an arc that are not between two vertices.
@@ -397,35 +405,64 @@ void Stitcher::make_scroll_curves() {
   }
 }
 
-/// The outlines of patches as curves; seams within a source face are passed over.
-void Stitcher::make_loops() {
-  const int count = stretches_.count();
-  const auto curve_of = [&](int k) { return stretches_.curve_of(k); };
-  std::vector<bool> done(std::size_t(count), false);
-  for (int start = 0; start < count; ++start) {
-    if (done[std::size_t(start)] || curve_of(start) < 0) continue;
-    std::vector<std::pair<int, int>> loop;
-    int at = start;
-    int steps = 0;
+/// The stretches about a face from this one on, which is part of a curve, and whether they close;
+/// seams within the source face are passed over.
+std::pair<std::vector<int>, bool> Stitcher::outline_from(int start) const {
+  const int limit = 4 * stretches_.count();
+  std::vector<int> outline;
+  int at = start;
+  int steps = 0;
+  do {
+    outline.push_back(at);
     do {
-      done[std::size_t(at)] = true;
-      const int curve = curve_of(at);
-      const HullCurve& c = boundary_.curves[std::size_t(curve)];
-      const int sense = c.faces[0] == face_at(at) ? 1 : -1;
-      if (loop.empty() || loop.back() != std::pair(curve, sense)) loop.emplace_back(curve, sense);
-      do {
-        at = stretches_.next(at);
-        if (curve_of(at) < 0 && stretches_.twin(at) >= 0) at = stretches_.twin(at);
-        if (++steps > 4 * count) break;
-      } while (curve_of(at) < 0);
-    } while (at != start && steps <= 4 * count);
-    if (at != start) {
+      at = stretches_.next(at);
+      if (curve_of(at) < 0 && stretches_.twin(at) >= 0) at = stretches_.twin(at);
+      if (++steps > limit) return {std::move(outline), false};
+    } while (curve_of(at) < 0);
+  } while (at != start);
+  return {std::move(outline), true};
+}
+
+/// The outlines of patches, as curves and as stretches.
+void Stitcher::make_loops() {
+  std::vector<bool> done(std::size_t(stretches_.count()), false);
+  const auto directed = [&](int stretch) {
+    const int curve = curve_of(stretch);
+    const HullCurve& c = boundary_.curves[std::size_t(curve)];
+    return std::pair(curve, c.faces[0] == face_at(stretch) ? 1 : -1);
+  };
+  for (int start = 0; start < int(done.size()); ++start) {
+    if (done[std::size_t(start)] || curve_of(start) < 0) continue;
+    auto [outline, closes] = outline_from(start);
+    for (const int stretch : outline) done[std::size_t(stretch)] = true;
+    if (!closes) {
       fail(dvec3(0.0), "the outline of a patch does not close");
       continue;
     }
-    if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
-    boundary_.faces[std::size_t(face_at(start))].loops.push_back(std::move(loop));
+    // From where a curve begins, if it is not one all around.
+    const auto last_before = std::adjacent_find(
+        outline.begin(), outline.end(), [&](int a, int b) { return directed(a) != directed(b); });
+    if (last_before != outline.end()) {
+      std::rotate(outline.begin(), std::next(last_before), outline.end());
+    }
+    HullFace& face = boundary_.faces[std::size_t(face_at(start))];
+    std::vector<std::pair<int, int>>& loop = face.loops.emplace_back();
+    std::vector<StretchPlace>& places = face.outlines.emplace_back();
+    for (const int stretch : outline) {
+      const std::pair<int, int> curve = directed(stretch);
+      if (loop.empty() || loop.back() != curve) loop.push_back(curve);
+      places.push_back(place_in_face(stretch));
+    }
   }
+}
+
+/// As take_regions() puts it there.
+StretchPlace Stitcher::place_in_face(int stretch) const {
+  const TrimStretches::Place& at = stretches_.place(stretch);
+  const TrimRegion& region = stretches_.regions()[std::size_t(at.region)];
+  const std::size_t last = region.loops[at.loop].size() - 1;
+  return {place_of_region_[std::size_t(at.region)], at.loop,
+          region.sign < 0 ? last - at.index : at.index};
 }
 
 /// Moves the regions to their faces.

@@ -34,6 +34,11 @@ class TrimStretches {
   int number(int region, std::size_t loop, std::size_t index) const {
     return first_of_loop_.at({region, loop}) + int(index);
   }
+  struct Place {
+    int region;
+    std::size_t loop, index;
+  };
+  const Place& place(int stretch) const { return places_[std::size_t(stretch)]; }
   int region_of(int stretch) const { return place(stretch).region; }
   /// The one that goes on in the same loop.
   int next(int stretch) const;
@@ -49,11 +54,6 @@ class TrimStretches {
   void set_curve(int stretch, int curve);
 
  private:
-  struct Place {
-    int region;
-    std::size_t loop, index;
-  };
-  const Place& place(int stretch) const { return places_[std::size_t(stretch)]; }
   const TrimRegion& region_at(int stretch) const {
     return regions_[std::size_t(region_of(stretch))];
   }

@@ -46,15 +46,6 @@ Contact on_edge(const EdgeStretch& side, double t) {
   return {side.instance, SourceKind::edge, side.piece, t, 0};
 }
 
-/// A stretch of a patch's outline, in the direction in which the hull's outlines run: with the
-/// patch to the left seen from outside.
-struct Stretch {
-  int curve = -1;
-  std::vector<dvec2> uv;
-  dvec3 begin = dvec3(0.0), end = dvec3(0.0);
-  bool used = false;
-};
-
 /// Makes the document of a boundary.
 class DocumentMaker {
  public:
@@ -80,8 +71,9 @@ class DocumentMaker {
 
   HullDocument::Face make_face(int index) const;
   void make_patch(const HullFace& face, HullDocument::Face& result) const;
-  std::vector<dvec2> outline(const std::vector<DirectedCurve>& curves,
-                             std::vector<Stretch>& stretches) const;
+  std::vector<dvec2> points(const PatchRegion& region, const TrimStretch& stretch) const;
+  std::vector<dvec2> outline(const HullFace& face,
+                             const std::vector<StretchPlace>& stretches) const;
   void make_scroll(const HullFace& face, HullDocument::Face& result) const;
   void make_facet(int index, HullDocument::Face& result) const;
   std::vector<DirectedCurve> facet_outline(int index) const;
@@ -219,14 +211,14 @@ void close(std::vector<Point>& line) {
   if (line.size() > 1 && line.front() == line.back()) line.pop_back();
 }
 
-double length(const std::vector<dvec2>& line) {
-  double sum = 0;
-  for (std::size_t k = 0; k + 1 < line.size(); ++k) sum += glm::distance(line[k], line[k + 1]);
-  return sum;
+std::vector<dvec2> DocumentMaker::points(const PatchRegion& region,
+                                         const TrimStretch& stretch) const {
+  std::vector<dvec2> line;
+  for (const Contact& c : contacts(region, stretch)) line.push_back(uv(c));
+  return line;
 }
 
 void DocumentMaker::make_patch(const HullFace& face, HullDocument::Face& result) const {
-  std::vector<Stretch> stretches;
   const Model& model = scene_.model();
   for (const PatchRegion& region : face.regions) {
     const Part& part = model.parts()[to_size(model.instances()[to_size(region.instance)].part)];
@@ -236,54 +228,24 @@ void DocumentMaker::make_patch(const HullFace& face, HullDocument::Face& result)
     own.sign = region.sign;
     for (const std::vector<TrimStretch>& loop : region.loops) {
       std::vector<dvec2>& line = own.loops.emplace_back();
-      for (const TrimStretch& stretch : loop) {
-        const std::vector<Contact> along = contacts(region, stretch);
-        std::vector<dvec2> points;
-        points.reserve(along.size());
-        for (const Contact& c : along) points.push_back(uv(c));
-        append(line, points);
-        if (stretch.curve < 0) continue;
-        Stretch s{stretch.curve, std::move(points), geometry_.point(along.front()),
-                  geometry_.point(along.back()), false};
-        // Seen from outside, a region that is passed from within lies to the right.
-        if (region.sign < 0) {
-          std::reverse(s.uv.begin(), s.uv.end());
-          std::swap(s.begin, s.end);
-        }
-        stretches.push_back(std::move(s));
-      }
+      for (const TrimStretch& stretch : loop) append(line, points(region, stretch));
       close(line);
     }
   }
-  for (const std::vector<DirectedCurve>& loop : face.loops) {
-    result.loops.push_back({loop, outline(loop, stretches)});
+  for (std::size_t k = 0; k < face.loops.size(); ++k) {
+    result.loops.push_back({face.loops[k], outline(face, face.outlines[k])});
   }
 }
 
-/// Follows the outline from stretch to stretch, each time to the one that begins nearest.
-std::vector<dvec2> DocumentMaker::outline(const std::vector<DirectedCurve>& curves,
-                                          std::vector<Stretch>& stretches) const {
+std::vector<dvec2> DocumentMaker::outline(const HullFace& face,
+                                          const std::vector<StretchPlace>& stretches) const {
   std::vector<dvec2> line;
-  for (const DirectedCurve& c : curves) {
-    dvec3 at = end_of(c, false);
-    const dvec3 target = end_of(c, true);
-    for (double passed = 0;;) {
-      // Of a curve that the face meets from both sides, the others belong to the other side. One
-      // that closes may begin with a stretch no longer than rounding.
-      if (passed > outline_gap && glm::distance(at, target) < outline_gap) break;
-      Stretch* next = nullptr;
-      for (Stretch& s : stretches) {
-        if (s.used || s.curve != c.first) continue;
-        if (next == nullptr || glm::distance(s.begin, at) < glm::distance(next->begin, at)) {
-          next = &s;
-        }
-      }
-      if (next == nullptr) break;
-      next->used = true;
-      at = next->end;
-      passed += length(next->uv);
-      append(line, next->uv);
-    }
+  for (const StretchPlace& at : stretches) {
+    const PatchRegion& region = face.regions[at.region];
+    std::vector<dvec2> stretch = points(region, region.loops[at.loop][at.stretch]);
+    // Seen from outside, a region that is passed from within lies to the right.
+    if (region.sign < 0) std::reverse(stretch.begin(), stretch.end());
+    append(line, stretch);
   }
   close(line);
   return line;

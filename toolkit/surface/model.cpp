@@ -122,7 +122,8 @@ void Part::add_patches(std::vector<FacePatch> patches, std::string face_name) {
     patch.bezier = std::move(patches[k].bezier);
     patch.smooth_sides = patches[k].smooth_sides;
     patch.stand_in = patches[k].stand_in;
-    patch.u = {static_cast<double>(k), static_cast<double>(k + 1)};
+    const double begin = 2 * static_cast<double>(k);
+    patch.u = {begin, begin + 1};
     patch.face = face;
     patches_.push_back(std::move(patch));
   }

@@ -143,7 +143,8 @@ class Part {
   /// Loops are checked as curves, not for how they lie.
   void add_surface(const NurbsSurface& surface, std::string face_name,
                    std::vector<TrimLoop> loops = {});
-  /// A face of any Bezier patches, of which the k-th covers [k, k + 1] x [0, 1] of its parameters.
+  /// A face of any Bezier patches, of which the k-th covers [2 k, 2 k + 1] x [0, 1] of its
+  /// parameters: patches that follow each other need not meet, so no two have a place in common.
   void add_patches(std::vector<FacePatch> patches, std::string face_name);
   void add_curve(const NurbsCurve& curve, std::string edge_name);
   void add_point(const dvec3& point);
