@@ -4,10 +4,15 @@
 #include <cmath>
 
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/contact_system.h"
 #include "taut/hull/pole_passage.h"
 
 namespace taut {
 namespace {
+
+/// Where the contacts of a curve are well determined; beside patches' corners more pieces arise from
+/// rounding.
+constexpr double least_piece = 1e-10;
 
 /// The same contacts, and with them the same direction: that of a patch tells it.
 bool has_contacts(const Ruling& a, const Ruling& b) {
@@ -19,13 +24,19 @@ bool has_contacts(const Ruling& a, const Ruling& b) {
   return on_face && same(a.contact[0], b.contact[0]) && same(a.contact[1], b.contact[1]);
 }
 
+double distance(const Ruling& a, const Ruling& b) {
+  const auto square = [](const dvec3& x) { return glm::dot(x, x); };
+  return std::sqrt(square(b.n - a.n) + square(b.point[0] - a.point[0]) +
+                   square(b.point[1] - a.point[1]));
+}
+
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
 /// they reach there.
 void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
   ruling.n = place.n;
   ruling.point = place.point;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Contact c = snapped(geometry, place.contact[i], shortest_piece);
+    const Contact c = snapped(geometry, place.contact[i], shortest_piece(geometry, place));
     if (const auto own = in_element(geometry, c, ruling.contact[i])) ruling.contact[i] = *own;
   }
 }
@@ -77,19 +88,24 @@ void tell_along_joins(const ContactGeometry& geometry, ArcPiece& piece) {
 
 }  // namespace
 
+double shortest_piece(const ContactGeometry& geometry, const Ruling& at) {
+  const double uncertainty = ContactSystem(geometry).uncertainty(CommonSupport(geometry, at));
+  return std::clamp(uncertainty, least_piece, longest_empty_piece);
+}
+
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
-  const auto square = [](const dvec3& x) { return glm::dot(x, x); };
   // At its ends, where heights tie over as much.
-  const double tied = std::max(shortest_piece, std::sqrt(geometry.rounding()));
+  const double tied = std::max(longest_empty_piece, std::sqrt(geometry.rounding()));
   const auto is_empty = [&](std::size_t k) {
     const std::vector<Ruling>& rulings = pieces[k].rulings;
-    const double shortest = k == 0 || k + 1 == pieces.size() ? tied : shortest_piece;
+    const bool ends = k == 0 || k + 1 == pieces.size();
+    const double longest = ends ? tied : longest_empty_piece;
     const Ruling& a = rulings.front();
-    return std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& b) {
-      return has_contacts(a, b) ||
-             square(b.n - a.n) + square(b.point[0] - a.point[0]) + square(b.point[1] - a.point[1]) <
-                 shortest * shortest;
-    });
+    double length = 0;
+    for (const Ruling& b : rulings) {
+      if (!has_contacts(a, b)) length = std::max(length, distance(a, b));
+    }
+    return length < longest && (ends || length < shortest_piece(geometry, a));
   };
   // Leaving a piece out shortens those about it.
   for (std::size_t count = 0; count != pieces.size();) {
@@ -130,7 +146,8 @@ void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& o
   for (std::size_t i = 0; i < 2; ++i) {
     auto own = expressed_in(geometry, other.contact[i], ruling.contact[i]);
     if (!own) {
-      const Contact place = moved_to_border(geometry, other.contact[i], shortest_piece);
+      const Contact place =
+          moved_to_border(geometry, other.contact[i], shortest_piece(geometry, other));
       own = expressed_in(geometry, place, ruling.contact[i]);
     }
     if (!own) continue;

@@ -7,8 +7,10 @@
 
 namespace taut {
 
-/// Pieces of arcs shorter than this, in (n, x_0, x_1), are none.
-inline constexpr double shortest_piece = 1e-7;
+/// Pieces of arcs shorter than this at a ruling, in (n, x_0, x_1), are none: rounding may make them
+/// of nothing. Not more than longest_empty_piece.
+double shortest_piece(const ContactGeometry& geometry, const Ruling& at);
+inline constexpr double longest_empty_piece = 1e-7;
 
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
 /// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
@@ -22,7 +24,7 @@ void reverse(std::vector<ArcPiece>& pieces);
 bool same_elements(const Ruling& a, const Ruling& b);
 
 /// Puts contacts where the other ruling has them, in their own elements, as far as these reach
-/// there.
+/// there: up to shortest_piece().
 void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& other);
 
 /// Appends pieces that go on where these end.

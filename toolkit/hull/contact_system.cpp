@@ -179,6 +179,13 @@ double ContactSystem::residual(const CommonSupport& s) const {
   return largest;
 }
 
+double ContactSystem::uncertainty(const CommonSupport& s) const {
+  const Linearized l(s);
+  const Eigen::JacobiSVD<Matrix> decomposition(l.matrix.topRows(l.rows));
+  const double smallest = decomposition.singularValues().minCoeff();
+  return smallest > 0 ? residual_limit / smallest : infinity;
+}
+
 bool ContactSystem::solve(CommonSupport& s) const {
   double last = infinity;
   for (int k = 0; k < step_limit; ++k) {

@@ -556,7 +556,7 @@ CommonSupport Merging::near_end(const FreeEnd& end, double length) const {
 /// found.
 bool Merging::end_beyond(const FreeEnd& end) {
   FreeEnd near = end;
-  near.contact = snapped(geometry_, end.contact, shortest_piece);
+  near.contact = snapped(geometry_, end.contact, longest_empty_piece);
   std::optional<Ruling> last = ruling_at(geometry_, near, point_.at.ruling());
   for (int k = 0; k < 2 && !last; ++k) {
     std::optional<ElementChange> event = change_before(end);
