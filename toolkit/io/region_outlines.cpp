@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "taut/core/tolerances.h"
+
 namespace taut {
 namespace {
 
@@ -16,6 +18,12 @@ constexpr double near_outline = 1e-6;
 /// How far beside the outline at a free end, which is interpolated, as a share of its pieces.
 constexpr double near_guess = 0.25;
 
+/// Beside a ruling's end the support exceeds the surface by the rate at which the ruling's other
+/// end rises as the normal turns. As far as it exceeds it by so many times the slack of support
+/// queries, but no farther than this, they cannot tell on which side of the outline a place lies.
+constexpr double told_slacks = 4;
+constexpr double farthest_untold = 0.25;
+
 /// The same about a stretch that is neither a track nor along a side, of which only the ends are
 /// known: outlines are smooth between points whose normals differ by up to 0.1.
 constexpr double near_free_stretch = 0.02;
@@ -23,6 +31,36 @@ constexpr double near_free_stretch = 0.02;
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// d . dn as the place in a Bezier patch moves along its two parameters, for a vector d in the
+/// tangent plane across n.
+dvec2 turn_towards(const SourceJet& j, const dvec3& n, const dvec3& d) {
+  const double uu = glm::dot(j.dx[0], j.dx[0]);
+  const double uv = glm::dot(j.dx[0], j.dx[1]);
+  const double vv = glm::dot(j.dx[1], j.dx[1]);
+  const double det = uu * vv - uv * uv;
+  if (!(det > 0)) return dvec2(0.0);
+  const double du = glm::dot(d, j.dx[0]);
+  const double dv = glm::dot(d, j.dx[1]);
+  const double a = (vv * du - uv * dv) / det;
+  const double b = (uu * dv - uv * du) / det;
+  const double xy = glm::dot(j.dxy, n);
+  return {-a * glm::dot(j.dxx, n) - b * xy, -a * xy - b * glm::dot(j.dyy, n)};
+}
+
+/// How far beside the track of contact k, as a share of its Bezier patch's parameters, support
+/// values do not tell whether a place is on the hull.
+double untold_distance(const DocumentGeometry& geometry, const RulingInterval& interval,
+                       std::size_t k, const RulingState& at) {
+  const auto jet = [&](std::size_t i) {
+    return geometry.jet(interval.source[i], {interval.patch[i], at.t[i]});
+  };
+  const SourceJet own = jet(k);
+  const dvec2 rise = turn_towards(own, unit(at.n), jet(1 - k).x - own.x);
+  const double told = told_slacks * support_slack * geometry.hull().diagonal;
+  const double steepest = glm::length(rise);
+  return steepest > 0 ? std::min(told / steepest, farthest_untold) : farthest_untold;
+}
 
 }  // namespace
 
@@ -68,6 +106,11 @@ void RegionOutline::refine(const DocumentGeometry& geometry, int source) {
     const dvec2 t = interval.value(stretch.reversed ? 1 - s : s).t[k];
     return geometry.parameters(source, {interval.patch[k], t});
   };
+  const auto untold = [&](const OutlineStretch& stretch, double s) {
+    const RulingInterval& interval = *stretch.interval;
+    const RulingState at = interval.value(stretch.reversed ? 1 - s : s);
+    return untold_distance(geometry, interval, to_size(stretch.contact), at);
+  };
   for (const std::vector<OutlineStretch>& loop : loops) {
     for (const OutlineStretch& stretch : loop) {
       if (stretch.kind != OutlineStretch::Kind::track) {
@@ -82,7 +125,7 @@ void RegionOutline::refine(const DocumentGeometry& geometry, int source) {
         const dvec2 to = i == track_pieces ? stretch.to : on_track(stretch, s);
         const dvec2 middle = on_track(stretch, s - 0.5 / track_pieces);
         const double sagitta = glm::length((middle - 0.5 * (from + to)) / size_);
-        double slack = 2 * sagitta + near_outline;
+        double slack = 2 * sagitta + near_outline + untold(stretch, s - 0.5 / track_pieces);
         if (!stretch.interval->solved) slack += near_guess * glm::length((to - from) / size_);
         pieces_.push_back({from, to, slack});
         from = to;
