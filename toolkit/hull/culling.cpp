@@ -207,8 +207,9 @@ class PatchCulling {
     return placed_.rotated ? back_ * moved : moved;
   }
 
-  void finish(const PatchCell& cell, CellState state, const ContactSigns& signs) {
-    result_.cells.push_back({instance_, element_.index, cell, state, signs});
+  void finish(const PatchCell& cell, CellState state, const ContactSigns& signs,
+              bool definite = false) {
+    result_.cells.push_back({instance_, element_.index, cell, state, signs, definite});
   }
 
   /// `node`: the cell's node in the Gauss map, -1 below its leaves. `signs` are those that its
@@ -254,7 +255,7 @@ class PatchCulling {
     if (cell.level == finest_) {
       const bool on = refines_ && bounds.pyramid && left.plus != left.minus &&
                       surely_on_with_others(*bounds.pyramid, cell, left.plus ? 1 : -1);
-      finish(cell, on ? CellState::on : CellState::mixed, left);
+      finish(cell, on ? CellState::on : CellState::mixed, left, bounds.definite);
       return;
     }
     refine(cell, node, nets, left, beacons);

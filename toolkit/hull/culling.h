@@ -35,6 +35,8 @@ struct CulledCell {
   CellState state = CellState::mixed;
   /// mixed: with which of its normals it may touch; on: with which it does.
   ContactSigns signs;
+  /// Certain: both principal curvatures have one sign all over it, its border included, not zero.
+  bool definite = false;
 };
 
 /// What happened to the cells of one level.

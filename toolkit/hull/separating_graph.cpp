@@ -55,6 +55,16 @@ constexpr std::size_t refined_cells = 16384;
 /// Part of its size within which a curve beside a refined cell accounts for it.
 constexpr double refined_margin = 1;
 
+/// The cells that a parabolic curve may reach. Contacts merge on none of the others, nor on their
+/// borders: there the surface is curved one way, and where it is not on the far side of a join,
+/// that is another cell's.
+std::vector<CulledCell> not_definite(const std::vector<CulledCell>& cells) {
+  std::vector<CulledCell> result;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(result),
+               [](const CulledCell& cell) { return !cell.definite; });
+  return result;
+}
+
 class GraphTracer {
  public:
   GraphTracer(const ContactGeometry& geometry, SupportQuery& query, const Progress& progress)
@@ -339,7 +349,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
     left = built_.uncrossed(left, refined_margin);
     fewer = left.size() < count;
   }
-  for (const FreeEnd& end : free_ends(geometry_, query_, left)) {
+  for (const FreeEnd& end : free_ends(geometry_, query_, not_definite(left))) {
     if (!given_up() && !built_.is_reached(end)) part_beside(end);
   }
   cells_searched_ = long(built_.uncrossed(left, refined_margin).size());

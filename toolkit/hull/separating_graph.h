@@ -55,8 +55,8 @@ struct SeparatingGraph {
 ///
 /// Mixed cells through which no curve runs by then are refined: their quarters are proven on or
 /// off, or a curve is found across their sides, and so on for those that are left as long as they
-/// become fewer; in the last of them free ends of the hull are sought. A curve can be missed only
-/// there, and in cells that other curves cross.
+/// become fewer; in the last of them, where curvature does not exclude it, free ends of the hull
+/// are sought. A curve can be missed only there, and in cells that other curves cross.
 /// @throws Cancelled
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
