@@ -61,6 +61,10 @@ class ReachTest::Search {
       return heights(center) + dvec4(glm::dot(half, abs_n[0]), glm::dot(half, abs_n[1]),
                                      glm::dot(half, abs_n[2]), glm::dot(half, abs_n[3]));
     }
+    dvec4 upper_bounds(const dvec3& center, const dvec3& half, const Slab& slab) const {
+      return {slab.upper_bound(center, half, n[0]), slab.upper_bound(center, half, n[1]),
+              slab.upper_bound(center, half, n[2]), slab.upper_bound(center, half, n[3])};
+    }
   };
 
   /// One of the points is above these four heights.
@@ -72,6 +76,13 @@ class ReachTest::Search {
   }
   bool box_below(const Directions& d, const dvec3& center, const dvec3& half) const {
     return below(d.upper_bounds(center, half) + offset_);
+  }
+
+  bool box_below(const Directions& d, const dvec3& center, const dvec3& half,
+                 const Slab& slab) const {
+    const dvec4 bounds = d.upper_bounds(center, half);
+    return below(bounds + offset_) ||
+           below(glm::min(bounds, d.upper_bounds(center, half, slab)) + offset_);
   }
 
   bool instances_below(std::size_t index) {
@@ -110,13 +121,15 @@ class ReachTest::Search {
   bool cells_below(std::size_t index) {
     const BoxTree& tree = part_->tree;
     const BoxTree::Node& node = tree.nodes[index];
-    if (box_below(local_, node.center, node.half)) return true;
+    if (box_below(local_, node.center, node.half, node.slab)) return true;
     const auto first = std::size_t(node.first);
     if (node.count == 0) return cells_below(first) && cells_below(first + 1);
     for (std::size_t i = first; i < first + std::size_t(node.count); ++i) {
       const dvec3 center(tree.center[0][i], tree.center[1][i], tree.center[2][i]);
       const dvec3 half(tree.half[0][i], tree.half[1][i], tree.half[2][i]);
-      if (!box_below(local_, center, half) && !cell_below(tree.items[i])) return false;
+      if (!box_below(local_, center, half, tree.slabs[i]) && !cell_below(tree.items[i])) {
+        return false;
+      }
     }
     return true;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -53,7 +54,7 @@ class BoxTreeBuilder {
     return {box.center(),
             0.5 * (box.upper - box.lower) +
                 4 * rounding_unit * (glm::abs(box.lower) + glm::abs(box.upper)),
-            0, 0};
+            0, 0, {}};
   }
 
   void fill(std::size_t node, std::size_t begin, std::size_t end) {
@@ -90,6 +91,59 @@ class BoxTreeBuilder {
   BoxTree& tree_;
 };
 
+/// The slab grows by what rounds off its own bounds and what they are computed from: products and
+/// sums of three coordinates of the box, some units each.
+void grow(Slab& slab, const dvec3& center, const dvec3& half) {
+  const dvec3 reach = glm::abs(center) + half;
+  const double rounding = 32 * rounding_unit * (reach.x + reach.y + reach.z);
+  slab.lower -= rounding;
+  slab.upper += rounding;
+}
+
+/// Slabs of a tree's nodes, from those of its items up.
+class NodeSlabs {
+ public:
+  explicit NodeSlabs(BoxTree& tree) : tree_(tree) {}
+
+  void fill() {
+    for (std::size_t k = tree_.nodes.size(); k-- > 0;) {  // children come after their parent
+      BoxTree::Node& node = tree_.nodes[k];
+      Slab& slab = node.slab;
+      slab.normal = dvec3(0.0);
+      visit(node, [&](const Slab& s, const auto&) {
+        slab.normal += std::copysign(1.0, glm::dot(s.normal, slab.normal)) * s.normal;
+      });
+      slab.normal = unit(slab.normal);
+      slab.upper = -std::numeric_limits<double>::infinity();
+      slab.lower = -slab.upper;
+      visit(node, [&](const Slab&, const auto& bound) {
+        slab.upper = std::max(slab.upper, bound(slab.normal));
+        slab.lower = std::min(slab.lower, -bound(-slab.normal));
+      });
+      grow(slab, node.center, node.half);
+    }
+  }
+
+ private:
+  /// The slabs below a node, with what bounds x . n over what they belong to.
+  template <class Visit>
+  void visit(const BoxTree::Node& node, const Visit& visit) const {
+    const auto first = std::size_t(node.first);
+    if (node.count == 0) {
+      for (const std::size_t k : {first, first + 1}) {
+        const BoxTree::Node& child = tree_.nodes[k];
+        visit(child.slab, [&](const dvec3& n) { return child.slab_bound(n); });
+      }
+      return;
+    }
+    for (std::size_t k = first; k < first + std::size_t(node.count); ++k) {
+      visit(tree_.slabs[k], [&](const dvec3& n) { return tree_.slab_bound(k, n); });
+    }
+  }
+
+  BoxTree& tree_;
+};
+
 SceneNet make_net(const BezierPatch& patch, bool rational) {
   SceneNet net;
   for (const dvec4& p : patch.points) {
@@ -118,21 +172,48 @@ SceneElement make_element(SourceKind kind, int index, const BezierPatch& patch) 
           CoonsBvh(patch, coons_tolerance)};
 }
 
-/// The cells of the element's CBVH at which searches start, with the boxes of their control points.
+/// Holds the control points, along the plane of the diagonals; none of a curve.
+Slab slab_of(const BezierPatch& patch, const Box& box) {
+  Slab slab;
+  if (patch.degree_v == 0) return slab;
+  const auto corner = [&](int i, int j) { return euclidean(patch.points[patch.index(i, j)]); };
+  const int p = patch.degree_u;
+  const int q = patch.degree_v;
+  slab.normal = unit(glm::cross(corner(p, q) - corner(0, 0), corner(0, q) - corner(p, 0)));
+  slab.upper = -std::numeric_limits<double>::infinity();
+  slab.lower = -slab.upper;
+  for (const dvec4& x : patch.points) {
+    const double h = glm::dot(euclidean(x), slab.normal);
+    slab.upper = std::max(slab.upper, h);
+    slab.lower = std::min(slab.lower, h);
+  }
+  grow(slab, box.center(), 0.5 * (box.upper - box.lower));
+  return slab;
+}
+
+/// Cells at which searches start, with the boxes and slabs of their control points.
+struct StartCells {
+  std::vector<SceneCell> cells;
+  std::vector<Box> boxes;
+  std::vector<Slab> slabs;
+};
+
+/// Those of an element's CBVH.
 void add_cells(const SceneElement& element, int index, const BezierPatch& patch,
-               const CoonsCell& cell, std::vector<SceneCell>& cells, std::vector<Box>& boxes) {
+               const CoonsCell& cell, StartCells& to) {
   const bool flat = element.bvh.deviation(cell) <= cell_deviation;
   if (!flat && cell.level < cell_level_limit && !element.bvh.is_leaf(cell)) {
     for (const CoonsCell& child : element.bvh.children(cell)) {
-      add_cells(element, index, patch, child, cells, boxes);
+      add_cells(element, index, patch, child, to);
     }
     return;
   }
   const BezierPatch part = restricted(patch, cell.u(), cell.v());
-  cells.push_back({index, cell, make_net(part, element.rational)});
+  to.cells.push_back({index, cell, make_net(part, element.rational)});
   Box box;
   for (const dvec4& p : part.points) box.include(euclidean(p));
-  boxes.push_back(box);
+  to.boxes.push_back(box);
+  to.slabs.push_back(slab_of(part, box));
 }
 
 /// What of a part is queried besides its points: its patches and the pieces of free curves. Borders
@@ -233,15 +314,16 @@ ScenePart make_part(const Part& part, double scale, int threads) {
   });
   result.element_of_patch.assign(part.patches().size(), -1);
   result.element_of_piece.assign(part.pieces().size(), -1);
-  std::vector<Box> boxes;
+  StartCells starts;
   for (std::size_t k = 0; k < built.size(); ++k) {
     const auto [kind, index] = found.elements[k];
     auto& table = kind == SourceKind::face ? result.element_of_patch : result.element_of_piece;
     table[std::size_t(index)] = int(k);
-    add_cells(*built[k], int(k), found.patches[k], built[k]->bvh.root(), result.cells, boxes);
+    add_cells(*built[k], int(k), found.patches[k], built[k]->bvh.root(), starts);
     result.elements.push_back(std::move(*built[k]));
   }
-  result.tree = BoxTree(boxes);
+  result.cells = std::move(starts.cells);
+  result.tree = BoxTree(starts.boxes, starts.slabs);
   std::vector<dvec3> points;
   points.reserve(std::size_t(part.point_count()));
   for (int i = 0; i < part.point_count(); ++i) {
@@ -300,6 +382,12 @@ SceneFrame scene_frame(const Box& box) {
 
 BoxTree::BoxTree(std::span<const Box> boxes) {
   if (!boxes.empty()) BoxTreeBuilder(boxes, *this).build();
+}
+
+BoxTree::BoxTree(std::span<const Box> boxes, std::span<const Slab> of) : BoxTree(boxes) {
+  slabs.reserve(items.size());
+  for (const int item : items) slabs.push_back(of[std::size_t(item)]);
+  NodeSlabs(*this).fill();
 }
 
 BoxTree::BoxTree(std::span<const dvec3> points) {
@@ -471,7 +559,7 @@ std::size_t Scene::memory() const {
   std::size_t bytes = content_->tree.nodes.size() * sizeof(BoxTree::Node);
   for (const ScenePart& part : content_->parts) {
     bytes += part.tree.nodes.size() * sizeof(BoxTree::Node) +
-             part.tree.items.size() * (sizeof(int) + 6 * sizeof(double));
+             part.tree.items.size() * (sizeof(int) + 6 * sizeof(double) + sizeof(Slab));
     bytes += part.point_tree.nodes.size() * sizeof(BoxTree::Node) +
              part.point_tree.items.size() * (sizeof(int) + 3 * sizeof(double));
     for (const SceneElement& element : part.elements) {

@@ -10,8 +10,24 @@
 
 namespace taut {
 
+/// What lies between two parallel planes: lower <= x . normal <= upper.
+struct Slab {
+  dvec3 normal = dvec3(0.0);  ///< unit; zero: there are no planes
+  double lower = 0;
+  double upper = 0;
+  /// Upper bound of x . n over what of a box lies between the planes, up to rounding. That of a box
+  /// about a piece of surface errs by its size where the piece is oblique to the axes; this one, if
+  /// the planes are along the piece, by its size times their angle with n's, and their distance.
+  double upper_bound(const dvec3& center, const dvec3& half, const dvec3& n) const {
+    const double share = glm::dot(normal, n);
+    const dvec3 rest = n - share * normal;
+    return share * (share > 0 ? upper : lower) + glm::dot(center, rest) +
+           glm::dot(half, glm::abs(rest));
+  }
+};
+
 /// A binary hierarchy of axis-parallel boxes over numbered boxes or points, with some of them a
-/// leaf, which lie side by side so that one loop bounds them all.
+/// leaf, which lie side by side so that one loop bounds them all. Boxes may be cut by slabs.
 struct BoxTree {
   static constexpr int leaf_size = 16;
 
@@ -24,6 +40,9 @@ struct BoxTree {
     double upper_bound(const dvec3& n, const dvec3& abs_n) const {
       return glm::dot(center, n) + glm::dot(half, abs_n);
     }
+    Slab slab = {};
+    /// The same over what lies in the slab, too.
+    double slab_bound(const dvec3& n) const { return slab.upper_bound(center, half, n); }
   };
   std::vector<Node> nodes;  ///< the root first; empty without items
 
@@ -31,9 +50,12 @@ struct BoxTree {
   std::vector<int> items;
   /// Of the items' boxes, by coordinate; points have no half-widths.
   std::array<std::vector<double>, 3> center, half;
+  std::vector<Slab> slabs;  ///< of the items; none where none were given
 
   BoxTree() = default;
   explicit BoxTree(std::span<const Box> boxes);
+  /// Each item lies in its box and its slab. @pre as many of either
+  BoxTree(std::span<const Box> boxes, std::span<const Slab> slabs);
   explicit BoxTree(std::span<const dvec3> points);
 
   /// Upper bounds of x . n over the boxes of a leaf's items, up to rounding.
@@ -45,6 +67,12 @@ struct BoxTree {
       bounds[k] = center[0][i] * n.x + center[1][i] * n.y + center[2][i] * n.z +
                   (half[0][i] * abs_n.x + half[1][i] * abs_n.y + half[2][i] * abs_n.z);
     }
+  }
+  /// Over what of the box of an item, the i-th in the order of the leaves, lies in its slab.
+  /// @pre slabs were given
+  double slab_bound(std::size_t i, const dvec3& n) const {
+    return slabs[i].upper_bound({center[0][i], center[1][i], center[2][i]},
+                                {half[0][i], half[1][i], half[2][i]}, n);
   }
 };
 

@@ -171,6 +171,7 @@ class SupportQuery::Search {
 
 void SupportQuery::Search::open_node(const Entry& entry) {
   const bool top = entry.kind == Kind::instance_node;
+  const bool has_slabs = entry.kind == Kind::part_node;
   const BoxTree& tree = tree_of(entry);
   const BoxTree::Node& node = tree.nodes[std::size_t(entry.index)];
   const dvec3& n = top ? n_ : local(entry.instance).n;
@@ -178,9 +179,11 @@ void SupportQuery::Search::open_node(const Entry& entry) {
   const double offset = (top ? 0 : local(entry.instance).offset) + rounding_;
   const std::size_t size = stack_.size();
   if (node.count == 0) {
-    for (const int child : {node.first, node.first + 1}) {
-      push(tree.nodes[std::size_t(child)].upper_bound(n, abs_n) + offset, entry.kind,
-           entry.instance, child);
+    for (const int index : {node.first, node.first + 1}) {
+      const BoxTree::Node& child = tree.nodes[std::size_t(index)];
+      double bound = child.upper_bound(n, abs_n) + offset;
+      if (has_slabs && bound > threshold()) bound = std::min(bound, child.slab_bound(n) + offset);
+      push(bound, entry.kind, entry.instance, index);
     }
   } else if (entry.kind == Kind::point_node) {
     open_points(tree, node, entry.instance);
@@ -194,7 +197,9 @@ void SupportQuery::Search::open_node(const Entry& entry) {
         if (!part.tree.nodes.empty()) push(bounds[k] + offset, Kind::part_node, item, 0);
         if (!part.point_tree.nodes.empty()) push(bounds[k] + offset, Kind::point_node, item, 0);
       } else {
-        push(bounds[k] + offset, Kind::cell, entry.instance, item);
+        if (!(bounds[k] + offset > threshold())) continue;
+        const double bound = std::min(bounds[k], tree.slab_bound(std::size_t(node.first + k), n));
+        push(bound + offset, Kind::cell, entry.instance, item);
       }
     }
   }
