@@ -35,6 +35,9 @@ constexpr double rule_accuracy = 1e-13;
 /// size.
 constexpr double curvature_rounding = 16 * rounding_unit;
 
+/// Nodes of the rules that do for patches that are small beside their radii of curvature.
+constexpr int few_nodes = 6;
+
 /// Adds w times the area element of size dA with unit or any normal, n dA = A.
 void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double w) {
   const double flux = w * glm::dot(x, A);
@@ -132,8 +135,10 @@ class Summation {
 
   void add_scroll(const MovingRuling& m, Sample& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
+  void add_to_line(const GreenRegion& region, const dvec2& p, double at, Sample& sample) const;
+  bool is_plain(const GreenRegion& region, const TrimStretch& stretch) const;
   void add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate, double weight,
-                Sample& sum);
+                Sample& sum, bool plain = false);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -158,20 +163,40 @@ void Summation::find_scrolls() {
   }
 }
 
+/// The integrands on the line from the base to p, where the inner parameter is `at`.
+void Summation::add_to_line(const GreenRegion& region, const dvec2& p, double at,
+                            Sample& sample) const {
+  const Contact c = region.inner == 0 ? region.contact(at, p.y) : region.contact(p.x, at);
+  add_patch(geometry_.jet(c), origin_, region.region->sign, sample);
+}
+
+/// Whether few nodes are accurate on the line to the stretch's middle. On the others they will then
+/// be so too, or halve them.
+bool Summation::is_plain(const GreenRegion& region, const TrimStretch& stretch) const {
+  const dvec2 p = on_side(stretch.side, 0.5 * (stretch.from + stretch.to));
+  int samples = 0;
+  const auto f = [&](double at, double, Sample& sample) {
+    ++samples;
+    add_to_line(region, p, at, sample);
+  };
+  Sums line;
+  integrate<few_nodes>(f, tolerances, region.base, p[region.inner], line);
+  return samples == few_nodes;
+}
+
 /// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
 /// of f from the base to u along u, or that of -G du, G the same along v.
 void Summation::add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate,
-                         double weight, Sample& sum) {
+                         double weight, Sample& sum, bool plain) {
   const int inner = region.inner;
   const double end = p[inner];
   const double across = inner == 0 ? rate.y : -rate.x;
   if (end == region.base || across == 0) return;
   Sums line;
-  const auto f = [&](double at, double, Sample& sample) {
-    const Contact c = inner == 0 ? region.contact(at, p.y) : region.contact(p.x, at);
-    add_patch(geometry_.jet(c), origin_, region.region->sign, sample);
-  };
-  if (std::abs(end - region.base) < 0.25) {
+  const auto f = [&](double at, double, Sample& sample) { add_to_line(region, p, at, sample); };
+  if (plain) {
+    integrate<few_nodes>(f, tolerances, region.base, end, line);
+  } else if (std::abs(end - region.base) < 0.25) {
     integrate<8>(f, tolerances, region.base, end, line);
   } else {
     integrate<16>(f, tolerances, region.base, end, line);
@@ -280,9 +305,11 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
   const bool of_line = of_v == (region.inner == 0);
   if (!of_line && !edge) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
+  if (of_line && !edge && on_side(stretch.side, 0)[region.inner] == region.base) return;
+  const bool plain = of_line && is_plain(region, stretch);
   const auto f = [&](double t, double weight, Sample& sample) {
     const dvec2 p = on_side(stretch.side, t);
-    if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample);
+    if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample, plain);
     if (!edge) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
@@ -290,7 +317,11 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;
   };
-  integrate<16>(f, tolerances, stretch.from, stretch.to, sums_);
+  if (plain && !edge) {
+    integrate<few_nodes>(f, tolerances, stretch.from, stretch.to, sums_);
+  } else {
+    integrate<16>(f, tolerances, stretch.from, stretch.to, sums_);
+  }
 }
 
 /// The polygon of its contacts and what lies between this one's sides and the curved ones.
