@@ -25,9 +25,12 @@ class EvenDivision {
   /// Adds the next interval; `sagitta_root` is the square root of its sagitta.
   void add(double sagitta_root) { sums_.push_back(sums_.back() + sagitta_root); }
 
+  /// As many are needed, before they are rounded.
+  double parts(double sagitta) const { return sums_.back() / std::sqrt(sagitta); }
+
   std::vector<Place> places(double sagitta, int least_parts) const {
     const double parts =
-        std::clamp(std::ceil(sums_.back() / std::sqrt(sagitta)), double(least_parts), most_parts);
+        std::clamp(std::ceil(this->parts(sagitta)), double(least_parts), most_parts);
     std::vector<Place> result = {{0, 0}};
     for (int k = 1; k < int(parts); ++k) {
       const double at = sums_.back() * (k / parts);
@@ -92,11 +95,14 @@ void add_intervals(const std::vector<T>& points, Middle middle, EvenDivision& di
   }
 }
 
+/// Of a space, before the first of evenly spaced places.
+constexpr double first_visit = 0.5;
+
 /// Calls visit with evenly spaced places on intervals of these lengths, the first after half a
 /// space: the interval and the share of it.
 template <class Visit>
 void visit_evenly(const std::vector<double>& lengths, double space, Visit visit) {
-  double to_next = 0.5 * space;
+  double to_next = first_visit * space;
   for (std::size_t k = 0; k < lengths.size(); ++k) {
     while (to_next < lengths[k]) {
       visit(k, to_next / lengths[k]);
@@ -125,6 +131,10 @@ constexpr double largest_step = 0.5;
 
 /// A Bezier border bends smoothly, its sagitta more so.
 constexpr int border_intervals = 32;
+/// As many tell whether a border is worth the others,
+constexpr int coarse_intervals = 4;
+/// where they find more than this share of what it takes to divide it.
+constexpr double worth_dividing = 0.5;
 
 class BoundarySampler {
  public:
@@ -152,7 +162,8 @@ class BoundarySampler {
   bool same_faces(int arc, std::size_t piece, std::size_t other) const;
   bool samples_border(const PatchRegion& region, int face, const TrimStretch& stretch) const;
   void add_border(const PatchRegion& region, const TrimStretch& stretch);
-  std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch) const;
+  std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch,
+                                    int intervals) const;
   Ruling border_place(const PatchRegion& region, Side side, double t) const;
   double border_sagitta(const std::vector<Ruling>& places, const HullCurve& curve) const;
   void add_rows(int arc, int piece);
@@ -291,10 +302,11 @@ Ruling BoundarySampler::border_place(const PatchRegion& region, Side side, doubl
 
 /// Enough to tell how a stretch bends.
 std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
-                                                   const TrimStretch& stretch) const {
+                                                   const TrimStretch& stretch,
+                                                   int intervals) const {
   std::vector<Ruling> places;
-  for (int k = 0; k <= border_intervals; ++k) {
-    const double t = Interval{stretch.from, stretch.to}.at(double(k) / border_intervals);
+  for (int k = 0; k <= intervals; ++k) {
+    const double t = Interval{stretch.from, stretch.to}.at(double(k) / intervals);
     places.push_back(border_place(region, stretch.side, t));
   }
   return places;
@@ -314,13 +326,22 @@ double BoundarySampler::border_sagitta(const std::vector<Ruling>& places,
 }
 
 void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& stretch) {
-  const std::vector<Ruling> places = border_places(region, stretch);
-  EvenDivision division;
-  add_intervals(
-      places, [&] { return places[0]; }, division);
   const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
-  for (const Place& place : division.places(border_sagitta(places, curve), 1)) {
-    const double s = (double(place.interval) + place.s) / border_intervals;
+  int intervals = 0;
+  double sagitta = 0;
+  EvenDivision division;
+  const auto divide = [&](int count) {
+    intervals = count;
+    const std::vector<Ruling> places = border_places(region, stretch, count);
+    sagitta = border_sagitta(places, curve);
+    division = EvenDivision();
+    add_intervals(
+        places, [&] { return places[0]; }, division);
+  };
+  divide(coarse_intervals);
+  if (division.parts(sagitta) > worth_dividing) divide(border_intervals);
+  for (const Place& place : division.places(sagitta, 1)) {
+    const double s = (double(place.interval) + place.s) / intervals;
     const double at = Interval{stretch.from, stretch.to}.at(s);
     const Ruling r = border_place(region, stretch.side, at);
     TouchedFaces touched;
@@ -330,13 +351,20 @@ void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& s
 }
 
 void BoundarySampler::add_border_row(const PatchRegion& region, const TrimStretch& stretch) {
-  const std::vector<Ruling> places = border_places(region, stretch);
+  std::vector<Ruling> places;
   std::vector<double> lengths;
-  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
-    const double form =
-        glm::dot(places[k + 1].n - places[k].n, places[k + 1].point[0] - places[k].point[0]);
-    lengths.push_back(std::sqrt(std::max(form, 0.0)));
-  }
+  const auto measure = [&](int intervals) {
+    places = border_places(region, stretch, intervals);
+    lengths.clear();
+    for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+      const double form =
+          glm::dot(places[k + 1].n - places[k].n, places[k + 1].point[0] - places[k].point[0]);
+      lengths.push_back(std::sqrt(std::max(form, 0.0)));
+    }
+    return std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  };
+  if (!(measure(coarse_intervals) > worth_dividing * first_visit * side_)) return;
+  measure(border_intervals);
   visit_evenly(lengths, side_, [&](std::size_t k, double s) {
     const double at = (double(k) + s) / border_intervals;
     const double t = Interval{stretch.from, stretch.to}.at(at);
