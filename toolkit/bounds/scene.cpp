@@ -54,7 +54,9 @@ class BoxTreeBuilder {
     return {box.center(),
             0.5 * (box.upper - box.lower) +
                 4 * rounding_unit * (glm::abs(box.lower) + glm::abs(box.upper)),
-            0, 0, {}};
+            0,
+            0,
+            {}};
   }
 
   void fill(std::size_t node, std::size_t begin, std::size_t end) {
