@@ -95,6 +95,17 @@ void add_intervals(const std::vector<T>& points, Middle middle, EvenDivision& di
   }
 }
 
+/// Lengths of the intervals between contacts, in the root of the second fundamental form.
+std::vector<double> form_lengths(const std::vector<Ruling>& rulings, std::size_t contact = 0) {
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
+    const double form = glm::dot(rulings[k + 1].n - rulings[k].n,
+                                 rulings[k + 1].point[contact] - rulings[k].point[contact]);
+    lengths.push_back(std::sqrt(std::max(form, 0.0)));
+  }
+  return lengths;
+}
+
 /// Of a space, before the first of evenly spaced places.
 constexpr double first_visit = 0.5;
 
@@ -162,9 +173,9 @@ class BoundarySampler {
   bool same_faces(int arc, std::size_t piece, std::size_t other) const;
   bool samples_border(const PatchRegion& region, int face, const TrimStretch& stretch) const;
   void add_border(const PatchRegion& region, const TrimStretch& stretch);
-  std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch,
-                                    int intervals) const;
+  std::vector<Ruling> border_places(const PatchRegion& region, const TrimStretch& stretch) const;
   Ruling border_place(const PatchRegion& region, Side side, double t) const;
+  std::vector<Ruling> coarse_places(const PatchRegion& region, const TrimStretch& stretch) const;
   double border_sagitta(const std::vector<Ruling>& places, const HullCurve& curve) const;
   void add_rows(int arc, int piece);
   void add_border_row(const PatchRegion& region, const TrimStretch& stretch);
@@ -302,12 +313,28 @@ Ruling BoundarySampler::border_place(const PatchRegion& region, Side side, doubl
 
 /// Enough to tell how a stretch bends.
 std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
-                                                   const TrimStretch& stretch,
-                                                   int intervals) const {
+                                                   const TrimStretch& stretch) const {
   std::vector<Ruling> places;
-  for (int k = 0; k <= intervals; ++k) {
-    const double t = Interval{stretch.from, stretch.to}.at(double(k) / intervals);
+  for (int k = 0; k <= border_intervals; ++k) {
+    const double t = Interval{stretch.from, stretch.to}.at(double(k) / border_intervals);
     places.push_back(border_place(region, stretch.side, t));
+  }
+  return places;
+}
+
+/// Few, without their contacts, and but for a shift of the whole.
+std::vector<Ruling> BoundarySampler::coarse_places(const PatchRegion& region,
+                                                   const TrimStretch& stretch) const {
+  const Part& part = geometry_.part({region.instance, SourceKind::face, region.patch, 0, 0});
+  const BezierPatch& patch = part.patches()[std::size_t(region.patch)].bezier;
+  std::vector<Ruling> places;
+  for (int k = 0; k <= coarse_intervals; ++k) {
+    const double t = Interval{stretch.from, stretch.to}.at(double(k) / coarse_intervals);
+    const dvec2 uv = on_side(stretch.side, t);
+    const PatchJet1 j = jet1(patch, uv.x, uv.y);
+    const dvec3 n = double(region.sign) * unit(glm::cross(j.Su, j.Sv));
+    const dvec3 x = geometry_.to_frame(region.instance, frame_.scale * j.S);
+    places.push_back({geometry_.to_frame(region.instance, n), {}, {x, x}});
   }
   return places;
 }
@@ -327,21 +354,20 @@ double BoundarySampler::border_sagitta(const std::vector<Ruling>& places,
 
 void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& stretch) {
   const HullCurve& curve = boundary_.curves[std::size_t(stretch.curve)];
-  int intervals = 0;
   double sagitta = 0;
   EvenDivision division;
-  const auto divide = [&](int count) {
-    intervals = count;
-    const std::vector<Ruling> places = border_places(region, stretch, count);
+  const auto divide = [&](const std::vector<Ruling>& places) {
     sagitta = border_sagitta(places, curve);
     division = EvenDivision();
     add_intervals(
         places, [&] { return places[0]; }, division);
   };
-  divide(coarse_intervals);
-  if (division.parts(sagitta) > worth_dividing) divide(border_intervals);
+  divide(coarse_places(region, stretch));
+  const bool coarse = division.parts(sagitta) <= worth_dividing;
+  if (!coarse) divide(border_places(region, stretch));
   for (const Place& place : division.places(sagitta, 1)) {
-    const double s = (double(place.interval) + place.s) / intervals;
+    const double s =
+        (double(place.interval) + place.s) / (coarse ? coarse_intervals : border_intervals);
     const double at = Interval{stretch.from, stretch.to}.at(s);
     const Ruling r = border_place(region, stretch.side, at);
     TouchedFaces touched;
@@ -351,21 +377,11 @@ void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& s
 }
 
 void BoundarySampler::add_border_row(const PatchRegion& region, const TrimStretch& stretch) {
-  std::vector<Ruling> places;
-  std::vector<double> lengths;
-  const auto measure = [&](int intervals) {
-    places = border_places(region, stretch, intervals);
-    lengths.clear();
-    for (std::size_t k = 0; k + 1 < places.size(); ++k) {
-      const double form =
-          glm::dot(places[k + 1].n - places[k].n, places[k + 1].point[0] - places[k].point[0]);
-      lengths.push_back(std::sqrt(std::max(form, 0.0)));
-    }
-    return std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  };
-  if (!(measure(coarse_intervals) > worth_dividing * first_visit * side_)) return;
-  measure(border_intervals);
-  visit_evenly(lengths, side_, [&](std::size_t k, double s) {
+  const std::vector<double> coarse = form_lengths(coarse_places(region, stretch));
+  const double length = std::accumulate(coarse.begin(), coarse.end(), 0.0);
+  if (length <= worth_dividing * first_visit * side_) return;
+  const std::vector<Ruling> places = border_places(region, stretch);
+  visit_evenly(form_lengths(places), side_, [&](std::size_t k, double s) {
     const double at = (double(k) + s) / border_intervals;
     const double t = Interval{stretch.from, stretch.to}.at(at);
     const Ruling r = border_place(region, stretch.side, t);
@@ -452,13 +468,7 @@ void BoundarySampler::add_rows(int arc, int piece) {
       boundary_.arcs[std::size_t(arc)].pieces[std::size_t(piece)].rulings;
   for (std::size_t i = 0; i < 2; ++i) {
     if (rulings.front().contact[i].kind != SourceKind::face) continue;
-    std::vector<double> lengths;
-    for (std::size_t k = 0; k + 1 < rulings.size(); ++k) {
-      const double form =
-          glm::dot(rulings[k + 1].n - rulings[k].n, rulings[k + 1].point[i] - rulings[k].point[i]);
-      lengths.push_back(std::sqrt(std::max(form, 0.0)));
-    }
-    visit_evenly(lengths, side_, [&](std::size_t k, double s) {
+    visit_evenly(form_lengths(rulings, i), side_, [&](std::size_t k, double s) {
       const std::optional<Ruling> r = ruling_between(system_, rulings[k], rulings[k + 1], s);
       if (!r) return;
       const dvec3 across = unit(r->point[i] - r->point[1 - i]);
