@@ -1,9 +1,13 @@
 #include "taut/hull/surface_seeds.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/merging.h"
@@ -29,17 +33,79 @@ Sighting looked(const ContactGeometry& geometry, SupportQuery& query, const Cont
   return {false, n, geometry.canonical(top.contact)};
 }
 
+/// Looks as looked() does, but without a query at points that support in nearly the same direction
+/// as one that was looked at before: corners of patches that meet there smoothly.
+class Lookout {
+ public:
+  Lookout(const ContactGeometry& geometry, SupportQuery& query)
+      : geometry_(geometry),
+        query_(query),
+        diameter_(geometry.scene().frame().length_to_frame(geometry.scene().diagonal())) {}
+
+  Sighting operator()(const Contact& c, int sign) {
+    const dvec3 n = double(sign) * unit_normal(geometry_, c);
+    if (n == dvec3(0.0)) return {};
+    const dvec3 x = geometry_.point(c);
+    Known& known = known_[cube_of(x)];
+    // For y anywhere on the model (y - x) . n is (y - x) . m + (y - x) . (n - m).
+    const double excess = known.h - glm::dot(x, known.n) + diameter_ * glm::distance(n, known.n);
+    if (excess <= geometry_.tie()) return {true, n, c};
+    const Support top = query_(n, c);
+    if (top.h > glm::dot(x, n) + geometry_.tie()) {
+      return {false, n, geometry_.canonical(top.contact)};
+    }
+    known = {n, top.h};
+    return {true, n, c};
+  }
+
+ private:
+  /// A direction and its support value.
+  struct Known {
+    dvec3 n = dvec3(0.0);
+    double h = std::numeric_limits<double>::infinity();
+  };
+  using Cube = std::array<std::int64_t, 3>;
+  struct Hash {
+    std::size_t operator()(const Cube& cube) const {
+      std::uint64_t hash = 0;
+      for (const std::int64_t k : cube) hash = (hash ^ std::uint64_t(k)) * 0x9e3779b97f4a7c15;
+      return std::size_t(hash ^ (hash >> 32U));
+    }
+  };
+
+  /// Points that are the same but for rounding are in one, but for a few at the sides of two.
+  static Cube cube_of(const dvec3& x) {
+    const auto at = [](double t) { return std::int64_t(std::floor(std::ldexp(t, cube_level))); };
+    return {at(x.x), at(x.y), at(x.z)};
+  }
+  /// Of sizes 2^-level, in the scene's frame.
+  static constexpr int cube_level = 30;
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  double diameter_;
+  std::unordered_map<Cube, Known, Hash> known_;
+};
+
 bool in_range(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v <= 1; }
 
 }  // namespace
 
 std::vector<SupportChange> support_changes(const ContactGeometry& geometry, SupportQuery& query,
                                            const std::vector<CulledCell>& cells) {
-  using Place = std::tuple<int, int, int, double, double>;
+  using Place = std::tuple<int, double, double>;
+  // Of the cells of one patch.
   std::map<Place, Sighting> sightings;
   std::set<std::pair<Place, Place>> sides;
+  std::pair<int, int> patch(-1, -1);
+  Lookout look(geometry, query);
   std::vector<SupportChange> changes;
   for (const CulledCell& cell : cells) {
+    if (patch != std::pair(cell.instance, cell.patch)) {
+      patch = {cell.instance, cell.patch};
+      sightings.clear();
+      sides.clear();
+    }
     if (cell.state != CellState::mixed ||
         geometry.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0})) {
       continue;
@@ -56,9 +122,9 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
       for (std::size_t k = 0; k < 4; ++k) {
         const dvec2& at = corners[k];
         contacts[k] = {cell.instance, SourceKind::face, cell.patch, at.x, at.y};
-        places[k] = {cell.instance, cell.patch, sign, at.x, at.y};
+        places[k] = {sign, at.x, at.y};
         const auto [found, is_new] = sightings.try_emplace(places[k]);
-        if (is_new) found->second = looked(geometry, query, contacts[k], sign);
+        if (is_new) found->second = look(contacts[k], sign);
         seen[k] = &found->second;
       }
       for (std::size_t a = 0; a < 4; ++a) {

@@ -19,7 +19,7 @@ struct SupportChange {
   Contact winner;  ///< supports in n
 };
 
-/// All of them at the mixed cells' sides, none twice.
+/// All of them at the mixed cells' sides, none twice. @pre the cells of a patch follow each other
 std::vector<SupportChange> support_changes(const ContactGeometry& geometry, SupportQuery& query,
                                            const std::vector<CulledCell>& cells);
 
