@@ -78,11 +78,13 @@ class ReachTest::Search {
     return below(d.upper_bounds(center, half) + offset_);
   }
 
+  /// `slab`: none if the tree has none.
   bool box_below(const Directions& d, const dvec3& center, const dvec3& half,
-                 const Slab& slab) const {
+                 const Slab* slab) const {
     const dvec4 bounds = d.upper_bounds(center, half);
-    return below(bounds + offset_) ||
-           below(glm::min(bounds, d.upper_bounds(center, half, slab)) + offset_);
+    if (below(bounds + offset_)) return true;
+    return slab != nullptr &&
+           below(glm::min(bounds, d.upper_bounds(center, half, *slab)) + offset_);
   }
 
   bool instances_below(std::size_t index) {
@@ -121,15 +123,15 @@ class ReachTest::Search {
   bool cells_below(std::size_t index) {
     const BoxTree& tree = part_->tree;
     const BoxTree::Node& node = tree.nodes[index];
-    if (box_below(local_, node.center, node.half, node.slab)) return true;
+    const bool has_slabs = !tree.slabs.empty();
+    if (box_below(local_, node.center, node.half, has_slabs ? &node.slab : nullptr)) return true;
     const auto first = std::size_t(node.first);
     if (node.count == 0) return cells_below(first) && cells_below(first + 1);
     for (std::size_t i = first; i < first + std::size_t(node.count); ++i) {
       const dvec3 center(tree.center[0][i], tree.center[1][i], tree.center[2][i]);
       const dvec3 half(tree.half[0][i], tree.half[1][i], tree.half[2][i]);
-      if (!box_below(local_, center, half, tree.slabs[i]) && !cell_below(tree.items[i])) {
-        return false;
-      }
+      const Slab* slab = has_slabs ? &tree.slabs[i] : nullptr;
+      if (!box_below(local_, center, half, slab) && !cell_below(tree.items[i])) return false;
     }
     return true;
   }

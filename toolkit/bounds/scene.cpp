@@ -193,6 +193,10 @@ Slab slab_of(const BezierPatch& patch, const Box& box) {
   return slab;
 }
 
+/// Of fewer cells slabs rule out hardly any that boxes do not: those near a contact are all of
+/// them.
+constexpr std::size_t least_slabs = 1024;
+
 /// Cells at which searches start, with the boxes and slabs of their control points.
 struct StartCells {
   std::vector<SceneCell> cells;
@@ -325,7 +329,8 @@ ScenePart make_part(const Part& part, double scale, int threads) {
     result.elements.push_back(std::move(*built[k]));
   }
   result.cells = std::move(starts.cells);
-  result.tree = BoxTree(starts.boxes, starts.slabs);
+  const bool many = starts.boxes.size() >= least_slabs;
+  result.tree = many ? BoxTree(starts.boxes, starts.slabs) : BoxTree(starts.boxes);
   std::vector<dvec3> points;
   points.reserve(std::size_t(part.point_count()));
   for (int i = 0; i < part.point_count(); ++i) {
@@ -561,7 +566,8 @@ std::size_t Scene::memory() const {
   std::size_t bytes = content_->tree.nodes.size() * sizeof(BoxTree::Node);
   for (const ScenePart& part : content_->parts) {
     bytes += part.tree.nodes.size() * sizeof(BoxTree::Node) +
-             part.tree.items.size() * (sizeof(int) + 6 * sizeof(double) + sizeof(Slab));
+             part.tree.items.size() * (sizeof(int) + 6 * sizeof(double)) +
+             part.tree.slabs.size() * sizeof(Slab);
     bytes += part.point_tree.nodes.size() * sizeof(BoxTree::Node) +
              part.point_tree.items.size() * (sizeof(int) + 3 * sizeof(double));
     for (const SceneElement& element : part.elements) {

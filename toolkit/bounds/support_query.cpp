@@ -171,8 +171,8 @@ class SupportQuery::Search {
 
 void SupportQuery::Search::open_node(const Entry& entry) {
   const bool top = entry.kind == Kind::instance_node;
-  const bool has_slabs = entry.kind == Kind::part_node;
   const BoxTree& tree = tree_of(entry);
+  const bool has_slabs = !tree.slabs.empty();
   const BoxTree::Node& node = tree.nodes[std::size_t(entry.index)];
   const dvec3& n = top ? n_ : local(entry.instance).n;
   const dvec3& abs_n = top ? abs_n_ : local(entry.instance).abs_n;
@@ -197,9 +197,11 @@ void SupportQuery::Search::open_node(const Entry& entry) {
         if (!part.tree.nodes.empty()) push(bounds[k] + offset, Kind::part_node, item, 0);
         if (!part.point_tree.nodes.empty()) push(bounds[k] + offset, Kind::point_node, item, 0);
       } else {
-        if (!(bounds[k] + offset > threshold())) continue;
-        const double bound = std::min(bounds[k], tree.slab_bound(std::size_t(node.first + k), n));
-        push(bound + offset, Kind::cell, entry.instance, item);
+        double bound = bounds[k] + offset;
+        if (has_slabs && bound > threshold()) {
+          bound = std::min(bound, tree.slab_bound(std::size_t(node.first + k), n) + offset);
+        }
+        push(bound, Kind::cell, entry.instance, item);
       }
     }
   }
