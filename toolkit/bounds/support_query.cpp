@@ -181,8 +181,10 @@ void SupportQuery::Search::open_node(const Entry& entry) {
   if (node.count == 0) {
     for (const int index : {node.first, node.first + 1}) {
       const BoxTree::Node& child = tree.nodes[std::size_t(index)];
-      double bound = child.upper_bound(n, abs_n) + offset;
-      if (has_slabs && bound > threshold()) bound = std::min(bound, child.slab_bound(n) + offset);
+      const double bound = child.upper_bound(n, abs_n) + offset;
+      if (!(bound > threshold())) continue;
+      // Slabs only rule out: the way through the model is that of the boxes.
+      if (has_slabs && !(child.slab_bound(n) + offset > threshold())) continue;
       push(bound, entry.kind, entry.instance, index);
     }
   } else if (entry.kind == Kind::point_node) {
@@ -197,10 +199,10 @@ void SupportQuery::Search::open_node(const Entry& entry) {
         if (!part.tree.nodes.empty()) push(bounds[k] + offset, Kind::part_node, item, 0);
         if (!part.point_tree.nodes.empty()) push(bounds[k] + offset, Kind::point_node, item, 0);
       } else {
-        double bound = bounds[k] + offset;
-        if (has_slabs && bound > threshold()) {
-          bound = std::min(bound, tree.slab_bound(std::size_t(node.first + k), n) + offset);
-        }
+        const double bound = bounds[k] + offset;
+        if (!(bound > threshold())) continue;
+        const auto place = std::size_t(node.first + k);
+        if (has_slabs && !(tree.slab_bound(place, n) + offset > threshold())) continue;
         push(bound, Kind::cell, entry.instance, item);
       }
     }
