@@ -145,7 +145,7 @@ constexpr int border_intervals = 32;
 /// As many tell whether a border is worth the others,
 constexpr int coarse_intervals = 4;
 /// where they find more than this share of what it takes to divide it.
-constexpr double worth_dividing = 0.5;
+constexpr double worth_dividing = 0.9;
 
 class BoundarySampler {
  public:
