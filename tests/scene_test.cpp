@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
+#include "freeform.h"
 #include "hull_checks.h"
 #include "support_checks.h"
+#include "taut/bounds/scene_content.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 
@@ -292,6 +296,66 @@ TEST(Scene, PartsWithoutInstancesDoNotCount) {
   model.add_part(std::move(part), smooth_join_angle);
   const Scene scene(model);
   expect_box(scene, {1, 2, 3}, {2, 4, 6}, "two points");
+}
+
+/// Largest x . n over the control points of a part's cell.
+double highest(const ScenePart& part, int cell, const dvec3& n) {
+  const SceneNet& net = part.cells[std::size_t(cell)].net;
+  double result = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < net.x.size(); ++k) {
+    result = std::max(result, glm::dot(dvec3(net.x[k], net.y[k], net.z[k]), n) / net.w[k]);
+  }
+  return result;
+}
+
+/// The same over all cells below a node, all of which the node's slab must bound.
+double expect_bound_below(const ScenePart& part, std::size_t index, const dvec3& n) {
+  const BoxTree& tree = part.tree;
+  const BoxTree::Node& node = tree.nodes[index];
+  const auto first = std::size_t(node.first);
+  double result = -std::numeric_limits<double>::infinity();
+  if (node.count == 0) {
+    for (const std::size_t k : {first, first + 1}) {
+      result = std::max(result, expect_bound_below(part, k, n));
+    }
+  }
+  for (std::size_t k = first; k < first + std::size_t(node.count); ++k) {
+    const double own = highest(part, tree.items[k], n);
+    EXPECT_GE(tree.slab_bound(k, n), own);
+    result = std::max(result, own);
+  }
+  EXPECT_GE(node.slab_bound(n), result);
+  return result;
+}
+
+TEST(Scene, SlabsBoundWhatIsBelowThem) {
+  Random random(7);
+  Dent dent;
+  dent.direction = random_direction(random);
+  for (Shape shape : {torus(2, 0.5), dented_body({dent})}) {
+    for (int k = 0; k < 4; ++k) shape = split(shape, 0.5, 0.5);
+    const Scene scene = make_scene(shape);
+    const ScenePart& part = scene.content().parts.at(0);
+    ASSERT_EQ(part.tree.slabs.size(), part.cells.size());
+    std::vector<dvec3> normals = special_directions(random);
+    for (const dvec3& n : random_directions(random, 30)) normals.push_back(n);
+    for (const dvec3& n : normals) expect_bound_below(part, 0, n);
+  }
+}
+
+/// Across the plane of a small piece of surface its slab is far thinner than its box.
+TEST(Scene, SlabsAreThin) {
+  Shape shape = torus(2, 0.5);
+  for (int k = 0; k < 4; ++k) shape = split(shape, 0.5, 0.5);
+  const Scene scene = make_scene(shape);
+  const BoxTree& tree = scene.content().parts.at(0).tree;
+  int thin = 0;
+  for (std::size_t k = 0; k < tree.slabs.size(); ++k) {
+    const Slab& slab = tree.slabs[k];
+    const dvec3 half(tree.half[0][k], tree.half[1][k], tree.half[2][k]);
+    thin += 10 * (slab.upper - slab.lower) < 2 * glm::dot(half, glm::abs(slab.normal)) ? 1 : 0;
+  }
+  EXPECT_GT(10 * thin, 9 * int(tree.slabs.size()));
 }
 
 TEST(Scene, MemoryIsSharedByInstances) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "freeform.h"
 #include "support_checks.h"
 #include "taut/core/error.h"
 
@@ -45,6 +46,17 @@ TEST(SupportQuery, Torus) {
     return 2 * std::sqrt(n.x * n.x + n.y * n.y) + 0.5L * glm::length(n);
   });
   expect_support(scene, truth, directions(3, 300), "torus", circle_rounding);
+}
+
+TEST(SupportQuery, ManySmallPatches) {
+  Shape shape = torus(2, 0.5);
+  for (int k = 0; k < 4; ++k) shape = split(shape, 0.5, 0.5);
+  const Scene scene = make_scene(shape);
+  const auto truth = closed_form(scene, [](const rvec3& n) {
+    return 2 * std::sqrt(n.x * n.x + n.y * n.y) + 0.5L * glm::length(n);
+  });
+  // Control points of halves of halves are rounded each time.
+  expect_support(scene, truth, directions(13, 300), "torus of many patches", 4 * circle_rounding);
 }
 
 TEST(SupportQuery, Circles) {
