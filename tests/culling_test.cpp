@@ -12,6 +12,7 @@
 #include "surface_checks.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
+#include "taut/hull/free_ends.h"
 
 namespace taut {
 namespace {
@@ -434,6 +435,35 @@ TEST(CellRefinement, OfRandomPatches) {
     }
     expect_true(check(scene, decided, 500), std::to_string(k));
   }
+}
+
+/// Contacts merge where the curvature changes sign.
+TEST(Culling, FreeEndsAreInNoCellThatIsCurvedOneWay) {
+  long definite = 0;
+  std::size_t ends = 0;
+  for (const int lobes : {2, 3}) {
+    Dent dent;
+    dent.lobes = lobes;
+    const Scene scene = make_scene(dented_body({dent}));
+    const Culling culling = culled(scene, 1);
+    const ContactGeometry geometry(scene);
+    SupportQuery query(scene);
+    for (const FreeEnd& end : free_ends(geometry, query, culling.cells)) {
+      ++ends;
+      for (const CulledCell& cell : culling.cells) {
+        const bool holds =
+            cell.patch == end.contact.element && cell.cell.u().lower <= end.contact.u &&
+            end.contact.u <= cell.cell.u().upper && cell.cell.v().lower <= end.contact.v &&
+            end.contact.v <= cell.cell.v().upper;
+        EXPECT_FALSE(holds && cell.definite);
+      }
+    }
+    definite += std::count_if(culling.cells.begin(), culling.cells.end(), [](const CulledCell& c) {
+      return c.state == CellState::mixed && c.definite;
+    });
+  }
+  EXPECT_GE(ends, 4U);
+  EXPECT_GT(definite, 0);
 }
 
 }  // namespace
