@@ -29,6 +29,7 @@ taut::Report sample() {
   measures.centroid = taut::dvec3(1, 2, 0.7);
   measures.inertia = taut::dmat3(1, 2, 3, 2, 4, 5, 3, 5, 0.6);
   report.hull.mean_width = 0.9;
+  report.hull.measures_accuracy = 1e-11;
   report.hull.gap_bound = 1e-7;
   report.mesh.vertices = 5'000'000'000;
   report.mesh.edges = 9;
@@ -62,7 +63,7 @@ TEST(Report, KeysOfTheContractInOrder) {
             (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
   EXPECT_EQ(keys(json["hull"]),
             (Keys{"patches", "scrolls", "facets", "curves", "unresolved", "volume", "area",
-                  "centroid", "inertia", "mean_width", "gap_bound"}));
+                  "centroid", "inertia", "mean_width", "measures_accuracy", "gap_bound"}));
   EXPECT_EQ(keys(json["mesh"]), (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance",
                                       "distance_bound", "files"}));
   for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));

@@ -5,14 +5,17 @@
 
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_system.h"
+#include "taut/hull/curve_point.h"
 #include "taut/hull/pole_passage.h"
 
 namespace taut {
 namespace {
 
-/// Where the contacts of a curve are well determined; beside patches' corners more pieces arise from
-/// rounding.
-constexpr double least_piece = 1e-10;
+/// Steps no longer than this are none, and what is no farther from a border is on it.
+constexpr double least_piece = margin_slack;
+/// The same where a contact goes from border to border of its element: beside a corner, or off and
+/// on a join that it runs along, where rounding moves it far along the one while hardly off it.
+constexpr double least_piece_at_corner = 1e-10;
 
 /// The same contacts, and with them the same direction: that of a patch tells it.
 bool has_contacts(const Ruling& a, const Ruling& b) {
@@ -30,14 +33,53 @@ double distance(const Ruling& a, const Ruling& b) {
                    square(b.point[1] - a.point[1]));
 }
 
+double uncertainty(const ContactGeometry& geometry, const Ruling& r) {
+  return ContactSystem(geometry).uncertainty(CommonSupport(geometry, r));
+}
+
+/// One of the contacts lies on borders of its element where the piece begins and where it ends.
+bool passes_corner(const ArcPiece& piece) {
+  const auto on_border = [](const Contact& c) {
+    const auto is_end = [](double t) { return t == 0 || t == 1; };
+    return c.kind == SourceKind::vertex || is_end(c.u) ||
+           (c.kind == SourceKind::face && is_end(c.v));
+  };
+  const Ruling& first = piece.rulings.front();
+  const Ruling& last = piece.rulings.back();
+  return (on_border(first.contact[0]) && on_border(last.contact[0])) ||
+         (on_border(first.contact[1]) && on_border(last.contact[1]));
+}
+
+/// How far contacts may be moved to where they cross borders with others.
+double reach(const ContactGeometry& geometry, const Ruling& r) {
+  return std::clamp(uncertainty(geometry, r), least_piece_at_corner, longest_empty_piece);
+}
+
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
 /// they reach there.
 void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
   ruling.n = place.n;
   ruling.point = place.point;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Contact c = snapped(geometry, place.contact[i], shortest_piece(geometry, place));
+    const Contact c = snapped(geometry, place.contact[i], reach(geometry, place));
     if (const auto own = in_element(geometry, c, ruling.contact[i])) ruling.contact[i] = *own;
+  }
+}
+
+void set_contact(const ContactGeometry& geometry, Ruling& ruling, std::size_t i,
+                 const Contact& place) {
+  if (place.u == ruling.contact[i].u && place.v == ruling.contact[i].v) return;
+  ruling.contact[i] = place;
+  ruling.point[i] = geometry.point(place);
+}
+
+/// Puts contacts on borders to which they are so near that they cross them there.
+void move_to_borders(const ContactGeometry& geometry, Ruling& ruling) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact c = snapped(geometry, ruling.contact[i], reach(geometry, ruling));
+    if (const auto own = in_element(geometry, c, ruling.contact[i])) {
+      set_contact(geometry, ruling, i, *own);
+    }
   }
 }
 
@@ -88,9 +130,10 @@ void tell_along_joins(const ContactGeometry& geometry, ArcPiece& piece) {
 
 }  // namespace
 
-double shortest_piece(const ContactGeometry& geometry, const Ruling& at) {
-  const double uncertainty = ContactSystem(geometry).uncertainty(CommonSupport(geometry, at));
-  return std::clamp(uncertainty, least_piece, longest_empty_piece);
+double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece) {
+  const Ruling& first = piece.rulings.front();
+  const double least = passes_corner(piece) ? least_piece_at_corner : least_piece;
+  return std::clamp(uncertainty(geometry, first), least, longest_empty_piece);
 }
 
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
@@ -105,7 +148,7 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
     for (const Ruling& b : rulings) {
       if (!has_contacts(a, b)) length = std::max(length, distance(a, b));
     }
-    return length < longest && (ends || length < shortest_piece(geometry, a));
+    return length < longest && (ends || length < shortest_piece(geometry, pieces[k]));
   };
   // Leaving a piece out shortens those about it.
   for (std::size_t count = 0; count != pieces.size();) {
@@ -120,8 +163,8 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
         // One contact crosses its border here, the other one in the piece's other end.
         Ruling& before = pieces[k - 1].rulings.back();
         Ruling& after = pieces[k + 1].rulings.front();
-        move_to(geometry, before, before);
-        move_to(geometry, after, after);
+        move_to_borders(geometry, before);
+        move_to_borders(geometry, after);
         set_places(geometry, after, before);
       }
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
@@ -142,13 +185,13 @@ void reverse(std::vector<ArcPiece>& pieces) {
   }
 }
 
-void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& other) {
+void set_places(const ContactGeometry& geometry, Ruling& ruling, Ruling& other) {
   for (std::size_t i = 0; i < 2; ++i) {
     auto own = expressed_in(geometry, other.contact[i], ruling.contact[i]);
     if (!own) {
-      const Contact place =
-          moved_to_border(geometry, other.contact[i], shortest_piece(geometry, other));
+      const Contact place = moved_to_border(geometry, other.contact[i], reach(geometry, other));
       own = expressed_in(geometry, place, ruling.contact[i]);
+      if (own) set_contact(geometry, other, i, place);
     }
     if (!own) continue;
     ruling.contact[i] = *own;

@@ -7,9 +7,9 @@
 
 namespace taut {
 
-/// Pieces of arcs shorter than this at a ruling, in (n, x_0, x_1), are none: rounding may make them
-/// of nothing. Not more than longest_empty_piece.
-double shortest_piece(const ContactGeometry& geometry, const Ruling& at);
+/// Pieces of arcs shorter than this, in (n, x_0, x_1), are none: rounding may make them of nothing.
+/// Not more than longest_empty_piece.
+double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece);
 inline constexpr double longest_empty_piece = 1e-7;
 
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
@@ -24,8 +24,8 @@ void reverse(std::vector<ArcPiece>& pieces);
 bool same_elements(const Ruling& a, const Ruling& b);
 
 /// Puts contacts where the other ruling has them, in their own elements, as far as these reach
-/// there: up to shortest_piece().
-void set_places(const ContactGeometry& geometry, Ruling& ruling, const Ruling& other);
+/// there. The other's contacts are put on borders that are no farther than rounding makes them.
+void set_places(const ContactGeometry& geometry, Ruling& ruling, Ruling& other);
 
 /// Appends pieces that go on where these end.
 void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more);

@@ -182,7 +182,7 @@ void Trace::begin_piece(const Ruling& first) {
 /// place, which steps too short to count may have left.
 void Trace::continue_in_piece() {
   Ruling first = point_.at.ruling();
-  const Ruling last = arc_.pieces.back().rulings.back();
+  Ruling& last = arc_.pieces.back().rulings.back();
   if (arc_.pieces.back().rulings.size() < 2 && arc_.pieces.size() > 1) {
     // It is dropped: the one before ends there.
     set_places(geometry_, arc_.pieces[arc_.pieces.size() - 2].rulings.back(), last);

@@ -183,7 +183,7 @@ double ContactSystem::uncertainty(const CommonSupport& s) const {
   const Linearized l(s);
   const Eigen::JacobiSVD<Matrix> decomposition(l.matrix.topRows(l.rows));
   const double smallest = decomposition.singularValues().minCoeff();
-  return smallest > 0 ? residual_limit / smallest : infinity;
+  return smallest > 0 ? geometry_.rounding() / smallest : infinity;
 }
 
 bool ContactSystem::solve(CommonSupport& s) const {

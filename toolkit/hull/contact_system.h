@@ -86,9 +86,9 @@ class ContactSystem {
   /// singular it is one of the directions that solve it.
   std::optional<CurveTangent> tangent(const CommonSupport& s, const CurveTangent* before) const;
 
-  /// How far rounding may move two contacts off where their curve has them, in (n, x_0, x_1):
-  /// what residuals may be off by, over the smallest singular value of the system. Infinite where
-  /// that is singular.
+  /// How far the rounding of coordinates may move two contacts off where their curve has them, in
+  /// (n, x_0, x_1): it over the smallest singular value of the system. Infinite where that is
+  /// singular.
   double uncertainty(const CommonSupport& s) const;
 
   long iterations() const { return iterations_; }

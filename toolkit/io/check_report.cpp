@@ -10,6 +10,9 @@
 namespace taut {
 namespace {
 
+/// Measures that a report says are known no better than this are compared as if they were.
+constexpr double least_accuracy = 1e-7;
+
 const DocumentValue* find(const DocumentValue* object, std::string_view key) {
   if (object == nullptr) return nullptr;
   const auto* members = std::get_if<DocumentValue::Object>(&object->value);
@@ -72,6 +75,7 @@ void ReportCheck::compare_counts(const HullDocument& hull) {
 
 void ReportCheck::compare_measures(const DocumentMeasures& measures, double accuracy) {
   const DocumentValue* exact = find(&report_, "hull");
+  accuracy += std::min(number(find(exact, "measures_accuracy")).value_or(0), least_accuracy);
   compare("volume", exact, measures.volume, accuracy);
   compare("area", exact, measures.area, accuracy);
   // Where stand-ins meet, normals jump, which integrals of curvature miss: either width is within

@@ -34,6 +34,7 @@ Json to_json(const Report::ExactHull& hull) {
     json["inertia"] = {to_json(inertia[0]), to_json(inertia[1]), to_json(inertia[2])};
   }
   if (hull.mean_width) json["mean_width"] = *hull.mean_width;
+  if (hull.measures_accuracy) json["measures_accuracy"] = *hull.measures_accuracy;
   if (hull.gap_bound) json["gap_bound"] = *hull.gap_bound;
   return json;
 }

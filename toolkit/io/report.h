@@ -32,6 +32,8 @@ struct Report {
     std::optional<Counts> counts;
     std::optional<Measures> measures;
     std::optional<double> mean_width;
+    /// Estimated relative accuracy of volume, area and mean width (BoundaryMeasures).
+    std::optional<double> measures_accuracy;
     std::optional<double> gap_bound;
   } hull;
   struct Mesh {

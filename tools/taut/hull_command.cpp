@@ -194,6 +194,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
           measure(input.scene(), ContactGeometry(input.scene()), boundary);
       exact.measures = measures;
       exact.mean_width = measures.mean_width;
+      exact.measures_accuracy = measures.accuracy;
       if (!(measures.accuracy <= worst_accuracy)) {
         console.warn("inexact-measures",
                      "the measures of the exact hull are accurate to " +
