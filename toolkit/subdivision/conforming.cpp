@@ -295,7 +295,17 @@ void divide(const SurfaceTriangle& whole, const std::array<bool, 4>& split, Edge
   }
   for (const SubTriangle& part : parts) {
     SurfaceTriangle piece = whole;
-    piece.points = sub_triangle(whole.points, part.corners);
+    if (whole.exact) {
+      if (whole.whole.empty()) piece.whole = whole.points;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const dvec3& at = part.corners[k];
+        piece.corners[k] =
+            at.x * whole.corners[0] + at.y * whole.corners[1] + at.z * whole.corners[2];
+      }
+      piece.points = sub_triangle(piece.whole, piece.corners);
+    } else {
+      piece.points = sub_triangle(whole.points, part.corners);
+    }
     piece.vertices = part.vertices;
     piece.smooth = part.smooth;
     result.push_back(std::move(piece));
@@ -304,8 +314,9 @@ void divide(const SurfaceTriangle& whole, const std::array<bool, 4>& split, Edge
 
 void add_quads(const SurfaceTriangle& triangle, EdgeMiddles& middles,
                std::vector<SurfacePatch>& result) {
-  const std::array<dvec3, 3> c = {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)};
+  const std::array<dvec3, 3>& c = triangle.corners;
   const dvec3 centre = (c[0] + c[1] + c[2]) / 3.0;
+  const std::vector<dvec3>& points = triangle.whole.empty() ? triangle.points : triangle.whole;
   const std::array<int, 3>& v = triangle.vertices;
   const int inner = middles.add_vertex();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -313,7 +324,7 @@ void add_quads(const SurfaceTriangle& triangle, EdgeMiddles& middles,
     const dvec3 to_next = 0.5 * (c[k] + c[(k + 1) % 3]);
     const dvec3 to_last = 0.5 * (c[k] + c[before]);
     SurfacePatch quad;
-    quad.bezier = quad_of_triangle(triangle.points, {c[k], to_last, to_next, centre});
+    quad.bezier = quad_of_triangle(points, {c[k], to_last, to_next, centre});
     quad.cage_face = triangle.cage_face;
     quad.vertices = {v[k], middles.add(v[k], v[before]), middles.add(v[k], v[(k + 1) % 3]), inner};
     quad.exact = triangle.exact;
@@ -474,6 +485,7 @@ class Division {
       Polygon& polygon = polygons_[to_size(side / k)];
       if (side == from || polygon.exact) continue;
       BezierCurve curve = side_curve(polygon_of(from), from % k);
+      if (polygon.may_touch && curve.degree() != side_curve(polygon, side % k).degree()) continue;
       const bool is_reversed =
           side_vertices(polygon_of(from), from % k) != side_vertices(polygon, side % k);
       set_side(polygon, side % k, is_reversed ? reversed(curve) : std::move(curve));

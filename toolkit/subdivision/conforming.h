@@ -29,6 +29,10 @@ struct SurfaceTriangle {
   std::array<bool, 3> smooth = {};
   bool exact = true;
   bool may_touch = true;
+  /// Of an exact part of a triangle: the points of that one, and its own corners as barycentric
+  /// coordinates there. So what becomes of it is rounded once, however often it is divided.
+  std::vector<dvec3> whole = {};
+  std::array<dvec3, 3> corners = {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)};
 };
 
 /// @name Patches that meet along whole sides
