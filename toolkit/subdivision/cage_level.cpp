@@ -42,10 +42,19 @@ Sdc::Options::VtxBoundaryInterpolation interpolation(CageBoundary boundary) {
   }
 }
 
+/// The number of the middle of an edge with these ends that is met for the first time on its level.
+int middle_number(int a, int b, EdgeMiddles& middles) {
+  if (a != b && !middles.are_several(a, b)) return middles.add(a, b);
+  const int middle = middles.add_vertex();
+  if (a == b) middles.add_several(a, middle);
+  return middle;
+}
+
 /// The numbers of the vertices that the first `own` faces of a level have on the next one.
-std::vector<int> child_numbers(const Far::TopologyLevel& level, int child_count, CageScheme scheme,
-                               int own, const std::vector<int>& numbers, EdgeMiddles& middles) {
-  std::vector<int> result(to_size(child_count), -1);
+std::vector<int> child_numbers(const Far::TopologyLevel& level, const Far::TopologyLevel& next,
+                               CageScheme scheme, int own, const std::vector<int>& numbers,
+                               EdgeMiddles& middles) {
+  std::vector<int> result(to_size(next.GetNumVertices()), -1);
   for (int f = 0; f < own; ++f) {
     const auto vertices = level.GetFaceVertices(f);
     for (int k = 0; k < vertices.size(); ++k) {
@@ -57,10 +66,16 @@ std::vector<int> child_numbers(const Far::TopologyLevel& level, int child_count,
       const int a = numbers[to_size(ends[0])];
       const int b = numbers[to_size(ends[1])];
       int& middle = result[to_size(level.GetEdgeChildVertex(edges[k]))];
-      if (middle < 0) middle = a == b ? middles.add_vertex() : middles.add(a, b);
+      if (middle < 0) middle = middle_number(a, b, middles);
     }
-    if (scheme == CageScheme::loop) continue;
-    result[to_size(level.GetFaceChildVertex(f))] = middles.add_vertex();
+    if (scheme != CageScheme::loop) {
+      result[to_size(level.GetFaceChildVertex(f))] = middles.add_vertex();
+    }
+    const auto inner = level.GetFaceChildEdges(f);
+    for (int k = 0; k < inner.size(); ++k) {
+      const auto ends = next.GetEdgeVertices(inner[k]);
+      middles.add_inner(result[to_size(ends[0])], result[to_size(ends[1])]);
+    }
   }
   return result;
 }
@@ -346,11 +361,11 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells, EdgeMiddles& mi
   std::vector<int> coarse_numbers;
   coarse_numbers.reserve(cut.vertices().size());
   for (const int v : cut.vertices()) coarse_numbers.push_back(topology.numbers[to_size(v)]);
-  const std::vector<int> numbers = child_numbers(parents, fine.GetNumVertices(), topology.scheme,
-                                                 to_int(own), coarse_numbers, middles);
+  const std::vector<int> numbers =
+      child_numbers(parents, fine, topology.scheme, to_int(own), coarse_numbers, middles);
   next.topology_->numbers.reserve(part.vertices().size());
   for (const int v : part.vertices()) next.topology_->numbers.push_back(numbers[to_size(v)]);
-    next.topology_->build(part);
+  next.topology_->build(part);
   return next;
 }
 

@@ -436,7 +436,8 @@ class Division {
     polygons_ = std::move(next);
   }
 
-  /// Those of polygons with a vertex twice take no part.
+  /// Those of polygons with a vertex twice take no part, nor those that their ends do not tell
+  /// apart.
   std::vector<VertexSide> sides() const {
     std::vector<VertexSide> result;
     result.reserve(to_size(k) * polygons_.size());
@@ -445,7 +446,9 @@ class Division {
       std::sort(vertices.begin(), vertices.end());
       const bool regular = std::adjacent_find(vertices.begin(), vertices.end()) == vertices.end();
       for (int i = 0; i < k; ++i) {
-        result.push_back(regular ? side_vertices(polygon, i) : VertexSide{-1, -1});
+        const VertexSide side = side_vertices(polygon, i);
+        const bool known = regular && !middles_.are_several(side[0], side[1]);
+        result.push_back(known ? side : VertexSide{-1, -1});
       }
     }
     return result;

@@ -38,7 +38,8 @@ struct SurfaceTriangle {
 /// @name Patches that meet along whole sides
 /// Where adaptive refinement leaves middles of a patch's side as corners of its neighbours, the
 /// patch is split, exactly, again and again, until whole sides meet. Which sides meet is known by
-/// their vertices. Those with twice one vertex take no part.
+/// their vertices. Patches with twice one vertex take no part, nor do sides that their vertices do
+/// not tell apart (EdgeMiddles::are_several).
 ///
 /// Patches that are not exact take over the sides, and so the corners, of those that are, and those
 /// that may not touch the hull the ones of all others: all their points stay in the convex hull of

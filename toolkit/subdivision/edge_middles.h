@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace taut {
 
@@ -28,6 +29,19 @@ class EdgeMiddles {
     return entry->second;
   }
 
+  /// @name Edges that their ends do not tell apart
+  /// The two halves of an edge from a vertex to itself, and edges inside of faces between the same
+  /// middles, as of two triangles that share two sides. Each has a middle of its own.
+  /// @{
+  /// Of an edge inside of a face.
+  void add_inner(int a, int b) {
+    if (!inner_.insert(key(a, b)).second) add_several(a, b);
+  }
+  void add_several(int a, int b) { several_.insert(key(a, b)); }
+  /// More than one edge has these ends.
+  bool are_several(int a, int b) const { return several_.count(key(a, b)) > 0; }
+  /// @}
+
   /// One number for two vertices, in either order.
   static std::uint64_t key(int a, int b) {
     const auto [low, high] = std::minmax(a, b);
@@ -37,6 +51,7 @@ class EdgeMiddles {
  private:
   int count_;
   std::unordered_map<std::uint64_t, int> middles_;
+  std::unordered_set<std::uint64_t> inner_, several_;
 };
 
 }  // namespace taut
