@@ -1,7 +1,10 @@
 #include "cages.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "models.h"
 #include "taut/core/tolerances.h"
@@ -211,6 +214,24 @@ std::vector<NamedCage> all_cages() {
   for (NamedCage& cage : tagged_cages()) all.push_back(std::move(cage));
   for (NamedCage& cage : degenerate_cages()) all.push_back(std::move(cage));
   return all;
+}
+
+std::vector<NamedCage> closed_cages() {
+  std::vector<NamedCage> all = all_cages();
+  std::erase_if(all, [](const NamedCage& c) { return boundary_edges(c.cage) > 0; });
+  return all;
+}
+
+int boundary_edges(const ControlCage& cage) {
+  std::map<std::pair<int, int>, int> uses;
+  for (int f = 0; f < int(cage.faces.size()); ++f) {
+    if (std::find(cage.holes.begin(), cage.holes.end(), f) != cage.holes.end()) continue;
+    const std::vector<int>& face = cage.faces[std::size_t(f)];
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      ++uses[std::minmax({face[k], face[(k + 1) % face.size()]})];
+    }
+  }
+  return int(std::count_if(uses.begin(), uses.end(), [](const auto& u) { return u.second == 1; }));
 }
 
 double size_of(const ControlCage& cage) {

@@ -49,7 +49,12 @@ std::vector<NamedCage> tagged_cages();
 std::vector<NamedCage> degenerate_cages();
 /// All of them.
 std::vector<NamedCage> all_cages();
+/// Those without boundaries and holes.
+std::vector<NamedCage> closed_cages();
 /// @}
+
+/// Edges of one face alone that is no hole.
+int boundary_edges(const ControlCage& cage);
 
 /// The diagonal of the control points' box.
 double size_of(const ControlCage& cage);

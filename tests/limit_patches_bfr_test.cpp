@@ -38,7 +38,8 @@ double within(double t, double step) { return std::clamp(t + step, 0.01 * t, 1 -
 
 /// By the method of Levenberg and Marquardt from one of 9 x 9 parameters, within the patch. Its
 /// sides may be points, and all of it a curve. It may be folded, corner to corner: steps that begin
-/// in a fold stay there, so that there is no parameter in the corners or in a symmetric place.
+/// in a fold stay there, so that there is no parameter in the corners or in a symmetric place. Of
+/// slivers, as at the tip of a fin, it takes hundreds of short steps.
 Foot foot_on(const BezierPatch& patch, const dvec3& x) {
   constexpr int grid = 9;
   double u = 0;
@@ -56,7 +57,7 @@ Foot foot_on(const BezierPatch& patch, const dvec3& x) {
     for (int j = 0; j < grid; ++j) try_at((i + 0.3) / grid, (j + 0.6) / grid);
   }
   double damping = 1e-3;
-  for (int k = 0; k < 60 && damping < 1e6; ++k) {
+  for (int k = 0; k < 1000 && damping < 1e12; ++k) {
     const PatchJet1 jet = jet1(patch, u, v);
     const dvec3 off = x - jet.S;
     const double trace = glm::dot(jet.Su, jet.Su) + glm::dot(jet.Sv, jet.Sv);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "taut/subdivision/extraction.h"
 #include "taut/subdivision/patch_nets.h"
@@ -41,6 +42,44 @@ Sdc::Options::VtxBoundaryInterpolation interpolation(CageBoundary boundary) {
   }
 }
 
+/// The number of the middle of an edge with these ends that is met for the first time on its level.
+int middle_number(int a, int b, EdgeMiddles& middles) {
+  if (a != b && !middles.are_several(a, b)) return middles.add(a, b);
+  const int middle = middles.add_vertex();
+  if (a == b) middles.add_several(a, middle);
+  return middle;
+}
+
+/// The numbers of the vertices that the first `own` faces of a level have on the next one.
+std::vector<int> child_numbers(const Far::TopologyLevel& level, const Far::TopologyLevel& next,
+                               CageScheme scheme, int own, const std::vector<int>& numbers,
+                               EdgeMiddles& middles) {
+  std::vector<int> result(to_size(next.GetNumVertices()), -1);
+  for (int f = 0; f < own; ++f) {
+    const auto vertices = level.GetFaceVertices(f);
+    for (int k = 0; k < vertices.size(); ++k) {
+      result[to_size(level.GetVertexChildVertex(vertices[k]))] = numbers[to_size(vertices[k])];
+    }
+    const auto edges = level.GetFaceEdges(f);
+    for (int k = 0; k < edges.size(); ++k) {
+      const auto ends = level.GetEdgeVertices(edges[k]);
+      const int a = numbers[to_size(ends[0])];
+      const int b = numbers[to_size(ends[1])];
+      int& middle = result[to_size(level.GetEdgeChildVertex(edges[k]))];
+      if (middle < 0) middle = middle_number(a, b, middles);
+    }
+    if (scheme != CageScheme::loop) {
+      result[to_size(level.GetFaceChildVertex(f))] = middles.add_vertex();
+    }
+    const auto inner = level.GetFaceChildEdges(f);
+    for (int k = 0; k < inner.size(); ++k) {
+      const auto ends = next.GetEdgeVertices(inner[k]);
+      middles.add_inner(result[to_size(ends[0])], result[to_size(ends[1])]);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 struct CageLevel::Topology {
@@ -48,6 +87,7 @@ struct CageLevel::Topology {
   Sdc::Options options;
   std::unique_ptr<Far::TopologyRefiner> refiner;
   std::vector<dvec3> points;
+  std::vector<int> numbers;  ///< of vertices over all levels, -1 if not of a cell
   /// Vertices that are semi-sharp or at the end of a semi-sharp edge.
   std::vector<bool> near_semi_sharp;
 
@@ -174,6 +214,8 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
   description.holes = cage.holes;
   topology_->scheme = cage.scheme;
   topology_->points = cage.points;
+  topology_->numbers.resize(cage.points.size());
+  std::iota(topology_->numbers.begin(), topology_->numbers.end(), 0);
   Sdc::Options& options = topology_->options;
   options.SetVtxBoundaryInterpolation(interpolation(cage.boundary));
   options.SetCreasingMethod(cage.chaikin ? Sdc::Options::CREASE_CHAIKIN
@@ -188,6 +230,7 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
     const Sheets sheets(topology_->level());
     topology_->points.clear();
     for (const int v : sheets.originals()) topology_->points.push_back(cage.points[to_size(v)]);
+    topology_->numbers = sheets.originals();
     topology_->build(sheets.description());
   }
   const Far::TopologyLevel base = topology_->level();
@@ -268,7 +311,9 @@ std::span<const int> CageLevel::vertices(std::size_t cell) const {
   return {vertices.begin(), to_size(vertices.size())};
 }
 
-CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
+int CageLevel::number(int vertex) const { return topology_->numbers[to_size(vertex)]; }
+
+CageLevel CageLevel::refined(std::span<const std::size_t> cells, EdgeMiddles& middles) const {
   const Topology& topology = *topology_;
   // The cells and what surrounds them, refined once.
   std::vector<int> faces;
@@ -313,6 +358,13 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells) const {
   for (const int v : part.vertices()) {
     next.topology_->points.push_back(children[to_size(v)].x);
   }
+  std::vector<int> coarse_numbers;
+  coarse_numbers.reserve(cut.vertices().size());
+  for (const int v : cut.vertices()) coarse_numbers.push_back(topology.numbers[to_size(v)]);
+  const std::vector<int> numbers =
+      child_numbers(parents, fine, topology.scheme, to_int(own), coarse_numbers, middles);
+  next.topology_->numbers.reserve(part.vertices().size());
+  for (const int v : part.vertices()) next.topology_->numbers.push_back(numbers[to_size(v)]);
   next.topology_->build(part);
   return next;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/subdivision/edge_middles.h"
 #include "taut/surface/bezier.h"
 #include "taut/surface/control_cage.h"
 
@@ -64,9 +65,12 @@ class CageLevel {
   void enclosure(std::size_t cell, std::vector<dvec3>& points) const;
   /// The vertices of a cell in their order, numbers of this level.
   std::span<const int> vertices(std::size_t cell) const;
+  /// The number of a vertex of a cell over all levels; the control cage's have their own.
+  int number(int vertex) const;
 
-  /// The next level of some cells, in their order, each's children in theirs.
-  CageLevel refined(std::span<const std::size_t> cells) const;
+  /// The next level of some cells, in their order, each's children in theirs. Their edges' middles
+  /// are added.
+  CageLevel refined(std::span<const std::size_t> cells, EdgeMiddles& middles) const;
 
   /// Of the control cage, what OpenSubdiv treats by rules of its own, as infinitely sharp: edges
   /// with more than two faces, or two that run alike, or both ends in one vertex; and vertices

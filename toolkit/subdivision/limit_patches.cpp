@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "taut/core/tolerances.h"
@@ -64,6 +66,8 @@ bool is_quad(const CellPatch& patch) {
   return patch.points.size() == n * n;
 }
 
+bool is_irregular(const CellPatch& patch) { return patch.kind != CellPatch::Kind::regular; }
+
 /// In their order; of a triangle three.
 std::vector<dvec3> corners(const CellPatch& patch) {
   const auto& p = patch.points;
@@ -115,7 +119,7 @@ std::vector<dvec3> turned(const CellPatch& patch, std::size_t corner, bool back 
 class Refinement {
  public:
   Refinement(const ControlCage& cage, const LimitOptions& options)
-      : options_(options), level_(cage) {
+      : options_(options), level_(cage), middles_(to_int(cage.points.size())) {
     Box box;
     for (const dvec3& p : cage.points) box.include(p);
     tolerance_ = options.accuracy * diagonal(box);
@@ -130,17 +134,19 @@ class Refinement {
  private:
   void take_regular();
   void sort_out();
+  void emit_rest();
   void finish_or_refine(const std::vector<std::size_t>& region);
   void smooth_fan(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, double enough) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
-  void emit(std::size_t cell);
+  void emit(std::size_t cell, bool may_touch = true);
   void count_irregular();
   void go_down();
   LimitSurface finish();
 
   const LimitOptions& options_;
   CageLevel level_;
+  EdgeMiddles middles_;
   double tolerance_ = 0;
   double point_side_ = 0;
   double least_side_ = 0;
@@ -149,6 +155,7 @@ class Refinement {
   TouchTest touch_;
   std::vector<Surroundings> surroundings_;  // per region
   std::vector<std::size_t> refined_;        // cells that go down
+  std::vector<std::size_t> stand_ins_;      // caps that do not touch
   LimitSurface result_;
   std::vector<SurfaceTriangle> triangles_;
 };
@@ -160,6 +167,7 @@ LimitSurface Refinement::run() {
     take_regular();
     if (depth_ == 0) count_irregular();
     sort_out();
+    emit_rest();
     result_.levels = depth_;
     if (refined_.empty()) break;
     go_down();
@@ -167,28 +175,35 @@ LimitSurface Refinement::run() {
   return finish();
 }
 
-void Refinement::emit(std::size_t cell) {
+void Refinement::emit(std::size_t cell, bool may_touch) {
   CellPatch& patch = patches_[cell];
   const int face = level_.cells()[cell].cage_face;
+  std::array<int, 4> v = {};
+  std::transform(level_.vertices(cell).begin(), level_.vertices(cell).end(), v.begin(),
+                 [&](int vertex) { return level_.number(vertex); });
   if (is_quad(patch)) {
     SurfacePatch surface;
     surface.bezier.degree_u = surface.bezier.degree_v = patch.degree;
     surface.bezier.points.reserve(patch.points.size());
     for (const dvec3& p : patch.points) surface.bezier.points.push_back(homogeneous(p));
     surface.cage_face = face;
+    surface.vertices = {v[0], v[3], v[1], v[2]};
     surface.exact = patch.kind == CellPatch::Kind::regular;
+    surface.may_touch = may_touch;
     // Sides run v = 0, u = 1, v = 1, u = 0.
     surface.smooth = {patch.smooth[3], patch.smooth[1], patch.smooth[0], patch.smooth[2]};
     result_.patches.push_back(std::move(surface));
   } else {
     triangles_.push_back({std::move(patch.points),
                           face,
+                          {v[0], v[1], v[2]},
                           {patch.smooth[0], patch.smooth[1], patch.smooth[2]},
-                          patch.kind == CellPatch::Kind::regular});
+                          patch.kind == CellPatch::Kind::regular,
+                          may_touch});
   }
 }
 
-/// Regular cells are done; their corners are points of the surface.
+/// The corners of regular cells are points of the surface.
 void Refinement::take_regular() {
   std::vector<dvec3> known;
   for (Surroundings& s : surroundings_) {
@@ -204,20 +219,18 @@ void Refinement::take_regular() {
       auto& own = surroundings_[to_size(region)].back();
       own.insert(own.end(), points.begin(), points.end());
     }
-    emit(c);
   }
   touch_.add(known);
 }
 
 void Refinement::count_irregular() {
-  result_.irregular_faces = std::count_if(patches_.begin(), patches_.end(), [](const CellPatch& p) {
-    return p.kind != CellPatch::Kind::regular;
-  });
+  result_.irregular_faces = std::count_if(patches_.begin(), patches_.end(), is_irregular);
 }
 
-/// Decides for all irregular cells: end caps stand for those that do not touch.
+/// Decides for all irregular cells that may touch.
 void Refinement::sort_out() {
   refined_.clear();
+  stand_ins_.clear();
   std::vector<std::size_t> touching;
   std::vector<dvec3> points;
   for (std::size_t c = 0; c < patches_.size(); ++c) {
@@ -227,7 +240,7 @@ void Refinement::sort_out() {
       level_.enclosure(c, points);
       points.insert(points.end(), patch.points.begin(), patch.points.end());
       if (!touch_.may_touch(points)) {
-        emit(c);
+        stand_ins_.push_back(c);
         continue;
       }
     }
@@ -244,6 +257,42 @@ void Refinement::sort_out() {
     if (k + 1 < order.size() && set[order[k + 1]] == set[order[k]]) continue;
     finish_or_refine(region);
     region.clear();
+  }
+}
+
+/// Emits regular cells, and the end caps that stand for cells that do not touch, but for those at a
+/// vertex of one that goes down: they go with it if they are in its sector between sharp edges,
+/// which is irregular about the vertex, or beyond such an edge. So no side meets more than halves;
+/// else those that end there would meet ever smaller ones.
+void Refinement::emit_rest() {
+  std::unordered_map<int, int> region_at;  // vertex -> region
+  for (const std::size_t c : refined_) {
+    for (const int v : level_.vertices(c)) region_at.emplace(v, level_.cells()[c].region);
+  }
+  const auto goes_down = [&](std::size_t c, const auto& with) {
+    const std::span<const int> own = level_.vertices(c);
+    const auto v = std::find_if(own.begin(), own.end(), with);
+    if (v == own.end()) return false;
+    level_.cells()[c].region = region_at.at(*v);
+    refined_.push_back(c);
+    return true;
+  };
+  for (const std::size_t c : stand_ins_) {
+    if (!goes_down(c, [&](int v) { return region_at.count(v) > 0; })) emit(c, false);
+  }
+  std::unordered_set<int> sharp;  // of those vertices
+  for (const std::size_t c : refined_) {
+    const std::span<const int> own = level_.vertices(c);
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, own.size()); ++k) {
+      if (patches_[c].smooth[k]) continue;
+      for (const int v : {own[k], own[(k + 1) % own.size()]}) {
+        if (region_at.count(v) > 0) sharp.insert(v);
+      }
+    }
+  }
+  for (std::size_t c = 0; c < patches_.size(); ++c) {
+    if (patches_[c].kind != CellPatch::Kind::regular) continue;
+    if (!goes_down(c, [&](int v) { return sharp.count(v) > 0; })) emit(c);
   }
 }
 
@@ -379,7 +428,10 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
 
 void Refinement::go_down() {
   std::sort(refined_.begin(), refined_.end());
-  if (depth_ == 0) result_.refined_faces = static_cast<long>(refined_.size());
+  if (depth_ == 0) {
+    result_.refined_faces = std::count_if(refined_.begin(), refined_.end(),
+                                          [&](std::size_t c) { return is_irregular(patches_[c]); });
+  }
   // Regions are numbered anew: only those of cells that go down are left.
   std::vector<Surroundings> left;
   std::vector<int> number(surroundings_.size(), -1);
@@ -393,13 +445,14 @@ void Refinement::go_down() {
     region = n;
   }
   surroundings_ = std::move(left);
-  level_ = level_.refined(refined_);
+  level_ = level_.refined(refined_, middles_);
   ++depth_;
 }
 
 LimitSurface Refinement::finish() {
   std::vector<SurfacePatch>& patches = result_.patches;
-  patches = triangles_.empty() ? conforming(std::move(patches)) : conforming(std::move(triangles_));
+  patches = triangles_.empty() ? conforming(std::move(patches), middles_)
+                               : conforming(std::move(triangles_), middles_);
   std::stable_sort(
       patches.begin(), patches.end(),
       [](const SurfacePatch& a, const SurfacePatch& b) { return a.cage_face < b.cage_face; });

@@ -39,7 +39,10 @@ struct LimitSurface {
 /// by level, each of which leaves exact patches, until what remains has a bound within the accuracy
 /// or is so small that its sides would be taken for points; OpenSubdiv's polynomial end caps stand
 /// for the rest. Those that surely do not touch the convex hull of the surface are not refined at
-/// all (but faces that are no quads, once). Patches meet along whole sides.
+/// all (but faces that are no quads, once), unless cells at one of their vertices are: with these
+/// go all others in the vertex's sector between sharp edges, and beyond such edges even regular
+/// ones. So patches meet along whole sides: each side has, as far as the cage is a manifold, one
+/// other with the same vertices, which agrees with it up to rounding.
 ///
 /// The bound: limit surface and end cap lie within the convex hull of the control points and the
 /// cap's, no farther than that from the convex hull of known points of the surface around.

@@ -118,6 +118,47 @@ BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<d
   return result;
 }
 
+/// Each point is the blossom at as many times each corner as it counts towards it.
+std::vector<dvec3> sub_triangle(std::span<const dvec3> triangle,
+                                const std::array<dvec3, 3>& corners) {
+  const std::size_t n = triangle_degree_of(triangle.size());
+  std::vector<dvec3> result(triangle.size());
+  for (std::size_t j = 0; j <= n; ++j) {
+    for (std::size_t i = 0; i + j <= n; ++i) {
+      std::vector<dvec3> net(triangle.begin(), triangle.end());
+      for (std::size_t degree = n; degree > 0; --degree) {
+        const std::size_t step = n - degree;
+        const dvec3& at = corners[step < i ? 1 : step < i + j ? 2 : 0];
+        std::vector<dvec3> inner(degree * (degree + 1) / 2);
+        for (std::size_t l = 0; l < degree; ++l) {
+          for (std::size_t k = 0; k + l < degree; ++k) {
+            inner[triangle_point(degree - 1, k, l)] = at.x * net[triangle_point(degree, k, l)] +
+                                                      at.y * net[triangle_point(degree, k + 1, l)] +
+                                                      at.z * net[triangle_point(degree, k, l + 1)];
+          }
+        }
+        net = std::move(inner);
+      }
+      result[triangle_point(n, i, j)] = net.front();
+    }
+  }
+  return result;
+}
+
+std::vector<dvec3> elevated_triangle(std::span<const dvec3> triangle) {
+  const std::size_t n = triangle_degree_of(triangle.size()) + 1;
+  std::vector<dvec3> result((n + 1) * (n + 2) / 2, dvec3(0.0));
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i + j < n; ++i) {
+      const dvec3 p = triangle[triangle_point(n - 1, i, j)] / double(n);
+      result[triangle_point(n, i, j)] += double(n - i - j) * p;
+      result[triangle_point(n, i + 1, j)] += double(i + 1) * p;
+      result[triangle_point(n, i, j + 1)] += double(j + 1) * p;
+    }
+  }
+  return result;
+}
+
 BezierPatch reversed_u(const BezierPatch& patch) {
   BezierPatch result = patch;
   for (int i = 0; i <= patch.degree_u; ++i) {

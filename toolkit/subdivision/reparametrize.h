@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "taut/surface/bezier.h"
 
@@ -21,6 +22,12 @@ BezierPatch tapered(const BezierPatch& patch, double w0, double w1);
 /// barycentric corners, (0, 0), (0, 1), (1, 0) and (1, 1), weights of the patch's first, second and
 /// third corner. Of degree (n, n).
 BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<dvec3, 4>& corners);
+
+/// The triangle of a triangular patch with these barycentric corners, and the same patch in one
+/// degree more.
+std::vector<dvec3> sub_triangle(std::span<const dvec3> triangle,
+                                const std::array<dvec3, 3>& corners);
+std::vector<dvec3> elevated_triangle(std::span<const dvec3> triangle);
 
 BezierPatch reversed_u(const BezierPatch& patch);
 BezierPatch reversed_v(const BezierPatch& patch);

@@ -79,19 +79,22 @@ bool JoinSmoothness::may_be_crest(const Use& use) const {
          may_support(bezier, direction, s, corner_points_, tolerance_);
 }
 
-/// Rulings of the one patch that end on the join are continued by those of the other.
+/// Rulings of the one patch that end on the join are continued by those of the other, as of two
+/// parts of one plane all are.
 bool JoinSmoothness::rulings_go_on(const Join& join) const {
+  if (is_plane(patch(join[0].side).bezier) && is_plane(patch(join[1].side).bezier)) return true;
   const int m = 4 * curve(join[0]).degree();
   for (int k = 0; k <= m; ++k) {
     const double t = sample_parameter(k, m);
-    std::array<std::optional<dvec3>, 2> e;
+    std::array<std::optional<RulingDirection>, 2> e;
     for (const std::size_t i : {0u, 1u}) {
       const Use& use = join[i];
       const dvec2 uv = on_side(side_of(use.side), use.reversed ? 1 - t : t);
-      e[i] = ruling_direction(patch(use.side), uv);
+      e[i] = ruling_at(patch(use.side), uv);
     }
     if (!e[0] || !e[1]) return false;
-    if (glm::length(glm::cross(*e[0], *e[1])) > same_ruling_angle) return false;
+    const double allowed = same_ruling_angle + e[0]->rounding + e[1]->rounding;
+    if (glm::length(glm::cross(e[0]->along, e[1]->along)) > allowed) return false;
   }
   return true;
 }

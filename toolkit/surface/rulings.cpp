@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace taut {
 namespace {
@@ -30,8 +31,12 @@ constexpr std::size_t path_limit = 1000;
 /// Steps that lead away from a border at a smaller share of their length run along it.
 constexpr double along_border = 1e-9;
 
+/// Of what second derivatives come to, relative to the control points' coordinates and the factors
+/// of the degrees: their differences double those twice, and evaluation adds as much again.
+constexpr double jet_rounding = 8 * std::numeric_limits<double>::epsilon();
+
 /// The direction in which the second fundamental form vanishes. None where all of it does.
-std::optional<dvec3> null_direction(const BezierPatch& patch, const dvec2& uv) {
+std::optional<RulingDirection> null_direction(const BezierPatch& patch, const dvec2& uv) {
   const PatchJet2 j = jet2(patch, uv.x, uv.y);
   const dvec3 n = unit(glm::cross(j.Su, j.Sv));
   // By tangents of length one, so that parameters' speeds do not matter.
@@ -43,19 +48,28 @@ std::optional<dvec3> null_direction(const BezierPatch& patch, const dvec2& uv) {
   const double N = glm::dot(j.Svv, n) / (b * b);
   const double size =
       glm::length(j.Suu) / (a * a) + glm::length(j.Suv) / (a * b) + glm::length(j.Svv) / (b * b);
-  if (std::max(std::abs(L), std::abs(N)) <= flat_share * size) return std::nullopt;
+  const double curved = std::max(std::abs(L), std::abs(N));
+  if (curved <= flat_share * size) return std::nullopt;
   const dvec3 u = j.Su / a;
   const dvec3 v = j.Sv / b;
-  return unit(std::abs(L) >= std::abs(N) ? L * v - M * u : N * u - M * v);
+  const dvec3 along = std::abs(L) >= std::abs(N) ? L * v - M * u : N * u - M * v;
+  double extent = 0;
+  for (const dvec4& p : patch.points) extent = std::max(extent, glm::length(euclidean(p)));
+  const double p = patch.degree_u / a;
+  const double q = patch.degree_v / b;
+  const double rounding = jet_rounding * extent * (p * p + p * q + q * q);
+  return RulingDirection{unit(along), rounding / glm::length(along)};
 }
 
 /// The direction of the ruling through the point, by the second fundamental form.
-std::optional<dvec3> traced_direction(const BezierPatch& patch, const dvec2& uv) {
+std::optional<RulingDirection> traced_direction(const BezierPatch& patch, const dvec2& uv) {
   if (const auto e = null_direction(patch, uv)) return e;
   for (const dvec2& off : {dvec2(aside, 0), dvec2(0, aside)}) {
     const auto a = null_direction(patch, uv - off);
     const auto b = null_direction(patch, uv + off);
-    if (a && b) return unit(*a + (glm::dot(*a, *b) < 0 ? -*b : *b));
+    if (!a || !b) continue;
+    const dvec3 sum = a->along + (glm::dot(a->along, b->along) < 0 ? -b->along : b->along);
+    return RulingDirection{unit(sum), std::max(a->rounding, b->rounding)};
   }
   return std::nullopt;
 }
@@ -199,9 +213,9 @@ std::vector<PatchPoint> about(const Part& part, const PatchPoint& at) {
 }  // namespace
 
 std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const dvec2& uv) {
-  const std::optional<dvec3> direction = traced_direction(patch, uv);
+  const std::optional<RulingDirection> direction = traced_direction(patch, uv);
   if (!direction) return std::nullopt;
-  const RulingTrace trace(patch, uv, *direction);
+  const RulingTrace trace(patch, uv, direction->along);
   return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
 }
 
@@ -214,13 +228,19 @@ std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv) {
   return result;
 }
 
-std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv) {
+std::optional<RulingDirection> ruling_at(const Patch& patch, const dvec2& uv) {
   if (patch.ruled_obliquely) return traced_direction(patch.bezier, uv);
   const std::vector<std::array<dvec2, 2>> all = rulings(patch, uv);
   if (all.size() != 1) return std::nullopt;
   const auto at = [&](const dvec2& end) { return point(patch.bezier, end.x, end.y); };
   const dvec3 e = unit(at(all[0][1]) - at(all[0][0]));
-  return e == dvec3(0.0) ? std::nullopt : std::optional(e);
+  if (e == dvec3(0.0)) return std::nullopt;
+  return RulingDirection{e, 0};
+}
+
+std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv) {
+  const std::optional<RulingDirection> ruling = ruling_at(patch, uv);
+  return ruling ? std::optional(ruling->along) : std::nullopt;
 }
 
 dvec3 point(const Part& part, const PatchPoint& at) {

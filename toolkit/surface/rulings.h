@@ -21,8 +21,16 @@ std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const 
 /// is ruled in both parameters two, along v first.
 std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv);
 
-/// The direction, or its opposite, of the segment through the point of a patch that has one family
-/// of them. None elsewhere, as on a plane.
+/// A unit direction, or its opposite, and the angle by which rounding may have turned it.
+struct RulingDirection {
+  dvec3 along = dvec3(0.0);
+  double rounding = 0;
+};
+
+/// The direction of the segment through the point of a patch that has one family of them. None
+/// elsewhere, as on a plane. Where the segments run across the parameter lines, it is found by the
+/// curvature, and the less sure the less there is of that.
+std::optional<RulingDirection> ruling_at(const Patch& patch, const dvec2& uv);
 std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv);
 
 /// A point of a part, on a patch.
