@@ -30,7 +30,7 @@ struct NetCurvature {
 };
 
 /// The operations of the support query on scalar nets, for degrees known when compiling (>= 0) or
-/// not (-1). One source for both, so that both give the same bits.
+/// not (-1). One source for both, which differ by rounding at most.
 template <int P, int Q>
 class ScalarNet {
  public:
