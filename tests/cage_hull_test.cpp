@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <random>
 #include <string>
@@ -14,7 +12,6 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/io/hull_document.h"
-#include "taut/io/read_model.h"
 #include "taut/io/verify_hull.h"
 
 namespace taut {
@@ -117,16 +114,9 @@ TEST(CageHull, OfTorusAndMixedScenes) {
 
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
-  const char* const folder = std::getenv("TAUT_MODELS");
-  if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS names no folder with models";
-  const std::filesystem::path path = std::filesystem::path(folder) / file;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  Model model;
-  ReadOptions options;
-  options.scheme = scheme;
-  options.cage_accuracy = accuracy;
-  read_model(path, model, options);
-  expect_verified(model, whole_hull(model, file), file);
+  const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
+  if (!model) GTEST_SKIP() << "TAUT_MODELS names no folder with " << file;
+  expect_verified(*model, whole_hull(*model, file), file);
 }
 
 TEST(CageHull, OfSheetsWithCornersAndBoundary) {

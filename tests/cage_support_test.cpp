@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <iomanip>
 #include <optional>
 #include <sstream>
@@ -14,7 +12,6 @@
 #include "limit_support.h"
 #include "support_checks.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/io/read_model.h"
 
 // Support values of control cages from elsewhere against those of the limit surface by uniform
 // refinement (LimitSupport): no patches, end caps or Newton steps are in both.
@@ -29,22 +26,6 @@ using namespace taut_test;  // NOLINT: cages and reference answers
 constexpr double required = 1e-9;
 /// Of support queries (support_accuracy) and limit masks.
 constexpr double rounding = 2e-12;
-
-std::optional<Model> read_cage(const char* file, Scheme scheme, double accuracy) {
-  const char* const folder = std::getenv("TAUT_MODELS");
-  if (folder == nullptr) return std::nullopt;
-  const std::filesystem::path path = std::filesystem::path(folder) / file;
-  if (!std::filesystem::exists(path)) return std::nullopt;
-  Model model;
-  ReadOptions options;
-  options.scheme = scheme;
-  options.cage_accuracy = accuracy;
-  read_model(path, model, options);
-  return model;
-}
-
-/// The cage of a model that is one.
-const ControlCage& cage_of(const Model& model) { return *model.parts().at(0).cages().at(0).cage; }
 
 /// Limit normals of extraordinary vertices that are extreme, or nearly so, and what is 1e-1 to 1e-7
 /// off them.
@@ -158,7 +139,7 @@ void expect_support_values(const Model& model, const std::string& name, int leve
 }
 
 void expect_support_values(const char* file, Scheme scheme, int levels) {
-  const std::optional<Model> model = read_cage(file, scheme, default_cage_accuracy);
+  const std::optional<Model> model = model_from_elsewhere(file, scheme, default_cage_accuracy);
   if (!model) GTEST_SKIP() << file << " is not there";
   expect_support_values(*model, file, levels, required, {});
 }
@@ -201,7 +182,7 @@ std::vector<dvec3> points_of(const Hull& hull) {
 /// The recorded planes support the limit surface, in the points recorded; no point of the hull is
 /// beyond any other supporting plane, nor is all of it farther below than the mesh says.
 void expect_supporting_hull(const char* file, Scheme scheme, int levels, double accuracy) {
-  const std::optional<Model> model = read_cage(file, scheme, accuracy);
+  const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
   if (!model) GTEST_SKIP() << file << " is not there";
   const Hull hull = convex_hull(*model, {.relative = 1e-2, .progress = {}});
   ASSERT_TRUE(hull.boundary);

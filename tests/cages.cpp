@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -247,5 +249,21 @@ taut::Model cage_model(const ControlCage& cage, double accuracy) {
   model.add_part(std::move(part), taut::smooth_join_angle);
   return model;
 }
+
+std::optional<Model> model_from_elsewhere(const std::string& file,
+                                          std::optional<taut::Scheme> scheme, double accuracy) {
+  const char* const folder = std::getenv("TAUT_MODELS");
+  if (folder == nullptr) return std::nullopt;
+  const std::filesystem::path path = std::filesystem::path(folder) / file;
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  Model model;
+  taut::ReadOptions options;
+  options.scheme = scheme;
+  options.cage_accuracy = accuracy;
+  taut::read_model(path, model, options);
+  return model;
+}
+
+const ControlCage& cage_of(const Model& model) { return *model.parts().at(0).cages().at(0).cage; }
 
 }  // namespace taut_test

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "taut/io/read_model.h"
 #include "taut/surface/control_cage.h"
 #include "taut/surface/model.h"
 
@@ -61,5 +63,11 @@ double size_of(const ControlCage& cage);
 
 /// The cage as a model of one part.
 taut::Model cage_model(const ControlCage& cage, double accuracy = 1e-9);
+/// The model in a file of the folder that TAUT_MODELS names; none if there is no such file.
+std::optional<taut::Model> model_from_elsewhere(const std::string& file,
+                                                std::optional<taut::Scheme> scheme,
+                                                double accuracy);
+/// The cage of a model that is one.
+const ControlCage& cage_of(const taut::Model& model);
 
 }  // namespace taut_test

@@ -583,5 +583,29 @@ TEST(Crossing, NoneWhereTheyDoNotMeet) {
   }
 }
 
+/// Contacts of round bodies are told to the last digits; on a plane it is the other contact alone
+/// that tells the direction, and nothing the place.
+TEST(ContactSystem, UncertaintyIsThatOfThePlace) {
+  for (const Pair& pair : pairs()) {
+    const Group group(pair.elements);
+    const ContactGeometry geometry(group.scene);
+    CommonSupport s = support(geometry, group, {0.1, 0.2, 1});
+    ASSERT_TRUE(solve_pair(ContactSystem(geometry), s, {1, 0, 0})) << pair.kinds;
+    EXPECT_LT(ContactSystem(geometry).uncertainty(s), 1e-12) << pair.kinds;
+  }
+  BezierPatch square;
+  square.degree_u = square.degree_v = 1;
+  square.points = {{0, 0, 0, 1}, {0, 1, 0, 1}, {1, 0, 0, 1}, {1, 1, 0, 1}};
+  Shape shape = of_patch(square);
+  shape.points.emplace_back(2, 0.3, 0);
+  const Scene flat = make_scene(shape);
+  const ContactGeometry geometry(flat);
+  CommonSupport s;
+  s.n = dvec3(0, 0, 1);
+  s.add(geometry, {0, SourceKind::face, 0, 0.5, 0.5});
+  s.add(geometry, {0, SourceKind::vertex, flat.model().parts()[0].point_count() - 1, 0, 0});
+  EXPECT_GT(ContactSystem(geometry).uncertainty(s), 1e-7);
+}
+
 }  // namespace
 }  // namespace taut

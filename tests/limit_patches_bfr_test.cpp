@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +11,6 @@
 #include "bfr_surface.h"
 #include "cages.h"
 #include "refined_cage.h"
-#include "taut/io/read_model.h"
 #include "taut/subdivision/limit_patches.h"
 
 // Limit positions and normals against OpenSubdiv's Bfr, whose evaluation is of its own making but
@@ -202,16 +200,10 @@ TEST(LimitPatches, OfATwoSidedFinAreWhatBfrEvaluates) {
 }
 
 void expect_patches(const char* file, Scheme scheme, int count) {
-  const char* const folder = std::getenv("TAUT_MODELS");
-  if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS names no folder with models";
-  const std::filesystem::path path = std::filesystem::path(folder) / file;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  Model model;
-  ReadOptions options;
-  options.scheme = scheme;
-  options.cage_accuracy = 0.1;  // of the cage alone there is need
-  read_model(path, model, options);
-  expect_patches(*model.parts().at(0).cages().at(0).cage, default_cage_accuracy, count, file);
+  constexpr double coarse = 0.1;  // of the cage alone there is need
+  const std::optional<Model> model = model_from_elsewhere(file, scheme, coarse);
+  if (!model) GTEST_SKIP() << "TAUT_MODELS names no folder with " << file;
+  expect_patches(cage_of(*model), default_cage_accuracy, count, file);
 }
 
 TEST(LimitPatches, OfACarAreWhatBfrEvaluates) {

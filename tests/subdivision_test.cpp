@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -20,7 +18,6 @@
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/io/read_model.h"
 #include "taut/subdivision/add_cage.h"
 #include "taut/subdivision/conforming.h"
 #include "taut/subdivision/hull_distance.h"
@@ -306,25 +303,28 @@ TEST(AddCage, ClosedCagesAreClosed) {
   }
 }
 
-/// The cage in a file of the models, or none where there are no models.
-std::optional<ControlCage> cage_of(const char* file, Scheme scheme) {
-  const char* const folder = std::getenv("TAUT_MODELS");
-  if (folder == nullptr) return std::nullopt;
-  const std::filesystem::path path = std::filesystem::path(folder) / file;
-  if (!std::filesystem::exists(path)) return std::nullopt;
-  Model model;
-  ReadOptions options;
-  options.scheme = scheme;
-  options.cage_accuracy = 0.1;  // of the cage alone there is need
-  read_model(path, model, options);
-  return *model.parts().at(0).cages().at(0).cage;
+/// A place of a face's parameters is one of one patch only, borders included.
+TEST(AddCage, PatchesOfAFaceHaveNoPlaceInCommon) {
+  const Model model = cage_model(dome_cage(CageScheme::catmark, 5), 1e-3);
+  const Part& part = model.parts()[0];
+  std::size_t most = 0;
+  for (const Face& face : part.faces()) {
+    std::vector<Interval> u;
+    for (int k = 0; k < face.patch_count; ++k) {
+      u.push_back(part.patches()[std::size_t(face.first_patch + k)].u);
+    }
+    std::sort(u.begin(), u.end(), [](auto& a, auto& b) { return a.lower < b.lower; });
+    for (std::size_t k = 1; k < u.size(); ++k) EXPECT_LT(u[k - 1].upper, u[k].lower);
+    most = std::max(most, u.size());
+  }
+  EXPECT_GT(most, 10U) << "something was compared";
 }
 
 /// Boundaries are regular where these have some: each edge has one patch.
 void expect_open_at_boundaries(const char* file, Scheme scheme, double accuracy) {
-  const std::optional<ControlCage> cage = cage_of(file, scheme);
-  if (!cage) GTEST_SKIP() << "TAUT_MODELS names no folder with " << file;
-  EXPECT_EQ(open_sides(cage_model(*cage, accuracy)), boundary_edges(*cage)) << file;
+  const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
+  if (!model) GTEST_SKIP() << "TAUT_MODELS names no folder with " << file;
+  EXPECT_EQ(open_sides(*model), boundary_edges(cage_of(*model))) << file;
 }
 
 TEST(AddCage, CarIsOpenAtItsBoundary) {
@@ -349,10 +349,10 @@ TEST(AddCage, TriangulatedCubeIsClosed) {
 
 /// Parted as its sheets are, no open side has an end of another within.
 TEST(AddCage, OpenSidesOfANonManifoldCageMeetWhole) {
-  const std::optional<ControlCage> cage = cage_of("A17_osd_nonmanifold_edges.obj", Scheme::catmark);
-  if (!cage) GTEST_SKIP() << "TAUT_MODELS names no folder with it";
-  const Model model = cage_model(*cage);
-  const Part& part = model.parts()[0];
+  const std::optional<Model> model =
+      model_from_elsewhere("A17_osd_nonmanifold_edges.obj", Scheme::catmark, 1e-9);
+  if (!model) GTEST_SKIP() << "TAUT_MODELS names no folder with it";
+  const Part& part = model->parts()[0];
   std::vector<BezierCurve> open;
   for (const Patch& patch : part.patches()) {
     for (const Side side : all_sides) {
@@ -363,8 +363,8 @@ TEST(AddCage, OpenSidesOfANonManifoldCageMeetWhole) {
       }
     }
   }
-  EXPECT_GE(open.size(), std::size_t(boundary_edges(*cage)));
-  const double tolerance = 1e-6 * size_of(*cage);
+  EXPECT_GE(open.size(), std::size_t(boundary_edges(cage_of(*model))));
+  const double tolerance = 1e-6 * size_of(cage_of(*model));
   for (const BezierCurve& curve : open) {
     for (const BezierCurve& other : open) {
       const dvec3 end = point(other, 0);

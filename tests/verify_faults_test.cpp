@@ -260,6 +260,12 @@ TEST(VerifyFaults, InTheHullOfTwoSpheresAreFound) {
         [](auto& h) { change_number(h.report, "unresolved", 1, 1); }},
        {"the volume is wrong", "report",
         [](auto& h) { change_number(h.report, "volume", 1 + 1e-6, 0); }},
+       {"a wrong volume is said to be inaccurate", "report",
+        [](auto& h) {
+          change_number(h.report, "volume", 1 + 1e-6, 0);
+          const std::string hull = "\"hull\": {";
+          h.report.insert(h.report.find(hull) + hull.size(), "\"measures_accuracy\": 1, ");
+        }},
        {"the area is wrong", "report",
         [](auto& h) { change_number(h.report, "area", 1 - 1e-8, 0); }},
        {"the mean width is wrong", "report",

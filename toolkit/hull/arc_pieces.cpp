@@ -128,13 +128,14 @@ void tell_along_joins(const ContactGeometry& geometry, ArcPiece& piece) {
   }
 }
 
-}  // namespace
-
+/// Rounding may make any shorter piece of nothing.
 double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece) {
   const Ruling& first = piece.rulings.front();
   const double least = passes_corner(piece) ? least_piece_at_corner : least_piece;
   return std::clamp(uncertainty(geometry, first), least, longest_empty_piece);
 }
+
+}  // namespace
 
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   // At its ends, where heights tie over as much.

@@ -7,9 +7,8 @@
 
 namespace taut {
 
-/// Pieces of arcs shorter than this, in (n, x_0, x_1), are none: rounding may make them of nothing.
-/// Not more than longest_empty_piece.
-double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece);
+/// Pieces of arcs up to this long, in (n, x_0, x_1), may be none: where rounding may make as much
+/// of nothing.
 inline constexpr double longest_empty_piece = 1e-7;
 
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
