@@ -589,8 +589,8 @@ TEST(ContactSystem, UncertaintyIsThatOfThePlace) {
   for (const Pair& pair : pairs()) {
     const Group group(pair.elements);
     const ContactGeometry geometry(group.scene);
-    CommonSupport s = support(geometry, group, {0.1, 0.2, 1});
-    ASSERT_TRUE(solve_pair(ContactSystem(geometry), s, {1, 0, 0})) << pair.kinds;
+    const CommonSupport s = support(geometry, group, {0.1, 0.2, 1});
+    EXPECT_GT(ContactSystem(geometry).uncertainty(s), 0) << pair.kinds;
     EXPECT_LT(ContactSystem(geometry).uncertainty(s), 1e-12) << pair.kinds;
   }
   BezierPatch square;
