@@ -85,6 +85,7 @@ std::vector<int> child_numbers(const Far::TopologyLevel& level, const Far::Topol
 struct CageLevel::Topology {
   CageScheme scheme = CageScheme::catmark;
   Sdc::Options options;
+  bool is_refined = false;
   std::unique_ptr<Far::TopologyRefiner> refiner;
   std::vector<dvec3> points;
   std::vector<int> numbers;  ///< of vertices over all levels, -1 if not of a cell
@@ -114,7 +115,32 @@ struct CageLevel::Topology {
                        [&](int v) { return near_semi_sharp[to_size(v)]; });
   }
 
-  std::unique_ptr<Far::PatchTable> patch_table() const {
+  bool is_dart(int vertex) const {
+    const Far::TopologyLevel base = level();
+    if (base.GetVertexRule(vertex) != Sdc::Crease::RULE_DART) return false;
+    const auto edges = base.GetVertexEdges(vertex);
+    return std::any_of(edges.begin(), edges.end(), [&](int e) { return base.IsEdgeInfSharp(e); });
+  }
+
+  bool is_inner_with_three_triangles(int vertex) const {
+    const Far::TopologyLevel base = level();
+    return scheme == CageScheme::loop && !base.IsVertexBoundary(vertex) &&
+           base.GetVertexFaces(vertex).size() == 3;
+  }
+
+  /// OpenSubdiv (3.5) makes the rows of a cap's matrix too short, and writes past its end, where
+  /// the infinitely sharp edge at a dart leads to an irregular vertex; of a Loop cage it makes them
+  /// too long, and leaves in them what was there, where an edge leads to one from an inner vertex
+  /// of three triangles. Only the control cage has such edges.
+  bool has_patch(int face) const {
+    if (is_refined) return true;
+    const auto vertices = level().GetFaceVertices(face);
+    return std::none_of(vertices.begin(), vertices.end(),
+                        [&](int v) { return is_dart(v) || is_inner_with_three_triangles(v); });
+  }
+
+  /// Of some faces, one at least.
+  std::unique_ptr<Far::PatchTable> patch_table(const std::vector<int>& faces) const {
     Far::PatchTableFactory::Options patches(0);
     patches.SetEndCapType(scheme == CageScheme::loop
                               ? Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS
@@ -126,7 +152,8 @@ struct CageLevel::Topology {
     patches.SetPatchPrecision<double>();
     refiner->Unrefine();
     refiner->RefineAdaptive(patches.GetRefineAdaptiveOptions());
-    return std::unique_ptr<Far::PatchTable>(Far::PatchTableFactory::Create(*refiner, patches));
+    return std::unique_ptr<Far::PatchTable>(
+        Far::PatchTableFactory::Create(*refiner, patches, {faces.data(), to_int(faces.size())}));
   }
 
   /// The level's points and, behind them, those of its caps.
@@ -180,7 +207,8 @@ struct CageLevel::Topology {
     const Far::TopologyLevel base = level();
     const auto edges = base.GetFaceEdges(face);
     std::array<bool, 4> smooth = {};
-    for (int k = 0; k < std::min(4, edges.size()); ++k) {
+    if (edges.size() > 4) return smooth;
+    for (int k = 0; k < edges.size(); ++k) {
       smooth[to_size(k)] = !base.IsEdgeInfSharp(edges[k]) && !base.IsEdgeBoundary(edges[k]) &&
                            !base.IsEdgeNonManifold(edges[k]);
     }
@@ -242,25 +270,29 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
 
 std::vector<CellPatch> CageLevel::patches() const {
   const Topology& topology = *topology_;
-  const std::unique_ptr<Far::PatchTable> table = topology.patch_table();
+  std::vector<CellPatch> result(cells_.size());
+  std::vector<int> cell_of(to_size(topology.level().GetNumFaces()), -1);
+  std::vector<int> faces;
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    result[c].smooth = topology.smooth_sides(cells_[c].face);
+    if (!topology.has_patch(cells_[c].face)) continue;
+    cell_of[to_size(cells_[c].face)] = to_int(c);
+    faces.push_back(cells_[c].face);
+  }
+  if (faces.empty()) return result;
+  const std::unique_ptr<Far::PatchTable> table = topology.patch_table(faces);
   const std::vector<Primvar> points = topology.patch_points(*table);
   const std::vector<int> face_of = topology.faces_of_parameters();
-  std::vector<int> cell_of(to_size(topology.level().GetNumFaces()), -1);
-  for (std::size_t c = 0; c < cells_.size(); ++c) cell_of[to_size(cells_[c].face)] = to_int(c);
 
-  std::vector<CellPatch> result(cells_.size());
   std::map<int, LoopMatrix> loop_matrices;
   for (int array = 0; array < table->GetNumPatchArrays(); ++array) {
     for (int i = 0; i < table->GetNumPatches(array); ++i) {
       const Far::PatchParam param = table->GetPatchParam(array, i);
       const int face = face_of[to_size(param.GetFaceId())];
-      const int c = cell_of[to_size(face)];
-      if (c < 0) continue;
-      CellPatch& patch = result[to_size(c)];
+      CellPatch& patch = result[to_size(cell_of[to_size(face)])];
       patch.semi_sharp = topology.is_near_semi_sharp(face);
       const bool exact = param.IsRegular() && !patch.semi_sharp;
       patch.kind = exact ? CellPatch::Kind::regular : CellPatch::Kind::cap;
-      patch.smooth = topology.smooth_sides(face);
       const auto vertices = table->GetPatchVertices(array, i);
       if (topology.scheme == CageScheme::catmark) {
         std::array<dvec3, 16> net;
@@ -354,6 +386,7 @@ CageLevel CageLevel::refined(std::span<const std::size_t> cells, EdgeMiddles& mi
   const Extraction part(fine, std::move(child_faces), own_children);
   next.topology_->scheme = topology.scheme;
   next.topology_->options = topology.options;
+  next.topology_->is_refined = true;
   next.topology_->points.reserve(part.vertices().size());
   for (const int v : part.vertices()) {
     next.topology_->points.push_back(children[to_size(v)].x);

@@ -22,7 +22,9 @@ struct CageCell {
 /// The surface of a cell.
 struct CellPatch {
   enum class Kind {
-    none,     ///< a face of the cage that is no quad (Loop: none is)
+    /// A face of the control cage that is no quad, or at a dart; of a Loop cage, one at a dart or
+    /// at an inner vertex of three triangles.
+    none,
     regular,  ///< exactly the limit surface
     /// Stands for it, polynomial too: its corners are the limit's, and so are its borders to
     /// regular cells and the tangent planes there.
@@ -36,7 +38,8 @@ struct CellPatch {
   /// .. (0,4).
   std::vector<dvec3> points;
   int degree = 3;
-  /// Of the sides from each corner to the next: the surface goes on smoothly there.
+  /// Of the sides from each corner to the next: the surface goes on smoothly there. Not told of
+  /// more than four.
   std::array<bool, 4> smooth = {};
 };
 
