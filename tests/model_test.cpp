@@ -950,7 +950,11 @@ TEST(Model, FreeCurves) {
   // No direction at all, and one that takes some looking for.
   expect_counts(connected({{}, {polyline({x, x})}, {}}), 1, 1);
   const BezierCurve slow{{homogeneous(dvec3(0)), homogeneous(dvec3(0, 1e-9, 0)), homogeneous(x)}};
-  expect_counts(connected({{}, {as_nurbs(slow), polyline({dvec3(0), -x})}, {}}), 2, 2);
+  BezierCurve back = slow;
+  for (dvec4& p : back.points) p = homogeneous(-euclidean(p));
+  expect_counts(connected({{}, {as_nurbs(slow), as_nurbs(back)}, {}}), 2, 2);
+  // A straight one goes on in a bent one: in a vertex.
+  expect_counts(connected({{}, {as_nurbs(slow), polyline({dvec3(0), -x})}, {}}), 2, 3);
   // Two that run back over each other.
   expect_counts(connected({{}, {polyline({dvec3(0), x}), polyline({x, dvec3(0)})}, {}}), 2, 2);
   // A gap inside.

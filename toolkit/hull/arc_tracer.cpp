@@ -282,16 +282,10 @@ bool Trace::ends_in_line(const Contact& winner) {
 void Trace::settle_flat_ends() {
   Ruling& last = arc_.pieces.back().rulings.back();
   for (std::size_t i = 0; i < 2; ++i) {
-    const Contact border = snapped(geometry_, last.contact[i], same_contact);
-    const std::optional<Contact> own = expressed_in(geometry_, border, last.contact[i]);
-    if (!own) continue;
-    const ContactJet j = geometry_.jet(*own);
-    const auto is_level = [&](const dvec3& dx) {
-      return std::abs(glm::dot(dx, last.n)) <= geometry_.tie() * glm::length(dx);
-    };
-    if (!is_level(j.dx[0]) || !is_level(j.dx[1])) continue;
-    last.contact[i] = *own;
-    last.point[i] = j.x;
+    const std::optional<Contact> border = at_level_border(geometry_, last.contact[i], last.n);
+    if (!border) continue;
+    last.contact[i] = *border;
+    last.point[i] = geometry_.point(*border);
   }
 }
 

@@ -89,6 +89,10 @@ constexpr double off_pole = 0.3;
 /// A contact is at a pole for good if n is the pole's normal to within this.
 constexpr double pole_angle = 1e-8;
 
+/// How far from a border a contact may be that the direction does not tell from the border: where
+/// x . n departs with the third power, its slope with the second is rounding up to there.
+constexpr double level_reach = 1e-5;
+
 /// From a pole whose normal is not n, a start of a climb on the steepest way up among all patches
 /// about it, at the maximum of the parabola along it. None at a vertex of another kind, and where
 /// no way leads up.
@@ -288,7 +292,10 @@ class Climb {
     step = std::clamp(step, -0.5, 0.5);
     const double to = std::clamp(c_.u + step, 0.0, 1.0);
     const bool to_end = to != c_.u && (to == 0 || to == 1);
-    if (std::abs(to - c_.u) * size > short_step || to_end) {
+    const double length = std::abs(to - c_.u) * size;
+    const bool noise = length < noise_step && length > 0.5 * last_length_;
+    last_length_ = length;
+    if ((length > short_step && !noise) || to_end) {
       c_.u = to;
       return Progress::moved;
     }
@@ -580,6 +587,17 @@ Contact moved_to_border(const ContactGeometry& geometry, Contact c, double dista
 
 Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance) {
   return geometry.canonical(moved_to_border(geometry, c, distance));
+}
+
+std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Contact& c,
+                                       const dvec3& n) {
+  const Contact border = moved_to_border(geometry, c, level_reach);
+  if (border.u == c.u && border.v == c.v) return std::nullopt;
+  const ContactJet j = geometry.jet(border);
+  const auto is_level = [&](const dvec3& dx) {
+    return std::abs(glm::dot(dx, n)) <= geometry.tie() * glm::length(dx);
+  };
+  return is_level(j.dx[0]) && is_level(j.dx[1]) ? std::optional(border) : std::nullopt;
 }
 
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n) {

@@ -87,19 +87,25 @@ class ContactSet {
   }
 
   void add(const Contact& c) {
-    contacts_.push_back(snapped(geometry_, clamped(c), nearness()));
+    const Contact inside = clamped(c);
+    const std::optional<Contact> level = at_level_border(geometry_, inside, n_);
+    contacts_.push_back(snapped(geometry_, level.value_or(inside), nearness()));
     points_.push_back(geometry_.point(contacts_.back()));
   }
   std::optional<FacetContacts> complete();
 
  private:
   double nearness() const { return std::max(corner_distance, geometry_.rounding()); }
-  /// The parameter of a piece, or its end if that is no farther.
+  /// The parameter of a piece, or its end if that is no farther, or not told from it by the
+  /// tangent.
   double end_or_inside(Contact piece, double t) const {
     piece.u = t;
     const double end = std::round(t);
-    const double speed = glm::length(geometry_.jet(piece).dx[0]);
-    return std::abs(t - end) * speed <= nearness() ? end : t;
+    const dvec3 dx = geometry_.jet(piece).dx[0];
+    if (std::abs(t - end) * glm::length(dx) <= nearness()) return end;
+    const std::optional<Contact> level =
+        at_level_border(geometry_, piece, unit(glm::cross(dx, n_)));
+    return level ? level->u : t;
   }
   bool is_known(const Contact& c) const {
     const dvec3 x = geometry_.point(c);

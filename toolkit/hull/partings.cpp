@@ -72,8 +72,11 @@ bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighti
     if (!c) return false;
     const dvec3 x = geometry.point(*c);
     if (glm::distance(x, to.x) < same) return true;
-    return std::abs(glm::dot(to.x - x, to.n)) <= geometry.tie() &&
-           leads_straight(geometry, *c, to.x);
+    if (std::abs(glm::dot(to.x - x, to.n)) > geometry.tie()) return false;
+    if (leads_straight(geometry, *c, to.x)) return true;
+    // It was seen beside the top, by less than a tie tells: where an edge begins without a bend.
+    const std::optional<Contact> top = climbed(geometry, to.contact, to.n);
+    return top && glm::distance(geometry.point(*top), x) < same;
   };
   return leads(a, b) && leads(b, a);
 }

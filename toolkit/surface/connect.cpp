@@ -96,6 +96,7 @@ class Connector {
   std::vector<std::pair<int, int>> sorted_ends() const;
   void add_vertices(const std::vector<bool>& has_vertex);
   bool goes_straight_on(int end_a, int end_b) const;
+  bool is_straight(int end) const;
   std::vector<int> face_sides(const Arc& arc) const;
   std::vector<int> successors() const;
   void make_edges();
@@ -209,9 +210,10 @@ std::vector<std::pair<int, int>> Connector::sorted_ends() const {
   return ends;
 }
 
-/// An end that meets exactly one other straight on goes on there; all others end in a vertex. First
-/// without seams, for these leave edges and their vertices what they are; then with them: a seam
-/// that ends beside an edge that goes on makes a vertex inside of that edge.
+/// An end that meets exactly one other straight on goes on there, unless one of the two is a
+/// straight segment and the other is not; all others end in a vertex. First without seams, for
+/// these leave edges and their vertices what they are; then with them: a seam that ends beside an
+/// edge that goes on makes a vertex inside of that edge.
 void Connector::place_vertices() {
   std::vector<bool> has_vertex(4 * patches_.size() + 2 * to_size(free_piece_count_));
   for (int side = 0; side < to_int(sides_.size()); ++side) {
@@ -233,7 +235,8 @@ void Connector::place_vertices() {
         if (seams || !seam) here.push_back(ends[i].second);
       }
       if (here.empty() || !concerned || has_vertex[to_size(point)]) continue;
-      if (here.size() == 2 && goes_straight_on(here[0], here[1])) {
+      if (here.size() == 2 && goes_straight_on(here[0], here[1]) &&
+          is_straight(here[0]) == is_straight(here[1])) {
         neighbor(here[0]) = here[1];
         neighbor(here[1]) = here[0];
       } else {
@@ -253,6 +256,13 @@ void Connector::add_vertices(const std::vector<bool>& has_vertex) {
     vertex_of_[point] = to_int(vertices_.size());
     vertices_.push_back(point_at(to_int(point)));
   }
+}
+
+bool Connector::is_straight(int end) const {
+  const Arc& arc = arcs_[to_size(end / 2)];
+  return taut::is_straight(arc.join < 0
+                               ? pieces_[to_size(arc.piece)].bezier
+                               : sides_[to_size(joins_[to_size(arc.join)].front().side)].curve);
 }
 
 bool Connector::goes_straight_on(int end_a, int end_b) const {

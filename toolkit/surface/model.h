@@ -171,7 +171,8 @@ class Part {
   /// All other sides are edges: maximal runs of straight-on borders along which the same sides of
   /// the same faces meet. A vertex stands where edges, free curves included, end in anything but
   /// one straight-on continuation (so also at a kink inside a free curve, which stays one edge),
-  /// and at a collapsed side that has no common normal. The points of an edge's pieces and of the
+  /// where a straight segment goes on in a bent one, since it touches planes with its ends, and at
+  /// a collapsed side that has no common normal. The points of an edge's pieces and of the
   /// vertices are those of the first side that is there.
   ///
   /// Seams are the smooth joins that get pieces too, for supporting planes can leave a surface
