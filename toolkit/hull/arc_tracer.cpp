@@ -53,6 +53,11 @@ class Trace {
 
  private:
   enum class Pace { on, ended };
+  /// A contact on a border of its element, and the exit there.
+  struct BorderExit {
+    Contact contact;
+    ContactExit exit;
+  };
 
   bool leave();
   bool pass_pole(int contact, Side side);
@@ -65,6 +70,8 @@ class Trace {
   bool ends_in_line(const Contact& winner);
   bool ends_widened();
   void settle_flat_ends();
+  std::optional<BorderExit> level_exit(std::size_t i) const;
+  bool hop(std::size_t i, const ContactExit& exit);
   Pace exchange(const ElementChange& event);
   Pace advance();
   void begin_piece(const Ruling& first);
@@ -348,20 +355,60 @@ bool Trace::enter_level(std::size_t contact) {
   return true;
 }
 
-/// On to the next element, at the exit where the contact stands.
+/// The border of contact i's element, and the exit there, for which it heads and which the
+/// direction does not tell from where it is.
+std::optional<Trace::BorderExit> Trace::level_exit(std::size_t i) const {
+  const Contact& c = point_.at.contact[i];
+  const std::optional<Contact> border = at_level_border(geometry_, c, point_.at.n);
+  if (!border) return std::nullopt;
+  for (const ContactExit& exit : exits(geometry_, c)) {
+    const Contact there = at_exit(*border, exit);
+    const bool is_on = there.u == border->u && there.v == border->v;
+    if (!leads_over_border(exit) || !is_on) continue;
+    const LinearEquation margin = exit_margin(geometry_, point_.at, int(i), exit);
+    if (margin.residual > 0 && glm::dot(margin.parameter[i], point_.tangent.parameter[i]) < 0) {
+      return BorderExit{*border, exit};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Takes the contact over the exit at which it stands.
+bool Trace::hop(std::size_t i, const ContactExit& exit) {
+  const std::optional<Contact> over = beyond(geometry_, point_.at.contact[i], exit);
+  if (over) point_.at.contact[i] = *over;
+  return over.has_value();
+}
+
+/// On to the next element, at the exit where the contact stands. It, and the other contact, may be
+/// at one more exit, as far as the direction tells.
 Trace::Pace Trace::exchange(const ElementChange& event) {
   const auto i = std::size_t(event.contact);
-  // The piece ends with the contact on its exit, which a step too short to count has not told.
+  const std::array<std::optional<BorderExit>, 2> level = {level_exit(0), level_exit(1)};
+  const SourceKind kind = point_.at.contact[i].kind;
   Ruling& last = arc_.pieces.back().rulings.back();
-  last.contact[i] = point_.at.contact[i];
-  last.point[i] = point_.at.jet[i].x;
-  const std::optional<Contact> over = beyond(geometry_, point_.at.contact[i], event.exit);
-  if (!over) return lost("a separating curve has no next element");
-  const bool other_kind = over->kind != point_.at.contact[i].kind;
-  point_.at.contact[i] = *over;
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (level[k]) point_.at.contact[k] = level[k]->contact;
+    if (k != i && !level[k]) continue;
+    // The piece ends with the contact on its exit, which a step too short to count has not told.
+    last.contact[k] = point_.at.contact[k];
+    last.point[k] = geometry_.point(last.contact[k]);
+  }
+  bool leads_on = hop(i, event.exit);
+  if (leads_on && level[1 - i]) leads_on = hop(1 - i, level[1 - i]->exit);
+  if (!leads_on) return lost("a separating curve has no next element");
+  const Contact& next = point_.at.contact[i];
+  if (level[i] && next.kind == SourceKind::edge && (next.u == 0 || next.u == 1)) {
+    hop(i, {ContactExit::Kind::end, int(next.u)});
+  }
   point_.at.evaluate(geometry_);
+  const bool other_kind = kind != point_.at.contact[i].kind;
   if (other_kind && has_moved_ && ends_widened()) return ended(TracedArc::End::plane);
   if (event.exit.kind == ContactExit::Kind::face && enter_level(i)) return Pace::on;
+  // Onto an edge that begins without a bend.
+  if (event.exit.kind == ContactExit::Kind::edge && passage_.is_singular(int(i)) && leave()) {
+    return Pace::on;
+  }
   const std::array<Contact, CommonSupport::capacity> before = point_.at.contact;
   if (!point_.settle()) return lost("a separating curve has no tangent");
   end_on_joins(before);

@@ -92,6 +92,8 @@ constexpr double pole_angle = 1e-8;
 /// How far from a border a contact may be that the direction does not tell from the border: where
 /// x . n departs with the third power, its slope with the second is rounding up to there.
 constexpr double level_reach = 1e-5;
+/// Slopes below this count for level at vertices, which support in directions that are not level.
+constexpr double vertex_slope = 1e-10;
 
 /// From a pole whose normal is not n, a start of a climb on the steepest way up among all patches
 /// about it, at the maximum of the parabola along it. None at a vertex of another kind, and where
@@ -141,7 +143,7 @@ class Climb {
       if (progress == Progress::arrived) return c_;
       if (progress == Progress::lost) return std::nullopt;
     }
-    return std::nullopt;
+    return is_on_top() ? std::optional(c_) : std::nullopt;
   }
 
  private:
@@ -165,6 +167,13 @@ class Climb {
   double slack(double size) const { return flat * size + geometry_.rounding(); }
   bool is_bent(double second, double size) const {
     return second > bent * size * size + geometry_.rounding();
+  }
+  /// On an edge, to within rounding: near an inflection that makes steps without end.
+  bool is_on_top() const {
+    if (c_.kind != SourceKind::edge) return false;
+    const ContactJet j = geometry_.jet(c_);
+    const double size = glm::length(j.dx[0]);
+    return std::abs(glm::dot(j.dx[0], n_)) <= slack(size) && is_bent(-glm::dot(j.dxx, n_), size);
   }
   bool rises(const dvec3& tangent) const {
     return glm::dot(tangent, n_) > slack(glm::length(tangent));
@@ -594,8 +603,10 @@ std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Co
   const Contact border = moved_to_border(geometry, c, level_reach);
   if (border.u == c.u && border.v == c.v) return std::nullopt;
   const ContactJet j = geometry.jet(border);
+  const bool at_vertex = geometry.canonical(border).kind == SourceKind::vertex;
+  const double slope = at_vertex ? vertex_slope : geometry.tie();
   const auto is_level = [&](const dvec3& dx) {
-    return std::abs(glm::dot(dx, n)) <= geometry.tie() * glm::length(dx);
+    return std::abs(glm::dot(dx, n)) <= slope * glm::length(dx);
   };
   return is_level(j.dx[0]) && is_level(j.dx[1]) ? std::optional(border) : std::nullopt;
 }

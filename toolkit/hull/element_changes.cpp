@@ -10,6 +10,8 @@ namespace {
 /// but for places where that is more than a limit, or many times the rounding: beside poles.
 constexpr double margin_slack_limit = 1e-9;
 constexpr double margin_noise_limit = 300;
+/// Sine below which an edge leaves a vertex in line with another vertex.
+constexpr double in_line_sine = 1e-9;
 /// How far behind a step's start rounding may put an exit at which it begins.
 constexpr double behind_limit = 1e-7;
 
@@ -24,6 +26,26 @@ void put_on_border(const ContactGeometry& geometry, ElementChange& event) {
     s.contact[i].v = std::clamp(s.contact[i].v, 0.0, 1.0);
   }
   s.evaluate(geometry);
+}
+
+void ElementChanges::begin() {
+  for (int i = 0; i < 2; ++i) {
+    std::vector<ContactExit>& own = exits_[std::size_t(i)];
+    own = exits(geometry_, point_.at.contact[std::size_t(i)]);
+    std::erase_if(own, [&](const ContactExit& exit) { return stays_level(i, exit); });
+  }
+}
+
+/// Two vertices are the contacts, and the exit's edge goes straight on from the segment between
+/// them: its margin is zero all along the curve.
+bool ElementChanges::stays_level(int contact, const ContactExit& exit) const {
+  const CommonSupport& s = point_.at;
+  if (exit.kind != ContactExit::Kind::edge || s.contact[0].kind != SourceKind::vertex ||
+      s.contact[1].kind != SourceKind::vertex) {
+    return false;
+  }
+  const dvec3 away = exit_margin(geometry_, s, contact, exit).n;
+  return glm::length(glm::cross(away, unit(s.d()))) < in_line_sine;
 }
 
 std::optional<ElementChange> ElementChanges::solved(const CommonSupport& next, double share,

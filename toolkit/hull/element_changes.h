@@ -30,9 +30,7 @@ class ElementChanges {
       : geometry_(point.geometry()), system_(point.system()), point_(point) {}
 
   /// Begins in the point's elements.
-  void begin() {
-    for (std::size_t i = 0; i < 2; ++i) exits_[i] = exits(geometry_, point_.at.contact[i]);
-  }
+  void begin();
   /// The first margin on the way to `next`, a step of this length, that is crossed there. Not
   /// `known` if it is not found where.
   std::optional<ElementChange> first(const CommonSupport& next, double length, bool& known) const;
@@ -45,6 +43,7 @@ class ElementChanges {
   double margin(const CommonSupport& s, int contact, const ContactExit& exit) const {
     return exit_margin(geometry_, s, contact, exit).residual;
   }
+  bool stays_level(int contact, const ContactExit& exit) const;
   ElementChange change_here(int contact, const ContactExit& exit) const;
   bool precedes(const ElementChange& a, const ElementChange& b) const;
   double slack(int contact, const ContactExit& exit) const;

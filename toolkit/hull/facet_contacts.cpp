@@ -87,9 +87,7 @@ class ContactSet {
   }
 
   void add(const Contact& c) {
-    const Contact inside = clamped(c);
-    const std::optional<Contact> level = at_level_border(geometry_, inside, n_);
-    contacts_.push_back(snapped(geometry_, level.value_or(inside), nearness()));
+    contacts_.push_back(settled(c));
     points_.push_back(geometry_.point(contacts_.back()));
   }
   std::optional<FacetContacts> complete();
@@ -106,6 +104,12 @@ class ContactSet {
     const std::optional<Contact> level =
         at_level_border(geometry_, piece, unit(glm::cross(dx, n_)));
     return level ? level->u : t;
+  }
+  /// On the border that is no farther, or that the direction does not tell from where it is.
+  Contact settled(const Contact& c) const {
+    const Contact inside = clamped(c);
+    const std::optional<Contact> level = at_level_border(geometry_, inside, n_);
+    return snapped(geometry_, level.value_or(inside), nearness());
   }
   bool is_known(const Contact& c) const {
     const dvec3 x = geometry_.point(c);
@@ -223,10 +227,8 @@ std::optional<Contact> ContactSet::found(const dvec3& towards) {
   const Support s = query_(glm::normalize(n_ + side_turn * towards), contacts_[0]);
   const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
   const double least = glm::dot(points_[0], n_) - geometry_.tie() - slack_;
-  if (!c || glm::dot(geometry_.point(*c), n_) < least) {
-    return std::nullopt;
-  }
-  return c;
+  if (!c || glm::dot(geometry_.point(*c), n_) < least) return std::nullopt;
+  return settled(*c);
 }
 
 std::optional<FacetContacts> ContactSet::complete() {

@@ -104,7 +104,8 @@ void GraphBuilder::settle_in(const FacetNode& node, std::size_t side, int end, R
   for (std::size_t i = 0; i < 2; ++i) {
     const bool first = (i == 0) == (end == 0);
     const std::size_t corner = first ? side : (side + 1) % node.points.size();
-    if (glm::distance(node.points[corner], r.point[i]) > rounded_contact) continue;
+    const Contact at = at_level_border(geometry_, r.contact[i], node.n).value_or(r.contact[i]);
+    if (glm::distance(node.points[corner], geometry_.point(at)) > rounded_contact) continue;
     const std::optional<Contact> c = expressed_in(geometry_, node.contacts[corner], r.contact[i]);
     if (!c) continue;
     r.contact[i] = *c;

@@ -76,16 +76,18 @@ bool PolePassage::is_singular(int contact) const {
 std::optional<Ruling> PolePassage::leave() {
   const CommonSupport start = point_.at;
   for (const double step : leaving_steps) {
-    point_.at = start;
-    if (const std::optional<Ruling> first = leave(step)) return first;
+    for (const bool tilted : {false, true}) {
+      point_.at = start;
+      if (const std::optional<Ruling> first = leave(step, tilted)) return first;
+    }
   }
   point_.at = start;
   return std::nullopt;
 }
 
-std::optional<Ruling> PolePassage::leave(double step) {
+std::optional<Ruling> PolePassage::leave(double step, bool tilted) {
   const CommonSupport start = point_.at;
-  const std::optional<CommonSupport> beside = stepped_aside(step);
+  const std::optional<CommonSupport> beside = stepped_aside(step, tilted);
   if (!beside) return std::nullopt;
   point_.at = *beside;
   point_.tangent = CurveTangent();
@@ -104,27 +106,29 @@ std::optional<Ruling> PolePassage::leave(double step) {
 }
 
 /// The contact of the branch that contact i moves on in a direction beside: what supports where the
-/// direction turns a little into its region, if that is near; else where a climb leads.
-std::optional<Contact> PolePassage::aside(int i, double step, const dvec3& n) const {
+/// direction turns a little into its region, if that is near; else where a climb leads. `tilted`:
+/// as it is in the direction turned so, off the place where the element is flat.
+std::optional<Contact> PolePassage::aside(int i, double step, const dvec3& n, bool tilted) const {
   const Contact& own = point_.at.contact[std::size_t(i)];
   const dvec3 inward = (i == 0 ? 1.0 : -1.0) * unit(point_.at.d());
-  const dvec3 tilted = glm::normalize(n + share_inward * step * inward);
-  const Support top = point_.query()(tilted, own);
+  const dvec3 turned = glm::normalize(n + share_inward * step * inward);
+  const Support top = point_.query()(turned, own);
   if (glm::distance(top.point, point_.at.jet[std::size_t(i)].x) <
       0.25 * glm::length(point_.at.d())) {
-    const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, top.contact, tilted), n);
-    if (c) return c;
+    const Contact rest = at_rest(geometry_, top.contact, turned);
+    if (tilted) return rest;
+    if (const std::optional<Contact> c = climbed(geometry_, rest, n)) return c;
   }
   return pole_side(geometry_, own) ? beside_pole(geometry_, own, n) : climbed(geometry_, own, n);
 }
 
 /// The common support of the two contacts' branches where n has turned by a step along the curve.
-std::optional<CommonSupport> PolePassage::stepped_aside(double step) const {
+std::optional<CommonSupport> PolePassage::stepped_aside(double step, bool tilted) const {
   const dvec3 along = unit(glm::cross(point_.at.n, point_.at.d()));
   CommonSupport next = point_.at;
   next.n = glm::normalize(point_.at.n + step * along);
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<Contact> c = aside(int(i), step, next.n);
+    const std::optional<Contact> c = aside(int(i), step, next.n, tilted);
     if (!c) return std::nullopt;
     next.contact[i] = *c;
   }

@@ -41,9 +41,9 @@ class PolePassage {
   std::optional<Ruling> arrival(const Landmark& landmark, double length) const;
 
  private:
-  std::optional<Ruling> leave(double step);
-  std::optional<CommonSupport> stepped_aside(double step) const;
-  std::optional<Contact> aside(int i, double step, const dvec3& n) const;
+  std::optional<Ruling> leave(double step, bool tilted);
+  std::optional<CommonSupport> stepped_aside(double step, bool tilted) const;
+  std::optional<Contact> aside(int i, double step, const dvec3& n, bool tilted) const;
   std::optional<std::size_t> nearest_side(const FacetContacts& facet) const;
 
   const ContactGeometry& geometry_;

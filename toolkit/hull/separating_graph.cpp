@@ -65,6 +65,16 @@ std::vector<CulledCell> not_definite(const std::vector<CulledCell>& cells) {
   return result;
 }
 
+/// The support with contacts on borders that its direction does not tell from where they are.
+CommonSupport settled_on_borders(const ContactGeometry& geometry, CommonSupport s) {
+  for (int i = 0; i < s.count; ++i) {
+    Contact& c = s.contact[std::size_t(i)];
+    if (const auto level = at_level_border(geometry, c, s.n)) c = geometry.canonical(*level);
+  }
+  s.evaluate(geometry);
+  return s;
+}
+
 class GraphTracer {
  public:
   GraphTracer(const ContactGeometry& geometry, SupportQuery& query, const Progress& progress)
@@ -390,9 +400,11 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
 
 /// Traces the curve through a seed, from the first to the last of contacts in line.
 void GraphTracer::trace(const CommonSupport& seed) {
-  const std::optional<CommonSupport> wide = widened(geometry_, query_, seed);
+  const CommonSupport settled = settled_on_borders(geometry_, seed);
+  if (built_.is_traced(settled)) return;
+  const std::optional<CommonSupport> wide = widened(geometry_, query_, settled);
   if (!wide) {
-    trace_both_ways(seed);
+    trace_both_ways(settled);
   } else if (!built_.is_traced(*wide)) {
     trace_both_ways(*wide);
   }
