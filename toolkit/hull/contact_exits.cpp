@@ -92,8 +92,6 @@ constexpr double pole_angle = 1e-8;
 /// How far from a border a contact may be that the direction does not tell from the border: where
 /// x . n departs with the third power, its slope with the second is rounding up to there.
 constexpr double level_reach = 1e-5;
-/// Slopes below this count for level at vertices, which support in directions that are not level.
-constexpr double vertex_slope = 1e-10;
 
 /// From a pole whose normal is not n, a start of a climb on the steepest way up among all patches
 /// about it, at the maximum of the parabola along it. None at a vertex of another kind, and where
@@ -599,14 +597,13 @@ Contact snapped(const ContactGeometry& geometry, const Contact& c, double distan
 }
 
 std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Contact& c,
-                                       const dvec3& n) {
+                                       const dvec3& n, double slope) {
   const Contact border = moved_to_border(geometry, c, level_reach);
   if (border.u == c.u && border.v == c.v) return std::nullopt;
   const ContactJet j = geometry.jet(border);
-  const bool at_vertex = geometry.canonical(border).kind == SourceKind::vertex;
-  const double slope = at_vertex ? vertex_slope : geometry.tie();
+  const double least = std::max(slope, geometry.tie());
   const auto is_level = [&](const dvec3& dx) {
-    return std::abs(glm::dot(dx, n)) <= slope * glm::length(dx);
+    return std::abs(glm::dot(dx, n)) <= least * glm::length(dx);
   };
   return is_level(j.dx[0]) && is_level(j.dx[1]) ? std::optional(border) : std::nullopt;
 }

@@ -93,10 +93,11 @@ Contact moved_to_border(const ContactGeometry& geometry, Contact c, double dista
 /// no farther than `distance`.
 Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance);
 
-/// The contact on a side or at an end of its element near by, if x . n is level there up to
-/// rounding: the direction does not tell the two places apart. None if there is none.
+/// The contact on a side or at an end of its element near by, if the slope of x . n there is less
+/// than tie(), or than `slope`: the direction does not tell the two places apart. None if there is
+/// none.
 std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Contact& c,
-                                       const dvec3& n);
+                                       const dvec3& n, double slope = 0);
 
 /// A patch's contact on a side across which it is level, to within rounding: its curvature tells no
 /// place. Where the third derivative tells it, that place. None elsewhere.

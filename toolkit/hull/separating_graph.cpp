@@ -33,6 +33,8 @@ constexpr double nearly_opposite = -0.9;
 constexpr double least_part = 0.05;
 /// Weight by which a direction between two keeps clear of a plane's between them.
 constexpr double beside_plane = 1.25;
+/// Slopes of edges at vertices, which support in directions that are not level too, that are zero.
+constexpr double vertex_slope = 1e-10;
 /// Turn, in radians, from a free end to where its curve's contacts have parted.
 constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
@@ -65,11 +67,14 @@ std::vector<CulledCell> not_definite(const std::vector<CulledCell>& cells) {
   return result;
 }
 
-/// The support with contacts on borders that its direction does not tell from where they are.
-CommonSupport settled_on_borders(const ContactGeometry& geometry, CommonSupport s) {
+/// The support with contacts at vertices that its direction does not tell from where they are.
+CommonSupport settled_at_vertices(const ContactGeometry& geometry, CommonSupport s) {
   for (int i = 0; i < s.count; ++i) {
     Contact& c = s.contact[std::size_t(i)];
-    if (const auto level = at_level_border(geometry, c, s.n)) c = geometry.canonical(*level);
+    const std::optional<Contact> end = at_level_border(geometry, c, s.n, vertex_slope);
+    if (!end) continue;
+    const Contact vertex = geometry.canonical(*end);
+    if (vertex.kind == SourceKind::vertex) c = vertex;
   }
   s.evaluate(geometry);
   return s;
@@ -400,7 +405,7 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
 
 /// Traces the curve through a seed, from the first to the last of contacts in line.
 void GraphTracer::trace(const CommonSupport& seed) {
-  const CommonSupport settled = settled_on_borders(geometry_, seed);
+  const CommonSupport settled = settled_at_vertices(geometry_, seed);
   if (built_.is_traced(settled)) return;
   const std::optional<CommonSupport> wide = widened(geometry_, query_, settled);
   if (!wide) {
