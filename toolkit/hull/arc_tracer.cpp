@@ -67,6 +67,9 @@ class Trace {
   bool ends_merged();
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
+  bool ends_in_tie(const CommonSupport& next, std::size_t contact, const Contact& third);
+  std::optional<Pace> beside_edge(const CommonSupport& next,
+                                  const std::optional<ElementChange>& event);
   bool ends_in_line(const Contact& winner);
   bool ends_widened();
   void settle_flat_ends();
@@ -336,6 +339,59 @@ Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
   return ended(TracedArc::End::plane);
 }
 
+/// Ends the arc in the plane of the two contacts and a third one, which surpasses the one of them
+/// by less than support values tell: within the step, or behind, where it went unseen.
+bool Trace::ends_in_tie(const CommonSupport& next, std::size_t contact, const Contact& third) {
+  const std::optional<CommonSupport> plane = common_plane(system_, point_.query(), next, third);
+  if (!plane || same_element(plane->contact[2], plane->contact[contact])) return false;
+  const double apart = glm::distance(plane->jet[2].x, plane->jet[contact].x);
+  const double there = point_.length_to(*plane);
+  if (there > point_.length_to(next) || there < -apart) return false;
+  std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
+  const auto is_beyond = [&](const Ruling& r) {
+    return point_.length_along(r.n, r.point[0], r.point[1]) >= there;
+  };
+  while (rulings.size() > 1 && is_beyond(rulings.back())) rulings.pop_back();
+  push(plane->ruling());
+  arc_.n = plane->n;
+  arc_.contacts.assign(plane->contact.begin(), plane->contact.end());
+  return true;
+}
+
+/// Beside an edge across which its face is level, a face's contact gives way to one on the edge
+/// before it reaches it, and one on the edge to one in the face before it slides into it. Where the
+/// two are so near that support values do not tell which is higher, their common plane does. What
+/// is too near for a plane is one place, where the contact goes on in the other element.
+std::optional<Trace::Pace> Trace::beside_edge(const CommonSupport& next,
+                                              const std::optional<ElementChange>& event) {
+  if (event) {
+    const auto i = std::size_t(event->contact);
+    const std::optional<Contact> inside =
+        tied_inside(geometry_, next.contact[i], event->exit, next.n);
+    if (inside && ends_in_tie(next, i, *inside)) return ended(TracedArc::End::plane);
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<EdgeBeside> beside = tied_edge(geometry_, next.contact[i], next.n);
+    if (!beside) continue;
+    if (ends_in_tie(next, i, beside->edge)) return ended(TracedArc::End::plane);
+    const double apart = glm::distance(geometry_.point(beside->edge), next.jet[i].x);
+    if (apart > plane_slack) continue;
+    ElementChange change;
+    change.contact = int(i);
+    change.exit = beside->exit;
+    change.support = next;
+    change.support.contact[i] =
+        expressed_in(geometry_, beside->edge, next.contact[i]).value_or(next.contact[i]);
+    put_on_border(geometry_, change);
+    point_.at = change.support;
+    push(point_.at.ruling());
+    has_moved_ = true;
+    return exchange(change);
+  }
+  return std::nullopt;
+}
+
 /// The contact has come from an edge into a face that is level across it, where the system is
 /// singular: moves it to where the direction, by the third derivative, puts it in the face.
 bool Trace::enter_level(std::size_t contact) {
@@ -460,6 +516,7 @@ Trace::Pace Trace::advance() {
   if (top.h > glm::dot(next->jet[0].x, next->n) + geometry_.tie()) {
     return surpassed(*next, top.contact);
   }
+  if (const std::optional<Pace> pace = beside_edge(*next, event)) return *pace;
   if (step_ > border_step && !point_.is_followed(point_.at.ruling(), next->ruling())) {
     return shorter("the rulings between two of a separating curve are not found");
   }

@@ -88,6 +88,12 @@ constexpr int pole_samples = 8;
 constexpr double off_pole = 0.3;
 /// A contact is at a pole for good if n is the pole's normal to within this.
 constexpr double pole_angle = 1e-8;
+/// Beside an edge across which the patch is level, x . n is p s + k s^3 / 6 + m s t + l t^2 / 2, s
+/// the way inwards; k, l < 0. Inside it has a maximum where s >= r = m^2 / (k l); one on the edge
+/// is higher where s < 1.5 r, by |k| r^3 / 6 at most, which is no more than a tie where support
+/// values do not tell. The border beside the one inside is then lower than this by |k| s^3 / 3, no
+/// more than 6.75 ties.
+constexpr double level_ties = 8;
 
 /// How far from a border a contact may be that the direction does not tell from the border: where
 /// x . n departs with the third power, its slope with the second is rounding up to there.
@@ -608,6 +614,25 @@ std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Co
   return is_level(j.dx[0]) && is_level(j.dx[1]) ? std::optional(border) : std::nullopt;
 }
 
+std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Contact& c,
+                                    const dvec3& n) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  const double height = glm::dot(geometry.point(c), n);
+  for (const Side side : all_sides) {
+    const ContactExit exit = {ContactExit::Kind::side, int(side)};
+    const Contact border = at_exit(c, exit);
+    if (glm::dot(geometry.point(border), n) < height - level_ties * geometry.tie()) continue;
+    const std::optional<Contact> over = beyond(geometry, border, exit);
+    if (!over || over->kind != SourceKind::edge) continue;
+    const std::optional<Contact> top = climbed(geometry, *over, n);
+    if (!top || top->kind != SourceKind::edge) continue;
+    if (glm::dot(geometry.point(*top), n) >= height - geometry.tie()) {
+      return EdgeBeside{exit, *top};
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n) {
   const PatchJet3 j = geometry.patch_jet(c);
   for (const Side side : all_sides) {
@@ -618,6 +643,34 @@ std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, 
     if (slope <= 0 || third >= 0) return std::nullopt;
     (along_v(side) ? c.u : c.v) += sense * std::sqrt(-2 * slope / third);
     return c;
+  }
+  return std::nullopt;
+}
+
+std::optional<Contact> tied_inside(const ContactGeometry& geometry, const Contact& edge,
+                                   const ContactExit& exit, const dvec3& n) {
+  if (edge.kind != SourceKind::edge || exit.kind != ContactExit::Kind::face) return std::nullopt;
+  std::optional<Contact> c = beyond(geometry, edge, exit);
+  if (!c || c->kind != SourceKind::face) return std::nullopt;
+  const PatchJet3 j = geometry.patch_jet(*c);
+  for (const Side side : all_sides) {
+    if (!is_level_across(geometry, *c, side, n)) continue;
+    const double sense = at_upper_end(side) ? -1 : 1;
+    const double third = sense * glm::dot(along_v(side) ? j.Suuu : j.Svvv, n);
+    const double mixed = sense * glm::dot(j.Suv, n);
+    const double along = glm::dot(along_v(side) ? j.Svv : j.Suu, n);
+    if (third >= 0 || along >= 0) return std::nullopt;
+    // x . n = third s^3 / 6 + mixed s t + along t^2 / 2 has a maximum there.
+    const double s = 2 * mixed * mixed / (third * along);
+    const double t = -mixed * s / along;
+    if (s >= 1) return std::nullopt;
+    (along_v(side) ? c->u : c->v) += sense * s;
+    (along_v(side) ? c->v : c->u) += t;
+    const std::optional<Contact> top = climbed(geometry, *c, n);
+    if (!top || top->kind != SourceKind::face) return std::nullopt;
+    const double height = glm::dot(geometry.point(edge), n);
+    if (glm::dot(geometry.point(*top), n) < height - geometry.tie()) return std::nullopt;
+    return top;
   }
   return std::nullopt;
 }

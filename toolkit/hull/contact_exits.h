@@ -103,6 +103,23 @@ std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Co
 /// place. Where the third derivative tells it, that place. None elsewhere.
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n);
 
+/// A contact on an edge of a patch, beyond one of the patch's sides.
+struct EdgeBeside {
+  ContactExit exit;
+  Contact edge;
+};
+
+/// The contact on an edge of the patch of a face's contact, another local maximum of x . n than
+/// this one, that is as high as it to within tie(): beside edges across which the patch is level.
+/// None elsewhere.
+std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Contact& c,
+                                    const dvec3& n);
+
+/// Where a contact slides from an edge over the exit into a face that is level across it: the local
+/// maximum of x . n inside that is as high as it to within tie(). None elsewhere.
+std::optional<Contact> tied_inside(const ContactGeometry& geometry, const Contact& edge,
+                                   const ContactExit& exit, const dvec3& n);
+
 /// The normal form of a contact on a collapsed side, where the parameter along the side is any: at
 /// that of a contact of the same element beside it, from which a curve comes. Others are as they
 /// are.
