@@ -116,6 +116,37 @@ TEST(CageHull, OfTorusAndMixedScenes) {
   EXPECT_EQ(hull.kind, HullKind::solid);
 }
 
+/// A bent cube of five faces and two quads beside it.
+ControlCage cube_and_strip_cage() {
+  ControlCage cage;
+  cage.points = {{0.1219, 0.0969, -0.1371}, {-0.1939, -0.0102, 1.0762}, {-0.0147, 0.8542, -0.0496},
+                 {0.1435, 0.8619, 1.1048},  {1.0523, 0.0481, 0.0767},   {0.9454, -0.0118, 1.1802},
+                 {0.9615, 0.9581, -0.1401}, {0.9532, 1.074, 1.125},     {1.6191, -0.0564, 1.7309},
+                 {1.6397, 0.7742, 2.1121},  {2.1215, 2.2544, 1.4898},   {3.1138, 0.309, 2.2132},
+                 {3.5261, 0.8605, 1.9992},  {3.0539, 1.8818, 1.9726}};
+  cage.faces = {{0, 1, 3, 2}, {0, 4, 5, 1},   {2, 3, 7, 6},   {0, 2, 6, 4},
+                {1, 5, 7, 3}, {8, 11, 12, 9}, {9, 12, 13, 10}};
+  cage.creases = {{{0, 2}, 10}, {{2, 3}, 3}};
+  return cage;
+}
+
+/// A separating curve's contact crosses into an edge beside the point in which the face's convex
+/// region touches it: the contacts that give way to each other there differ in height by less than
+/// rounding.
+TEST(CageHull, WhereFacesAreLevelAcrossEdges) {
+  const Model model = cage_model(cube_and_strip_cage());
+  const Hull hull = whole_hull(model, "cube and strip");
+  ASSERT_TRUE(hull.boundary);
+  const Scene scene(model);
+  VerifyOptions options;
+  options.random_directions = 2000;
+  const HullVerification found = verify(hull_document(scene, *hull.boundary), scene, options);
+  EXPECT_TRUE(found.complete);
+  EXPECT_EQ(found.euler, 2);
+  EXPECT_EQ(found.uncovered, 0);
+  EXPECT_LE(found.worst_length(), 1e-12 + found.rounding);
+}
+
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
