@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -35,10 +36,6 @@ constexpr double noise_length = 1e-8;
 constexpr double noise_limit = 1e-4;
 /// Of central difference quotients: their error slows Newton's method by its square.
 constexpr double difference = 1e-5;
-/// Gauss curvature, in the scene's frame, below which its extremum along a border is zero.
-constexpr double least_touch = 1e-12;
-/// How far from a double root Newton's method ends.
-constexpr double double_root = 1e-6;
 /// How far rounding may put a root beyond the border on which it lies.
 constexpr double parameter_slack = 1e-11;
 /// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
@@ -109,16 +106,6 @@ std::optional<double> root_near(const Function& f, double start, double reach, d
     last = length;
   }
   return std::nullopt;
-}
-
-/// Where the function touches zero: at an extremum that is one up to rounding.
-template <class Function>
-std::optional<double> touch_near(const Function& f, double start, double reach, double noise) {
-  const auto slope = [&](double t) {
-    return (f(t + difference) - f(t - difference)) / (2 * difference);
-  };
-  const std::optional<double> t = root_near(slope, start, reach, noise);
-  return t && std::abs(f(*t)) <= least_touch ? t : std::nullopt;
 }
 
 double sample(int k) { return double(k) / samples_along; }
@@ -340,6 +327,29 @@ double determinant_on(const ContactGeometry& geometry, const Contact& patch, Sid
   return b ? b->gauss_curvature() * std::pow(b->area, 4) : 0;
 }
 
+/// The patch is level across all of the side, as Catmull-Clark surfaces are across boundaries.
+bool is_level_along(const ContactGeometry& geometry, const Contact& patch, Side side) {
+  for (int k = 0; k <= samples_along; ++k) {
+    const Contact c = on_side_of(patch, side, sample(k));
+    if (!is_level_across(geometry, c, side, unit_normal(geometry, c))) return false;
+  }
+  return true;
+}
+
+/// A function of the sign of the curvature along the side. But where the patch is level across all
+/// of it, the curvature is minus the square of the twist, which nowhere is positive: the parabolic
+/// curve touches the side, as the end of two separating curves, where the twist changes sign.
+std::function<double(double)> parabolic_along(const ContactGeometry& geometry, const Contact& patch,
+                                              Side side) {
+  if (!is_level_along(geometry, patch, side)) {
+    return [&geometry, patch, side](double t) { return determinant_on(geometry, patch, side, t); };
+  }
+  return [&geometry, patch, side](double t) {
+    const ContactJet j = geometry.jet(on_side_of(patch, side, t));
+    return glm::dot(j.dxy, glm::cross(j.dx[0], j.dx[1]));
+  };
+}
+
 /// Beyond a smooth join, where there is one, the surface leaves the plane as it does on this side;
 /// or it bends away.
 bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side, Departure own) {
@@ -558,9 +568,10 @@ void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
       const bool seam = border.kind == BorderKind::smooth && border.piece >= 0;
       if (border.kind == BorderKind::collapsed || seam) continue;
       const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
-      const auto det = [&](double t) { return determinant_on(geometry_, c, side, t); };
       if (vanishes(curvature)) continue;
-      for (const double t : sign_changes(det)) offer(border_end(geometry_, c, side, t));
+      for (const double t : sign_changes(parabolic_along(geometry_, c, side))) {
+        offer(border_end(geometry_, c, side, t));
+      }
     }
   }
 }
@@ -656,16 +667,9 @@ class Polish {
     }
   }
   void on_border(const Contact& c, Side side) {
-    const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
-    const double start = along_v(side) ? c.v : c.u;
-    const double noise = noise_step(geometry_, c);
-    std::optional<double> t = root_near(curvature, start, reach, noise);
-    if (near_.kind == Kind::border) {
-      // The parabolic curve may touch the edge: the end of two separating curves. Newton's method
-      // on a double root leaves half of the digits.
-      const std::optional<double> touch = touch_near(curvature, start, reach, noise);
-      if (touch && (!t || std::abs(*touch - *t) < double_root)) t = touch;
-    }
+    const std::optional<double> t =
+        root_near(parabolic_along(geometry_, c, side), along_v(side) ? c.v : c.u, reach,
+                  noise_step(geometry_, c));
     if (t) keep(border_end(geometry_, c, side, *t));
   }
 
