@@ -147,6 +147,25 @@ TEST(CageHull, WhereFacesAreLevelAcrossEdges) {
   EXPECT_LE(found.worst_length(), 1e-12 + found.rounding);
 }
 
+/// A face far below sheets makes them small: where parabolic curves touch their boundaries, in ends
+/// of two separating curves each, rounding leaves nothing of the curvature. The parts of their
+/// boundaries on the hull are those between these ends.
+TEST(CageHull, OfSmallSheets) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 16; ++k) {
+    ControlCage cage = sheet_cage(4, 4);
+    for (dvec3& x : cage.points) x = 0.04 * (x + dvec3(0, 0, 0.03 * normal(random)));
+    const int first = int(cage.points.size());
+    for (const dvec3& x :
+         {dvec3(-1, -1, -2), dvec3(1, -1, -2), dvec3(1, 1, -2), dvec3(-1, 1, -2)}) {
+      cage.points.push_back(x);
+    }
+    cage.faces.push_back({first, first + 1, first + 2, first + 3});
+    whole_hull(cage_model(cage), "sheet " + std::to_string(k));
+  }
+}
+
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
