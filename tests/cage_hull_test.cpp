@@ -166,6 +166,21 @@ TEST(CageHull, OfSmallSheets) {
   }
 }
 
+/// In a corner of the sheet that is a planar quad the surface is flat to second order, and two
+/// contacts merge in it.
+TEST(CageHull, OfASheetWithAPlanarCorner) {
+  const std::array<int, 16> heights = {-2, -1, -1, 0, -2, -1, 0, -2, 0, 1, 2, 1, 1, 2, 1, 0};
+  ControlCage cage = sheet_cage(3, 3);
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    cage.points[k] = 0.1 * dvec3(double(k / 4), double(k % 4), heights[k]);
+  }
+  for (const dvec3& x : {dvec3(3, 3, -1), dvec3(4, 3, -1), dvec3(4, 4, -1), dvec3(3, 4, -1)}) {
+    cage.points.push_back(x);
+  }
+  cage.faces.push_back({16, 17, 18, 19});
+  whole_hull(cage_model(cage), "sheet");
+}
+
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);

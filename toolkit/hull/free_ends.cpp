@@ -360,12 +360,29 @@ bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side,
   return b->flat < flat_slack * b->steep || inward_departure(*b, over->side) == own;
 }
 
+/// The root is that at a corner in which the patch is flat to second order, as sheets are whose
+/// corner is a planar quad; no generic end. The twist has a double root there: Newton's method,
+/// halving its distance, ends no farther than its last step, or where the twist is rounding.
+bool is_at_flat_corner(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
+  const double end = t < 0.5 ? 0 : 1;
+  const auto bends = [&](double at) {
+    const Contact c = on_side_of(patch, side, at);
+    const ContactJet j = geometry.jet(c);
+    const dvec3 n = unit_normal(geometry, c);
+    return glm::abs(dvec3(glm::dot(j.dxx, n), glm::dot(j.dxy, n), glm::dot(j.dyy, n)));
+  };
+  const dvec3 there = bends(end);
+  if (std::max({there.x, there.y, there.z}) > geometry.rounding()) return false;
+  return std::abs(t - end) <= noise_step(geometry, on_side_of(patch, side, end)) ||
+         bends(0.5 * (t + end)).y <= geometry.rounding();
+}
+
 /// From where the parabolic curve was found to meet a side: B3, or on a smooth join an end that the
 /// jump of derivatives makes. A level departure is that of a cusp just there, or of a whole circle
 /// of flat points, which is none.
 std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact& patch, Side side,
                                   double t) {
-  if (!within(t)) return std::nullopt;
+  if (!within(t) || is_at_flat_corner(geometry, patch, side, t)) return std::nullopt;
   const Contact c = on_side_of(patch, side, std::clamp(t, 0.0, 1.0));
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
