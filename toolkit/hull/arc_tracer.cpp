@@ -37,6 +37,8 @@ constexpr double stuck_share = 0.01;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 constexpr int bisection_limit = 60;
+/// Contacts nearer to borders than this run along them, or come to them by themselves.
+constexpr double told_distance = 1e-9;
 
 class Trace {
  public:
@@ -416,7 +418,9 @@ bool Trace::enter_level(std::size_t contact) {
 std::optional<Trace::BorderExit> Trace::level_exit(std::size_t i) const {
   const Contact& c = point_.at.contact[i];
   const std::optional<Contact> border = at_level_border(geometry_, c, point_.at.n);
-  if (!border) return std::nullopt;
+  if (!border || glm::distance(geometry_.point(*border), geometry_.point(c)) < told_distance) {
+    return std::nullopt;
+  }
   for (const ContactExit& exit : exits(geometry_, c)) {
     const Contact there = at_exit(*border, exit);
     const bool is_on = there.u == border->u && there.v == border->v;
