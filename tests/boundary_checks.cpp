@@ -531,8 +531,9 @@ std::ostream& operator<<(std::ostream& out, const BoundaryFacts& f) {
   };
   out << "open curves " << f.open_curves << ", misplaced " << f.misplaced << ", bare scrolls "
       << f.bare_scrolls << ", loop gap " << f.loop_gap << ", region gap " << f.region_gap
-      << ", Euler " << f.euler << "; point " << f.point << ", stationary " << f.stationary
-      << ", tie " << f.tie << ", support " << f.support << " at ";
+      << ", open facets " << f.open_facets << ", Euler " << f.euler << "; point " << f.point
+      << ", stationary " << f.stationary << ", tie " << f.tie << ", side " << f.side << ", support "
+      << f.support << " at ";
   vector(f.worst_support) << ", between " << f.between << ", none " << f.no_rulings << "; missed "
                           << f.misses << " of " << f.directions << " as ";
   vector(f.missed) << ", overshoot " << f.overshoot << "; mismatches " << f.mismatches << " of "

@@ -181,9 +181,14 @@ void RulingsBetween::fit() {
   if (lies_flat_) refine();
 }
 
-/// Adds exact rulings in between.
+/// Adds exact rulings in between. Of contacts that merge by touching first those far from the end:
+/// near it, contacts in one place would be found from a worse start.
 void RulingsBetween::refine() {
-  for (const double s : {0.5, 0.25, 0.75}) {
+  using Shares = std::array<double, 3>;
+  const Shares shares = !touches_       ? Shares{0.5, 0.25, 0.75}
+                        : merged(from_) ? Shares{0.75, 0.5, 0.25}
+                                        : Shares{0.25, 0.5, 0.75};
+  for (const double s : shares) {
     MovingRuling m = moving(s, 1);
     if (solve_share(m, s) && find_speed(m)) polynomial_.add(s, place(m), rate(m));
   }
