@@ -11,6 +11,7 @@
 #include "taut/hull/element_changes.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/in_line_contacts.h"
+#include "taut/hull/level_way.h"
 #include "taut/hull/merging.h"
 
 namespace taut {
@@ -37,6 +38,11 @@ constexpr double stuck_share = 0.01;
 /// Changes of elements without progress after which the curve is lost.
 constexpr int idle_limit = 12;
 constexpr int bisection_limit = 60;
+/// Contacts nearer than this are lost where support values tell them apart.
+constexpr double least_distance = 1e-6;
+/// Contacts that end and hop to others that tie with them, at most, and the first step after that.
+constexpr int hop_limit = 16;
+constexpr double level_hop_step = 1e-6;
 /// Contacts nearer to borders than this run along them, or come to them by themselves.
 constexpr double told_distance = 1e-9;
 
@@ -66,7 +72,7 @@ class Trace {
   bool arrives(const Landmark& landmark);
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
-  bool ends_merged();
+  bool ends_in(std::optional<MergedEnd> end);
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
   bool ends_in_tie(const CommonSupport& next, std::size_t contact, const Contact& third);
@@ -77,6 +83,7 @@ class Trace {
   void settle_flat_ends();
   std::optional<BorderExit> level_exit(std::size_t i) const;
   bool hop(std::size_t i, const ContactExit& exit);
+  bool hops_ahead();
   Pace exchange(const ElementChange& event);
   Pace advance();
   void begin_piece(const Ruling& first);
@@ -95,10 +102,15 @@ class Trace {
     arc_.reason = reason;
     return ended(TracedArc::End::lost);
   }
+  /// Where nothing tells the contacts apart the curve ends.
+  Pace lost_or_tied(const char* reason) {
+    if (ends_in(tied_end(point_))) return Pace::ended;
+    return hops_ahead() ? Pace::on : lost(reason);
+  }
   /// Halves the step, unless that is of no use any more.
   Pace shorter(const char* reason) {
     step_ *= 0.5;
-    return step_ < shortest_step ? lost(reason) : Pace::on;
+    return step_ < shortest_step ? lost_or_tied(reason) : Pace::on;
   }
 
   const ContactSystem& system_;
@@ -113,6 +125,7 @@ class Trace {
   ElementChanges changes_;
   double step_ = first_step;
   int idle_ = 0;
+  int hops_ = 0;
   bool has_moved_ = false;
   bool lenient_ = false;  ///< borders that this piece crosses in places not found are rounding
   TracedArc arc_;
@@ -146,8 +159,7 @@ bool Trace::arrives(const Landmark& landmark) {
 }
 
 /// Ends the arc where the contacts merge, if they do.
-bool Trace::ends_merged() {
-  std::optional<MergedEnd> end = merged_end(point_);
+bool Trace::ends_in(std::optional<MergedEnd> end) {
   if (!end) return false;
   const std::vector<Ruling>& rest = end->pieces.front().rulings;
   std::vector<Ruling>& rulings = arc_.pieces.back().rulings;
@@ -250,9 +262,11 @@ std::optional<Trace::Pace> Trace::near_merging() {
     step_ = -0.5 * apart / rate;
     return std::nullopt;
   }
-  if (ends_merged()) return Pace::ended;
-  if (apart < std::min(1.0, -rate) * least_distance_at(point_))
-    return lost("two contacts approach each other and do not merge");
+  if (ends_in(merged_end(point_))) return Pace::ended;
+  if (apart < std::min(1.0, -rate) * least_distance_at(point_)) {
+    if (ends_in(tied_end(point_))) return Pace::ended;
+    if (apart < least_distance) return lost("two contacts approach each other and do not merge");
+  }
   // A third contact may yet surpass them.
   step_ = -0.5 * apart / rate;
   return std::nullopt;
@@ -440,6 +454,41 @@ bool Trace::hop(std::size_t i, const ContactExit& exit) {
   return over.has_value();
 }
 
+/// Where a contact ends, its element becoming flat, but another one near by ties with it: goes on
+/// from there, over level ground.
+bool Trace::hops_ahead() {
+  const CommonSupport start = point_.at;
+  const std::size_t faster =
+      glm::length(point_.tangent.x[0]) >= glm::length(point_.tangent.x[1]) ? 0 : 1;
+  for (const std::size_t i : {faster, 1 - faster}) {
+    if (hops_ >= hop_limit) return false;
+    const Contact from = start.contact[i];
+    const std::optional<Contact> ahead =
+        tied_ahead(geometry_, from, point_.tangent.parameter[i], start.n);
+    if (!ahead) continue;
+    const auto way = level_way(geometry_, from, *ahead, start.n);
+    if (!way) continue;
+    ++hops_;
+    for (const WayCrossing& crossing : *way) {
+      point_.at.contact[i] = crossing.from;
+      point_.at.evaluate(geometry_);
+      push(point_.at.ruling());
+      point_.at.contact[i] = crossing.to;
+      point_.at.evaluate(geometry_);
+      begin_piece(point_.at.ruling());
+    }
+    point_.at.contact[i] = *ahead;
+    point_.at.evaluate(geometry_);
+    point_.tangent = CurveTangent();
+    if (!point_.settle()) return false;
+    push(point_.at.ruling());
+    if (!way->empty()) begin_piece(point_.at.ruling());
+    step_ = level_hop_step;
+    return true;
+  }
+  return false;
+}
+
 /// On to the next element, at the exit where the contact stands. It, and the other contact, may be
 /// at one more exit, as far as the direction tells.
 Trace::Pace Trace::exchange(const ElementChange& event) {
@@ -494,7 +543,7 @@ Trace::Pace Trace::advance() {
     // The nearer the contacts are to merging, the worse the system is conditioned.
     const double apart = point_.apart();
     if (point_.rate_apart() < 0 && apart < 2 * merging_distance(geometry_) &&
-        step_ < stuck_share * apart && ends_merged()) {
+        step_ < stuck_share * apart && ends_in(merged_end(point_))) {
       return Pace::ended;
     }
     return shorter("a separating curve cannot be followed");

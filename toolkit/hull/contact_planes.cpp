@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/hull/facet_contacts.h"
+
 namespace taut {
 namespace {
 
 /// Sine of the angle below which control points are in line.
 constexpr double least_sine = 1e-6;
+/// Slope below which pieces are level.
+constexpr double least_slope = 1e-10;
 
 std::vector<dvec3> control_points(const BezierCurve& curve) {
   std::vector<dvec3> points;
@@ -18,7 +22,7 @@ std::vector<dvec3> control_points(const BezierCurve& curve) {
 
 /// A plane through points, by the largest triangle with the longest chord from the first.
 struct FittedPlane {
-  dvec3 n = dvec3(0.0);  ///< zero where all lie on a line
+  dvec3 n = dvec3(0.0);  ///< zero where all lie nearly on a line
   dvec3 x = dvec3(0.0);
   double width = 0;  ///< the triangle's height
 
@@ -40,6 +44,15 @@ struct FittedPlane {
   bool contains(const std::vector<dvec3>& points, double tie, double turn) const {
     return std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
       return std::abs(glm::dot(p - x, n)) <= tie + turn * glm::distance(p, x);
+    });
+  }
+
+  /// None of the points leads away from the plane, as seen from the first.
+  bool is_level(const std::vector<dvec3>& points, double rounding) const {
+    const dvec3& first = points.front();
+    return std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
+      return std::abs(glm::dot(p - first, n)) <=
+             std::max(rounding, least_slope * glm::distance(p, first));
     });
   }
 };
@@ -68,7 +81,9 @@ class PlaneFinder {
 
  private:
   void add_pieces();
-  void add(const Candidate& own, double sense);
+  bool is_in(const Candidate& plane, const Candidate& own, double sense) const;
+  static void put_into(Candidate& plane, const Candidate& own);
+  void add(const Candidate& own);
   /// How far rounding may have turned a plane.
   double turn(const FittedPlane& plane) const { return geometry_.tie() / plane.width; }
   bool supports(const Candidate& c, double slack) {
@@ -91,7 +106,8 @@ void PlaneFinder::add_pieces() {
       if (geometry_.is_repeated(piece)) continue;
       std::vector<dvec3> points = control_points(geometry_.curve(piece));
       const FittedPlane plane(points);
-      if (plane.n == dvec3(0.0) || !plane.contains(points, geometry_.tie(), 0)) continue;
+      if (geometry_.is_straight(piece) || !plane.contains(points, geometry_.tie(), 0)) continue;
+      if (!plane.is_level(points, geometry_.rounding())) continue;
       pieces_.push_back({plane, 1, std::move(points), {piece}});
     }
   }
@@ -100,34 +116,53 @@ void PlaneFinder::add_pieces() {
   });
 }
 
-/// Puts the piece into the plane that it lies in, or makes one of it if that may support.
-void PlaneFinder::add(const Candidate& own, double sense) {
-  const auto known = std::find_if(planes_.begin(), planes_.end(), [&](const Candidate& c) {
-    return glm::dot(c.n(), sense * own.plane.n) > 0 &&
-           glm::distance(c.n(), sense * own.plane.n) <= turn(c.plane) + turn(own.plane) &&
-           c.plane.contains(own.points, geometry_.tie(), turn(c.plane));
-  });
-  if (known == planes_.end()) {
-    Candidate c = own;
-    c.sense = sense;
-    if (supports(c, turn(c.plane))) planes_.push_back(std::move(c));
+/// The piece lies in the plane, on the same side of the model, as far as it tells one itself.
+bool PlaneFinder::is_in(const Candidate& plane, const Candidate& own, double sense) const {
+  const dvec3 n = sense * own.plane.n;
+  const bool agrees =
+      n == dvec3(0.0) || glm::distance(plane.n(), n) <= turn(plane.plane) + turn(own.plane);
+  return agrees && plane.plane.contains(own.points, geometry_.tie(), turn(plane.plane)) &&
+         plane.plane.is_level(own.points, geometry_.rounding());
+}
+
+void PlaneFinder::put_into(Candidate& plane, const Candidate& own) {
+  plane.points.insert(plane.points.end(), own.points.begin(), own.points.end());
+  plane.pieces.push_back(own.pieces.front());
+  FittedPlane wider(plane.points);
+  if (glm::dot(wider.n, plane.plane.n) < 0) wider.n = -wider.n;
+  plane.plane = wider;
+}
+
+/// Puts the piece into the plane that it lies in, or makes one of it if that may support. One that
+/// is too short to tell its plane may lie in several.
+void PlaneFinder::add(const Candidate& own) {
+  if (own.plane.n == dvec3(0.0)) {
+    for (Candidate& plane : planes_) {
+      if (is_in(plane, own, 1)) put_into(plane, own);
+    }
     return;
   }
-  known->points.insert(known->points.end(), own.points.begin(), own.points.end());
-  known->pieces.push_back(own.pieces.front());
-  FittedPlane wider(known->points);
-  if (glm::dot(wider.n, known->plane.n) < 0) wider.n = -wider.n;
-  known->plane = wider;
+  for (const double sense : {1.0, -1.0}) {
+    const auto known = std::find_if(planes_.begin(), planes_.end(), [&](const Candidate& plane) {
+      return is_in(plane, own, sense);
+    });
+    if (known != planes_.end()) {
+      put_into(*known, own);
+      continue;
+    }
+    Candidate plane = own;
+    plane.sense = sense;
+    if (supports(plane, turn(plane.plane))) planes_.push_back(std::move(plane));
+  }
 }
 
 std::vector<ContactPlane> PlaneFinder::run() {
   add_pieces();
-  for (const Candidate& own : pieces_) {
-    for (const double sense : {1.0, -1.0}) add(own, sense);
-  }
+  for (const Candidate& own : pieces_) add(own);
   std::vector<ContactPlane> result;
   for (Candidate& c : planes_) {
-    if (supports(c, 0)) result.push_back({c.n(), c.offset(), std::move(c.pieces)});
+    if (c.plane.width > same_contact && supports(c, 0))
+      result.push_back({c.n(), c.offset(), std::move(c.pieces)});
   }
   return result;
 }

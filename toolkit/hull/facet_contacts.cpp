@@ -45,6 +45,9 @@ constexpr double corner_distance = 1e-9;
 /// Directions in which a curved side is asked for contacts beyond it differ by no more, in radians.
 constexpr double side_angle = 0.2;
 
+/// Edges in a row.
+constexpr int run_limit = 64;
+
 /// The corners of the contacts' convex hull, counter-clockwise about n.
 FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
   const auto turn = [&](std::size_t k) {
@@ -93,6 +96,11 @@ class ContactSet {
   std::optional<FacetContacts> complete();
 
  private:
+  /// Of contacts that tie with the others.
+  double least_height() const {
+    const dvec3 x = points_.empty() ? geometry_.point(pieces_.front()) : points_.front();
+    return glm::dot(x, n_) - geometry_.tie() - slack_;
+  }
   double nearness() const { return std::max(corner_distance, geometry_.rounding()); }
   /// The parameter of a piece, or its end if that is no farther, or not told from it by the
   /// tangent.
@@ -126,6 +134,8 @@ class ContactSet {
   bool is_line() const;
   FacetContacts line() const;
   std::vector<Probe> probes(const FacetContacts& f) const;
+  bool is_beyond_end(const FacetContacts& f, const Contact& c) const;
+  bool leads_level(Contact from, const Contact& c) const;
   std::optional<Contact> found(const dvec3& towards);
 
   const ContactGeometry& geometry_;
@@ -224,15 +234,60 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
 
 /// A contact that ties with the others, seen from a direction turned by `towards`.
 std::optional<Contact> ContactSet::found(const dvec3& towards) {
-  const Support s = query_(glm::normalize(n_ + side_turn * towards), contacts_[0]);
+  const Contact& hint = contacts_.empty() ? pieces_.front() : contacts_.front();
+  const Support s = query_(glm::normalize(n_ + side_turn * towards), hint);
   const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
-  const double least = glm::dot(points_[0], n_) - geometry_.tie() - slack_;
-  if (!c || glm::dot(geometry_.point(*c), n_) < least) return std::nullopt;
+  if (!c || glm::dot(geometry_.point(*c), n_) < least_height()) return std::nullopt;
   return settled(*c);
 }
 
+/// From the end of a piece on, other edges lead to the contact that are not straight and leave the
+/// plane by no more than a tie.
+bool ContactSet::leads_level(Contact from, const Contact& c) const {
+  const dvec3 x = geometry_.point(c);
+  std::optional<Contact> at = from;
+  for (int k = 0; k < run_limit && at && at->kind == SourceKind::edge; ++k) {
+    if (geometry_.is_straight(*at)) return false;
+    if (same_element(*at, c)) return true;
+    at->u = at->u < 0.5 ? 1 : 0;
+    const dvec3 end = geometry_.point(*at);
+    if (glm::distance(end, x) <= same_contact) return true;
+    if (glm::dot(end, n_) < least_height()) return false;
+    at = beyond(geometry_, *at, {ContactExit::Kind::end, int(at->u)});
+  }
+  return false;
+}
+
+/// The contact is where the end of a curved side of the outline goes on so nearly in the plane that
+/// support values do not tell where it leaves it.
+bool ContactSet::is_beyond_end(const FacetContacts& f, const Contact& c) const {
+  const auto starts = [&](const EdgeStretch& side, double t) {
+    const Contact end{side.instance, SourceKind::edge, side.piece, t, 0};
+    std::vector<Contact> result;
+    if (t != 0 && t != 1) return result;
+    const std::optional<Contact> next = beyond(geometry_, end, {ContactExit::Kind::end, int(t)});
+    if (next && next->kind == SourceKind::edge) result.push_back(*next);
+    if (!next || next->kind != SourceKind::vertex) return result;
+    for (const ContactGeometry::PieceEnd& other : geometry_.ends(*next)) {
+      const int instance = other.instance < 0 ? next->instance : other.instance;
+      const Contact begin{instance, SourceKind::edge, other.piece, double(other.end), 0};
+      if (!same_element(begin, end)) result.push_back(begin);
+    }
+    return result;
+  };
+  for (std::size_t k = 0; k < f.points.size(); ++k) {
+    if (!f.is_curved(k)) continue;
+    for (const double t : {f.sides[k].from, f.sides[k].to}) {
+      for (const Contact& start : starts(f.sides[k], t)) {
+        if (leads_level(start, c)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 std::optional<FacetContacts> ContactSet::complete() {
-  if (contacts_.empty()) add(at_rest(geometry_, query_(n_).contact, n_));
+  if (contacts_.empty() && pieces_.empty()) add(at_rest(geometry_, query_(n_).contact, n_));
   const bool finite =
       std::all_of(points_.begin(), points_.end(), [](const dvec3& x) { return is_finite(x); });
   if (!finite || !is_finite(n_)) return std::nullopt;
@@ -243,7 +298,8 @@ std::optional<FacetContacts> ContactSet::complete() {
     for (const Probe& probe : probes(*f)) {
       const std::optional<Contact> more = found(probe.towards);
       if (!more || is_known(*more) ||
-          glm::dot(geometry_.point(*more), probe.towards) <= probe.reach + same_contact) {
+          glm::dot(geometry_.point(*more), probe.towards) <= probe.reach + same_contact ||
+          is_beyond_end(*f, *more)) {
         continue;
       }
       add(*more);

@@ -338,6 +338,18 @@ bool GraphBuilder::has_contacts(const FacetNode& node, const std::vector<Contact
   });
 }
 
+/// The point of the facet's plane is one of its corners, or between them.
+bool GraphBuilder::is_within(const FacetNode& node, const dvec3& x) {
+  const std::size_t count = node.points.size();
+  bool inside = true;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (glm::distance(node.points[k], x) < same_branch) return true;
+    const dvec3 side = unit(node.points[(k + 1) % count] - node.points[k]);
+    inside = inside && glm::dot(glm::cross(side, x - node.points[k]), node.n) > -same_branch;
+  }
+  return inside && count > 2;
+}
+
 std::optional<int> GraphBuilder::node_of(const dvec3& n,
                                          const std::vector<Contact>& contacts) const {
   for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
@@ -347,9 +359,7 @@ std::optional<int> GraphBuilder::node_of(const dvec3& n,
     if (glm::distance(node.n, n) > same_plane) continue;
     // Facets of nearly equal planes have other contacts.
     const bool known = std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
-      const dvec3 x = geometry_.point(c);
-      return std::any_of(node.points.begin(), node.points.end(),
-                         [&](const dvec3& p) { return glm::distance(p, x) < same_branch; });
+      return is_within(node, geometry_.point(c));
     });
     if (known) return int(k);
   }

@@ -82,6 +82,7 @@ class GraphBuilder {
   static bool meets_corner(const FacetNode& node, const Ruling& r);
   static int add_corner(FacetNode& node, const Ruling& r, int end);
   void connect_crossing(int arc, int end, int node);
+  static bool is_within(const FacetNode& node, const dvec3& x);
   bool lies_in(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool ties_with(const FacetNode& node, const dvec3& n, const std::vector<Contact>& contacts) const;
   bool has_contacts(const FacetNode& node, const std::vector<Contact>& contacts,

@@ -34,4 +34,8 @@ struct MergedEnd {
 /// extrapolated; in a pole about which planes touch twice; or where two surfaces or curves touch.
 std::optional<MergedEnd> merged_end(const CurvePoint& point);
 
+/// The end of two contacts of one smooth surface or curve that support values do not tell apart any
+/// more (level_way): where they are, without a free end that is known.
+std::optional<MergedEnd> tied_end(const CurvePoint& point);
+
 }  // namespace taut

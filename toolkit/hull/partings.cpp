@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/level_way.h"
 #include "taut/surface/flatness.h"
 
 namespace taut {
@@ -103,14 +104,18 @@ std::optional<CommonSupport> parting(const ContactGeometry& geometry, const Sigh
     s.evaluate(geometry);
     if (glm::length(s.d()) < branch_distance(geometry)) return std::nullopt;
     const double value = glm::dot(s.d(), s.n);
-    if (std::abs(value) < parting_tie) return s;
+    if (std::abs(value) < parting_tie) {
+      if (level_way(geometry, *of_a, *of_b, s.n)) return std::nullopt;
+      return s;
+    }
     (value > 0 ? lower : upper) = t;
     const double slope = glm::dot(s.d(), b.n - a.n) / glm::length(mixed);
     const double next = t - value / slope;
     t = next > lower && next < upper ? next : 0.5 * (lower + upper);
     if (upper - lower < parting_tie) {
-      if (std::abs(value) < geometry.tie()) return s;
-      return std::nullopt;
+      if (!(std::abs(value) < geometry.tie())) return std::nullopt;
+      if (level_way(geometry, *of_a, *of_b, s.n)) return std::nullopt;
+      return s;
     }
   }
   return std::nullopt;

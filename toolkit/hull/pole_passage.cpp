@@ -11,7 +11,15 @@ namespace taut {
 namespace {
 
 /// Turns of n that are tried as the first step away from where contacts are singular.
-constexpr std::array<double, 3> leaving_steps = {1e-3, 1e-4, 1e-5};
+constexpr std::array<double, 30> leaving_steps = [] {
+  std::array<double, 30> a{};
+  double s = 1e-3;
+  for (auto& x : a) {
+    x = s;
+    s *= .6;
+  }
+  return a;
+}();
 /// Share of such a turn by which contacts are told apart.
 constexpr double share_inward = 0.1;
 /// Normal curvature, in the scene's frame, below which a contact is taken for flat.

@@ -17,6 +17,7 @@
 #include "taut/hull/free_ends.h"
 #include "taut/hull/graph_builder.h"
 #include "taut/hull/in_line_contacts.h"
+#include "taut/hull/level_way.h"
 #include "taut/hull/partings.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/supporting_poles.h"
@@ -216,6 +217,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   if (given_up() || is_settled(a.contact) || is_settled(b.contact)) return;
   if (are_joined(geometry_, a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
+    if (level_way(geometry_, a.contact, b.contact, a.n)) return;
     // Two samples on the curve itself.
     CommonSupport tie;
     tie.n = a.n;
