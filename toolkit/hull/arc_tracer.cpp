@@ -82,6 +82,7 @@ class Trace {
   bool ends_widened();
   void settle_flat_ends();
   std::optional<BorderExit> level_exit(std::size_t i) const;
+  void settle_at_segment(std::size_t i);
   bool hop(std::size_t i, const ContactExit& exit);
   bool hops_ahead();
   Pace exchange(const ElementChange& event);
@@ -215,11 +216,11 @@ void Trace::continue_in_piece() {
   begin_piece(first);
 }
 
-/// The ruling with contacts that are beyond a smooth join, and have not left their patch, on it.
+/// The ruling with contacts that are beyond a smooth join or the end of a piece, and have not left
+/// their element, on it.
 Ruling Trace::on_joins(Ruling ruling) const {
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = ruling.contact[i];
-    if (c.kind != SourceKind::face) continue;
     const dvec2 inside(std::clamp(c.u, 0.0, 1.0), std::clamp(c.v, 0.0, 1.0));
     if (inside == dvec2(c.u, c.v)) continue;
     c.u = inside.x;
@@ -447,6 +448,26 @@ std::optional<Trace::BorderExit> Trace::level_exit(std::size_t i) const {
   return std::nullopt;
 }
 
+/// Tells the contact, at the end of an edge, as one at the vertex there, if the other one is at a
+/// vertex from which a straight edge leads to that: the direction turns about the edge, and slides
+/// nothing along the other one.
+void Trace::settle_at_segment(std::size_t i) {
+  const Contact& other = point_.at.contact[1 - i];
+  Contact& own = point_.at.contact[i];
+  if (own.kind != SourceKind::edge || other.kind != SourceKind::vertex) return;
+  const Contact vertex = snapped(geometry_, own, told_distance);
+  if (vertex.kind != SourceKind::vertex) return;
+  for (const ContactGeometry::PieceEnd& end : geometry_.ends(vertex)) {
+    const int instance = end.instance < 0 ? vertex.instance : end.instance;
+    const Contact piece{instance, SourceKind::edge, end.piece, double(end.end), 0};
+    if (!geometry_.is_straight(piece)) continue;
+    if (same_element(geometry_.straight_end(piece, 1 - end.end), other)) {
+      own = vertex;
+      return;
+    }
+  }
+}
+
 /// Takes the contact over the exit at which it stands.
 bool Trace::hop(std::size_t i, const ContactExit& exit) {
   const std::optional<Contact> over = beyond(geometry_, point_.at.contact[i], exit);
@@ -505,6 +526,7 @@ Trace::Pace Trace::exchange(const ElementChange& event) {
   }
   bool leads_on = hop(i, event.exit);
   if (leads_on && level[1 - i]) leads_on = hop(1 - i, level[1 - i]->exit);
+  if (leads_on && !level[1 - i]) settle_at_segment(1 - i);
   if (!leads_on) return lost("a separating curve has no next element");
   const Contact& next = point_.at.contact[i];
   if (level[i] && next.kind == SourceKind::edge && (next.u == 0 || next.u == 1)) {

@@ -48,9 +48,10 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
         const dvec3 d = r.point[0] - r.point[1];
         return turn(geometry.jet(r.contact[i]), r.n, i == 0 ? d : -d);
       };
-      // Where no ruling is found between two, that of the nearer one.
+      // Where no ruling is found between two, from one to the other.
       const auto side_between = [&](const Ruling& a, const Ruling& b, double s) {
-        return side(ruling_between(system, a, b, s).value_or(s < 0.5 ? a : b));
+        const std::optional<Ruling> r = ruling_between(system, a, b, s);
+        return r ? side(*r) : (1 - s) * side(a) + s * side(b);
       };
       Crease& own = creases_[{first.instance, first.element}];
       const auto add = [&](double from, double to, double sense) {

@@ -625,14 +625,16 @@ class TiedMerging {
   MergedEnd end_;
 };
 
-/// The direction becomes contact i's normal; the other contact moves with it.
+/// The direction becomes contact i's normal; the other contact moves with it, if towards it.
 void TiedMerging::turn_to(std::size_t i) {
   const dvec3 before = at_.n;
   at_.n = limit_normal({at_.jet[i], at_.jet[i]}, before);
   const std::optional<dvec2> rate = parameter_rate(at_.jet[1 - i], before, at_.n - before);
   if (!rate) return;
   const ContactJet& j = at_.jet[1 - i];
-  if (glm::length(rate->x * j.dx[0] + rate->y * j.dx[1]) > 0.25 * glm::length(at_.d())) return;
+  const dvec3 motion = rate->x * j.dx[0] + rate->y * j.dx[1];
+  const dvec3 way = at_.jet[i].x - j.x;
+  if (glm::length(motion) > 0.25 * glm::length(way) || glm::dot(motion, way) < 0) return;
   Contact& other = at_.contact[1 - i];
   other.u = std::clamp(other.u + rate->x, 0.0, 1.0);
   other.v = std::clamp(other.v + rate->y, 0.0, 1.0);
@@ -651,8 +653,14 @@ void TiedMerging::cross(std::size_t i, const Contact& from, const Contact& to) {
   push();
 }
 
+/// They meet on the way from a face onto an edge, or about the middle.
 MergedEnd TiedMerging::run(const std::vector<WayCrossing>& way) {
-  const std::size_t middle = way.size() / 2;
+  std::size_t middle = way.size() / 2;
+  for (std::size_t k = 0; k < way.size(); ++k) {
+    const bool one = way[k].from.kind == SourceKind::face;
+    const bool other = way[k].to.kind == SourceKind::face;
+    if (one != other) middle = k;
+  }
   for (std::size_t k = 0; k < middle; ++k) cross(0, way[k].from, way[k].to);
   for (std::size_t k = way.size(); k-- > middle + 1;) cross(1, way[k].to, way[k].from);
   if (way.empty()) {

@@ -405,10 +405,13 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
   return true;
 }
 
-/// Traces the curve through a seed, from the first to the last of contacts in line.
+/// Traces the curve through a seed, from the first to the last of contacts in line. None where
+/// support values do not tell the two contacts apart: the curve, if it goes on to where they do, is
+/// found there.
 void GraphTracer::trace(const CommonSupport& seed) {
   const CommonSupport settled = settled_at_vertices(geometry_, seed);
   if (built_.is_traced(settled)) return;
+  if (level_way(geometry_, settled.contact[0], settled.contact[1], settled.n)) return;
   const std::optional<CommonSupport> wide = widened(geometry_, query_, settled);
   if (!wide) {
     trace_both_ways(settled);
