@@ -133,6 +133,17 @@ std::vector<NamedCage> smooth_cages() {
   return all;
 }
 
+ControlCage triangulated(ControlCage cage) {
+  std::vector<std::vector<int>> triangles;
+  for (const std::vector<int>& f : cage.faces) {
+    triangles.push_back({f[0], f[1], f[2]});
+    triangles.push_back({f[0], f[2], f[3]});
+  }
+  cage.faces = std::move(triangles);
+  cage.scheme = CageScheme::loop;
+  return cage;
+}
+
 std::vector<CageCrease> rim(const ControlCage& cage, double sharpness) {
   const int ring = int(cage.points.size() - 2) / 2;
   std::vector<CageCrease> creases;
@@ -186,6 +197,10 @@ std::vector<NamedCage> tagged_cages() {
   }
   all.push_back({"cube with sharp edges", box});
   all.push_back({"sheet", sheet_cage(3, 4)});
+  // At two corners one triangle is alone, at the others there are two.
+  ControlCage cut = triangulated(sheet_cage(3, 4));
+  cut.boundary = taut::CageBoundary::edge_only;
+  all.push_back({"sheet of triangles without corners", cut});
   return all;
 }
 

@@ -32,6 +32,8 @@ ControlCage sheet_cage(int m, int n);
 /// A dome for the scheme loop with two triangles on one of its edges, which share the other two: in
 /// all levels there are edges with the same ends.
 ControlCage two_sided_fin_cage();
+/// The cage of quads cut along a diagonal each, for Loop's scheme.
+ControlCage triangulated(ControlCage cage);
 /// @}
 
 /// The edges of a dome's rim about its top.

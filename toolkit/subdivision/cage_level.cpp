@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "taut/subdivision/extraction.h"
+#include "taut/subdivision/loop_corner.h"
 #include "taut/subdivision/patch_nets.h"
 #include "taut/subdivision/refiner.h"
 #include "taut/subdivision/sheets.h"
@@ -275,9 +276,18 @@ std::vector<CellPatch> CageLevel::patches() const {
   std::vector<int> faces;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     result[c].smooth = topology.smooth_sides(cells_[c].face);
-    if (!topology.has_patch(cells_[c].face)) continue;
-    cell_of[to_size(cells_[c].face)] = to_int(c);
-    faces.push_back(cells_[c].face);
+    const int own = cells_[c].face;
+    if (topology.scheme == CageScheme::loop) {
+      if (const std::optional<int> corner = lone_corner(topology.level(), own)) {
+        result[c].kind = CellPatch::Kind::regular;
+        result[c].points = lone_triangle(topology.level(), topology.points, own, *corner);
+        result[c].degree = 4;
+        continue;
+      }
+    }
+    if (!topology.has_patch(own)) continue;
+    cell_of[to_size(own)] = to_int(c);
+    faces.push_back(own);
   }
   if (faces.empty()) return result;
   const std::unique_ptr<Far::PatchTable> table = topology.patch_table(faces);
