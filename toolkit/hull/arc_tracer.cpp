@@ -70,6 +70,7 @@ class Trace {
   bool leave();
   bool pass_pole(int contact, Side side);
   bool arrives(const Landmark& landmark);
+  std::optional<Pace> reaches_flat_ends();
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
   bool ends_in(std::optional<MergedEnd> end);
@@ -157,6 +158,20 @@ bool Trace::arrives(const Landmark& landmark) {
     return true;
   }
   return false;
+}
+
+/// Goes to the ends of two edges without bends there, and on beyond the one's.
+std::optional<Trace::Pace> Trace::reaches_flat_ends() {
+  const std::optional<CommonSupport> end = passage_.at_flat_ends(step_);
+  if (!end) return std::nullopt;
+  ElementChange event;
+  event.contact = 0;
+  event.exit = {ContactExit::Kind::end, int(end->contact[0].u)};
+  event.support = *end;
+  point_.at = *end;
+  push(point_.at.ruling());
+  has_moved_ = true;
+  return exchange(event);
 }
 
 /// Ends the arc where the contacts merge, if they do.
@@ -554,6 +569,7 @@ Trace::Pace Trace::advance() {
   for (const Landmark& landmark : landmarks_) {
     if (arrives(landmark)) return ended(TracedArc::End::plane);
   }
+  if (const std::optional<Pace> pace = reaches_flat_ends()) return *pace;
   std::optional<CommonSupport> next = point_.stepped(step_);
   const std::optional<CurveTangent> turned =
       next ? system_.tangent(*next, &point_.tangent) : std::nullopt;

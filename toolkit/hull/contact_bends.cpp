@@ -87,4 +87,11 @@ std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Conta
   return bend;
 }
 
+bool ends_straight(const ContactGeometry& geometry, const Contact& c) {
+  if (c.kind != SourceKind::edge || (c.u != 0 && c.u != 1)) return false;
+  const ContactJet j = geometry.jet(c);
+  const double bend = glm::length(glm::cross(unit(j.dx[0]), j.dxx));
+  return bend < std::sqrt(geometry.rounding()) * glm::dot(j.dx[0], j.dx[0]);
+}
+
 }  // namespace taut

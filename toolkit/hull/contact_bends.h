@@ -49,4 +49,7 @@ struct CurveBend {
 /// None where the curve stands still. @pre kind edge
 std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Contact& c);
 
+/// It is on an edge, at the end of a piece that has no curvature there but for rounding.
+bool ends_straight(const ContactGeometry& geometry, const Contact& c);
+
 }  // namespace taut

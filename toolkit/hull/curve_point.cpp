@@ -61,7 +61,9 @@ bool CurvePoint::is_followed(Ruling from, const Ruling& to) const {
     return (std::abs(t - 0.5) - 0.5) * std::min(1.0, glm::length(dx)) <= border_distance();
   };
   const auto holds = [&](double s) {
-    const std::optional<MovingRuling> m = between(s);
+    // Exact rulings beside an end without a bend may be in front of it or behind it.
+    const std::optional<MovingRuling> m =
+        between.is_straight() ? between.interpolated(s) : between(s);
     if (!m) return false;
     const CommonSupport& moved = m->at;
     for (std::size_t i = 0; i < 2; ++i) {

@@ -301,7 +301,7 @@ bool GraphBuilder::is_traced(const CommonSupport& seed) const {
           if (s < -overlap || s > 1 + overlap) continue;
           const double off = glm::dot(en, en) + glm::dot(e0, e0) + glm::dot(e1, e1);
           if (off - s * s * square > 0.25 * square + same_curve * same_curve) continue;
-          const std::optional<Ruling> there = ruling_between(system_, from, to, s);
+          const std::optional<Ruling> there = ruling_at_share(system_, from, to, s);
           if (there && is_seed(*there)) return true;
         }
       }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 
 namespace taut {
@@ -212,6 +213,32 @@ std::optional<Ruling> PolePassage::arrival(const Landmark& landmark, double leng
     return std::nullopt;
   }
   return end.ruling();
+}
+
+std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
+  CommonSupport end = point_.at;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (end.contact[i].kind != SourceKind::edge) return std::nullopt;
+    const double rate = point_.tangent.parameter[i].x;
+    end.contact[i].u = rate > 0 ? 1 : 0;
+    // The tangent there tells no more than that it is near by.
+    if (end.contact[i].u == point_.at.contact[i].u) return std::nullopt;
+    if (!ends_straight(geometry_, end.contact[i])) return std::nullopt;
+  }
+  end.evaluate(geometry_);
+  if (glm::length(end.d()) < join_distance) return std::nullopt;
+  end.n = unit(glm::cross(end.jet[0].dx[0], end.d()));
+  if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
+  const double ahead = point_.length_to(end);
+  if (ahead <= margin_slack || ahead > length) return std::nullopt;
+  for (const ContactJet& j : {end.jet[0], end.jet[1]}) {
+    const double slope = std::abs(glm::dot(unit(j.dx[0]), end.n));
+    if (slope > geometry_.rounding()) return std::nullopt;
+  }
+  if (!point_.supports(end) || !point_.is_followed(point_.at.ruling(), end.ruling())) {
+    return std::nullopt;
+  }
+  return end;
 }
 
 }  // namespace taut

@@ -39,6 +39,10 @@ class PolePassage {
   bool reach(int contact, Side side, double length);
   /// The ruling with which the curve arrives in a landmark that lies within a step of this length.
   std::optional<Ruling> arrival(const Landmark& landmark, double length) const;
+  /// The support in which both contacts come to the ends of edges that have no bend there, if these
+  /// lie within a step of this length. Either moves with the square of what turns the direction, so
+  /// that next to the ends rounding moves it by the root of itself.
+  std::optional<CommonSupport> at_flat_ends(double length) const;
 
  private:
   std::optional<Ruling> leave(double step, bool tilted);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 
 namespace taut {
@@ -35,6 +36,12 @@ bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= co
 bool is_flat(const CommonSupport& s, const ContactGeometry& geometry) {
   const double least = std::sqrt(geometry.rounding());
   return is_flat(s.jet[0], s.n, least) || is_flat(s.jet[1], s.n, least);
+}
+
+/// One of the contacts is at the end of an edge that does not bend there.
+bool ends_straight(const ContactGeometry& geometry, const Ruling& r) {
+  return std::any_of(r.contact.begin(), r.contact.end(),
+                     [&](const Contact& c) { return ends_straight(geometry, c); });
 }
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.
@@ -77,6 +84,14 @@ void MovingRuling::move(const CurveTangent& t, double speed) {
   dn = speed * t.n;
   for (std::size_t i = 0; i < 2; ++i) dp[i] = speed * t.parameter[i];
   complete();
+}
+
+void MovingRuling::speed_up(double factor) {
+  dn *= factor;
+  for (std::size_t i = 0; i < 2; ++i) {
+    dp[i] *= factor;
+    dx[i] *= factor;
+  }
 }
 
 void RulingsBetween::Polynomial::add(double r, const State& value, const State& slope) {
@@ -139,9 +154,11 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     refine();
   } else if (merged(from) == merged(to)) {
     nearly_merges_ = nearly_merge();
-    lies_flat_ = system.geometry().tie() > support_tie &&
-                 (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
-                  is_flat(CommonSupport(system.geometry(), to), system.geometry()));
+    straight_ = {ends_straight(system.geometry(), from), ends_straight(system.geometry(), to)};
+    lies_flat_ =
+        is_straight() || (system.geometry().tie() > support_tie &&
+                          (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
+                           is_flat(CommonSupport(system.geometry(), to), system.geometry())));
     fit();
   } else {
     free_end_ = merged(from) ? 0 : 1;
@@ -155,6 +172,25 @@ bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
   m.at = CommonSupport(system_.geometry(), longer);
   length_ = glm::length(m.at.d());
   return find_slope(m, 1) && touches(end, longer, m);
+}
+
+double RulingsBetween::share(double s) const {
+  if (straight_[0] && straight_[1]) return s * s * (3 - 2 * s);
+  if (straight_[0]) return s * s;
+  return straight_[1] ? s * (2 - s) : s;
+}
+
+double RulingsBetween::share_slope(double s) const {
+  if (straight_[0] && straight_[1]) return 6 * s * (1 - s);
+  if (straight_[0]) return 2 * s;
+  return straight_[1] ? 2 * (1 - s) : 1;
+}
+
+double RulingsBetween::at_share(double share) const {
+  const double within = std::clamp(share, 0.0, 1.0);
+  if (straight_[0] && straight_[1]) return 0.5 - std::sin(std::asin(1 - 2 * within) / 3);
+  if (straight_[0]) return std::sqrt(within);
+  return straight_[1] ? 1 - std::sqrt(1 - within) : share;
 }
 
 /// Along a chord that is little more than their approach.
@@ -171,7 +207,11 @@ void RulingsBetween::fit() {
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
-    if (!merged(*end) && !is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
+    if (straight_[end == &from_ ? 0 : 1]) {
+      // All are smooth in powers of the share, which begins level.
+      polynomial_.add(s, place(m), State{});
+    } else if (!merged(*end) && !is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
+      m.speed_up(share_slope(s));
       polynomial_.add(s, place(m), rate(m));
     } else {
       polynomial_.add(s, place(m));
@@ -190,7 +230,9 @@ void RulingsBetween::refine() {
                                         : Shares{0.25, 0.5, 0.75};
   for (const double s : shares) {
     MovingRuling m = moving(s, 1);
-    if (solve_share(m, s) && find_speed(m)) polynomial_.add(s, place(m), rate(m));
+    if (!solve_share(m, share(s)) || !find_speed(m)) continue;
+    m.speed_up(share_slope(s));
+    polynomial_.add(s, place(m), rate(m));
   }
 }
 
@@ -314,8 +356,8 @@ MovingRuling RulingsBetween::interpolated(double s) const {
 std::optional<MovingRuling> RulingsBetween::operator()(double s) const {
   MovingRuling m = interpolated(s);
   if (free_end_ < 0) {
-    if (!solve_share(m, s)) return std::nullopt;
-    find_speed(m);
+    if (!solve_share(m, share(s))) return std::nullopt;
+    if (find_speed(m)) m.speed_up(share_slope(s));
     return m;
   }
   const double r = free_end_ == 0 ? s : 1 - s;
@@ -331,6 +373,14 @@ std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& 
   const RulingsBetween between(system, from, to);
   if (between.empty()) return from;
   const std::optional<MovingRuling> m = between(s);
+  return m ? std::optional(m->at.ruling()) : std::nullopt;
+}
+
+std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling& from,
+                                      const Ruling& to, double share) {
+  const RulingsBetween between(system, from, to);
+  if (between.empty()) return from;
+  const std::optional<MovingRuling> m = between(between.at_share(share));
   return m ? std::optional(m->at.ruling()) : std::nullopt;
 }
 

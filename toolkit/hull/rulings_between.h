@@ -17,6 +17,7 @@ struct MovingRuling {
   std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};  ///< of their points
 
   void move(const CurveTangent& t, double speed);
+  void speed_up(double factor);
   /// Those of the points and of the unit normal from those of the parameters and of n.
   void complete();
 };
@@ -29,8 +30,11 @@ struct MovingRuling {
 /// one end (a ruling of length zero) it is the one whose length is s or 1 - s times the longer
 /// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
 /// A3 end, m +- rho e; a B3 end, linear). Where a parabolic curve touches an edge their distance
-/// falls with the square of the way, and it is the chord's share there as well. Newton's method
-/// starts from Hermite's interpolation.
+/// falls with the square of the way, and it is the chord's share there as well. Where a contact
+/// leaves the end of an edge that does not bend there, as the borders of cages end in corners, n
+/// turns with the square of its way, and another contact that does so too may move with the power
+/// 3/2: there the root of the chord's share is s. Newton's method starts from Hermite's
+/// interpolation.
 class RulingsBetween {
  public:
   /// @pre the two have the same elements; all outlive it
@@ -41,8 +45,12 @@ class RulingsBetween {
   bool merges() const { return free_end_ >= 0; }
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
-  /// to, or far from the origin one of them lies flat.
+  /// to, or one of them is where an edge ends without a bend, or far from the origin lies flat.
   bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
+  /// At one end a contact is at that of an edge that does not bend there.
+  bool is_straight() const { return straight_[0] || straight_[1]; }
+  /// The s at which the chord is divided in this ratio, unless the two merge.
+  double at_share(double share) const;
   /// The ruling at s, which may leave [0, 1] by a little, but not beyond a free end. None if
   /// Newton's method does not converge to one near the interpolated one. Next to a free end the
   /// derivatives are the interpolation's.
@@ -73,6 +81,8 @@ class RulingsBetween {
   static State place(const MovingRuling& m);
   static State rate(const MovingRuling& m);
 
+  double share(double s) const;
+  double share_slope(double s) const;
   bool nearly_merge() const;
   bool touch(const Ruling& end, const Ruling& longer);
   void fit();
@@ -94,8 +104,9 @@ class RulingsBetween {
   double shorter_ = 0;  // of the two rulings' lengths
   bool nearly_merges_ = false;
   bool lies_flat_ = false;
-  int free_end_ = -1;      // at which the contacts merge
-  double length_ = 0;      // of the ruling at the other one
+  std::array<bool, 2> straight_ = {false, false};  // at either end
+  int free_end_ = -1;                              // at which the contacts merge
+  double length_ = 0;                              // of the ruling at the other one
   bool touches_ = false;   // ... and their distance falls with the square of the way there
   Polynomial polynomial_;  // in s, or in the length's share
 };
@@ -103,5 +114,9 @@ class RulingsBetween {
 /// A single one of them.
 std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& from,
                                      const Ruling& to, double s);
+
+/// The one that divides the chord in this ratio, or, next to a free end, that ruling_between() has.
+std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling& from,
+                                      const Ruling& to, double share);
 
 }  // namespace taut

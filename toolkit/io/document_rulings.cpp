@@ -10,7 +10,8 @@ namespace {
 
 /// Where rulings are solved for: the extrema of a Chebyshev polynomial, which interpolate well.
 constexpr std::array<double, RulingInterval::node_count> node = {
-    0, 0.0954915028125262857, 0.3454915028125262857, 0.6545084971874737143, 0.9045084971874737143,
+    0,   0.0244717418524232303, 0.0954915028125262857, 0.20610737385376343,   0.3454915028125262857,
+    0.5, 0.6545084971874737143, 0.7938926261462365,    0.9045084971874737143, 0.9755282581475768,
     1};
 
 /// Residuals, in the scene's frame, of rulings that are solutions.
@@ -21,6 +22,10 @@ constexpr double reach_of_free_end = 8;
 
 const HullDocument::Contact& contact_of(const HullDocument::Ruling& r, std::size_t k) {
   return k == 0 ? r.a : r.b;
+}
+
+double distance(const RulingState& a, const RulingState& b) {
+  return glm::distance(a.n, b.n) + glm::distance(a.t[0], b.t[0]) + glm::distance(a.t[1], b.t[1]);
 }
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
@@ -94,12 +99,15 @@ bool DocumentRulings::solve_between(const HullDocument::Ruling& from,
       ends[e].point[k] = frame.to_frame(contact_of(r, k).p);
     }
   }
+  const RulingsBetween between(system_, ends[0], ends[1]);
+  if (between.empty()) return false;
   bool solved = true;
   for (std::size_t i = 1; i + 1 < node.size(); ++i) {
-    const std::optional<Ruling> exact = ruling_between(system_, ends[0], ends[1], node[i]);
-    if (!exact) return false;
-    const Ruling& r = *exact;
-    const CommonSupport support(system_.geometry(), r);
+    const std::optional<MovingRuling> m =
+        between.is_smoother() ? between.interpolated(node[i]) : between(node[i]);
+    if (!m) return false;
+    const CommonSupport& support = m->at;
+    const Ruling r = support.ruling();
     double residual = std::abs(glm::dot(support.d(), r.n));
     for (std::size_t k = 0; k < 2; ++k) {
       for (const dvec3& d : support.jet[k].dx) residual += std::abs(glm::dot(d, r.n));
@@ -143,14 +151,33 @@ void DocumentRulings::extrapolate(const RulingInterval& neighbor, bool ends,
     return glm::distance(x[0], x[1]);
   };
   const double whole = length(interval.states()[ends ? 0 : 1]);
-  // The nearest nodes but the one that both have: the nearer to the end, the better they tell.
-  const double nearest = ends ? 1 : 0;
-  for (std::size_t i = 0; i < neighbor.nodes().size(); ++i) {
-    if (neighbor.nodes()[i] == nearest) continue;
-    const double share = length(neighbor.states()[i]) / whole;
-    if (!(share > 1) || share > reach_of_free_end) continue;
-    interval.add(ends ? 1 - share : share, neighbor.states()[i]);
+  const RulingState& merged = interval.states()[ends ? 1 : 0];
+  // The length falls with the way to the end or with its square: that which the neighbour's nodes,
+  // without the merged ruling, lead to it by.
+  std::optional<RulingInterval> best;
+  double least_miss = 0;
+  for (const double order : {1.0, 2.0}) {
+    RulingInterval told;
+    RulingInterval next = interval;
+    told.add(1, interval.states()[ends ? 0 : 1]);
+    // The nearest nodes but the one that both have: the nearer to the end, the better they tell.
+    // Every second one, since high degrees magnify what rounding moves them by.
+    const double nearest = ends ? 1 : 0;
+    for (std::size_t i = 0; i < neighbor.nodes().size(); ++i) {
+      const bool is_end = i < 2;
+      if (neighbor.nodes()[i] == nearest || (!is_end && i % 2 == 0)) continue;
+      const double ratio = length(neighbor.states()[i]) / whole;
+      if (!(ratio > 1) || ratio > reach_of_free_end) continue;
+      const double share = std::pow(ratio, 1 / order);
+      told.add(share, neighbor.states()[i]);
+      next.add(ends ? 1 - share : share, neighbor.states()[i]);
+    }
+    const double miss = distance(told.value(0), merged);
+    if (best && miss >= least_miss) continue;
+    least_miss = miss;
+    best = std::move(next);
   }
+  interval = std::move(*best);
 }
 
 std::vector<RulingInterval> DocumentRulings::intervals(const HullDocument::Face& scroll) const {

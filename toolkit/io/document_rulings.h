@@ -13,11 +13,12 @@ struct RulingState {
 
 /// The rulings between two neighbours of a document's scroll, of which both contacts stay in one
 /// Bezier patch or curve: a polynomial in s through rulings that were solved for, s = 0 and s = 1
-/// are the two. Where they merge into a free end, the polynomial is one in the ruling's length
-/// through those of the interval before, since contacts are smooth in it there.
+/// are the two. Where they merge into a free end, the polynomial is one in the ruling's length, or
+/// in its root where it falls with the square of the way, through those of the interval before,
+/// since contacts are smooth in it there.
 class RulingInterval {
  public:
-  static constexpr int node_count = 6;
+  static constexpr int node_count = 11;
 
   int ruling = -1;  ///< the first one; the other is the next in the list
   std::array<int, 2> source = {-1, -1};
