@@ -25,8 +25,10 @@ void check_hull_points(const std::vector<dvec3>& points, const Scene& scene, dou
   const HullContainment hull(scene, options);
   found.hull_points = long(points.size());
   for (const SignedDistance& d : hull.distances(points)) {
+    // Outside by no less than what one direction tells; but inside only by what all of them do, of
+    // which the best one found tells nothing.
     found.hull_outside = std::max(found.hull_outside, d.value);
-    found.hull_inside = std::max(found.hull_inside, -d.value);
+    found.hull_inside = std::max(found.hull_inside, -d.upper);
   }
 }
 
