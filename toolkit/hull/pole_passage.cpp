@@ -227,7 +227,10 @@ std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
   }
   end.evaluate(geometry_);
   if (glm::length(end.d()) < join_distance) return std::nullopt;
-  end.n = unit(glm::cross(end.jet[0].dx[0], end.d()));
+  // One of the edges may leave its end along the ruling.
+  const dvec3 first = glm::cross(unit(end.jet[0].dx[0]), end.d());
+  const dvec3 second = glm::cross(unit(end.jet[1].dx[0]), end.d());
+  end.n = unit(glm::length(first) > glm::length(second) ? first : second);
   if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
   const double ahead = point_.length_to(end);
   if (ahead <= margin_slack || ahead > length) return std::nullopt;

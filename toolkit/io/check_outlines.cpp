@@ -150,13 +150,15 @@ double OutlineCheck::distance_to_edge(int edge, const dvec3& p) const {
   return best;
 }
 
-/// From one ruling to the next, n and the contacts go on: each step makes an acute angle with the
-/// one before.
+/// From one ruling to the next, n and the contacts go on: no step makes an obtuse angle with the
+/// one before, but for what the tolerance leaves of either's direction. Where a contact comes to an
+/// end in which its edge does not bend, n stands still before it turns: the angle is a right one.
 void OutlineCheck::check_order(std::size_t f) {
   const std::vector<HullDocument::Ruling>& rulings = hull_.faces[f].rulings;
   const double size = hull_.diagonal > 0 ? hull_.diagonal : 1;
   using Step = std::array<dvec3, 3>;
   Step last{};
+  double last_length = 0;
   bool any = false;
   double area = 0;
   for (std::size_t i = 0; i + 1 < rulings.size(); ++i) {
@@ -170,12 +172,14 @@ void OutlineCheck::check_order(std::size_t f) {
       length += glm::dot(step[k], step[k]);
       along += glm::dot(step[k], last[k]);
     }
-    if (!(std::sqrt(length) > tolerance_ / size)) continue;
-    if (any && !(along > 0)) {
+    length = std::sqrt(length);
+    if (!(length > tolerance_ / size)) continue;
+    if (any && !(along > -(tolerance_ / size) * (length + last_length))) {
       faults_.add("order", at("faces", f) + "its rulings turn back after rulings[" +
                                std::to_string(i) + "]");
     }
     last = step;
+    last_length = length;
     any = true;
   }
   // Along them, contact a has the scroll to the left.
