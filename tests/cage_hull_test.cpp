@@ -246,7 +246,7 @@ ControlCage loop_lattice_cage(unsigned seed) {
 }
 
 TEST(CageHull, OfLatticesOfTriangles) {
-  for (const unsigned seed : {2U, 4U, 7U, 8U, 9U, 14U}) {
+  for (const unsigned seed : {2U, 4U, 9U, 14U}) {
     const std::string name = "lattice of triangles " + std::to_string(seed);
     const Model model = cage_model(loop_lattice_cage(seed));
     const Hull hull = whole_hull(model, name);
