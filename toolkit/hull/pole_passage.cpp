@@ -11,16 +11,13 @@
 namespace taut {
 namespace {
 
-/// Turns of n that are tried as the first step away from where contacts are singular.
-constexpr std::array<double, 30> leaving_steps = [] {
-  std::array<double, 30> a{};
-  double s = 1e-3;
-  for (auto& x : a) {
-    x = s;
-    s *= .6;
-  }
-  return a;
-}();
+/// Turns of n that are tried as the first step away from where contacts are singular: the largest,
+/// and so many more, each less than the one before by the factor. In one of them both contacts are
+/// in the elements next to theirs, be these as small as cages' patches about extraordinary
+/// vertices.
+constexpr double largest_turn = 1e-3;
+constexpr double turn_factor = 0.6;
+constexpr int turn_count = 30;
 /// Share of such a turn by which contacts are told apart.
 constexpr double share_inward = 0.1;
 /// Normal curvature, in the scene's frame, below which a contact is taken for flat.
@@ -84,7 +81,8 @@ bool PolePassage::is_singular(int contact) const {
 
 std::optional<Ruling> PolePassage::leave() {
   const CommonSupport start = point_.at;
-  for (const double step : leaving_steps) {
+  double step = largest_turn;
+  for (int k = 0; k < turn_count; ++k, step *= turn_factor) {
     for (const bool tilted : {false, true}) {
       point_.at = start;
       if (const std::optional<Ruling> first = leave(step, tilted)) return first;
