@@ -168,6 +168,15 @@ std::vector<NamedCage> tagged_cages() {
     ControlCage sharp = dome_cage(scheme, 6);
     sharp.creases = rim(sharp, taut::infinite_sharpness);
     all.push_back({name + ", sharp rim", sharp});
+    for (const int n : {3, 5, 8}) {
+      // From the top down, and a part of the rim.
+      ControlCage darts = dome_cage(scheme, n);
+      darts.creases = rim(darts, taut::infinite_sharpness);
+      const int ring = int(darts.creases.size());
+      darts.creases.resize(darts.creases.size() / 2);
+      darts.creases.push_back({{0, ring}, taut::infinite_sharpness});
+      all.push_back({name + ", darts at a vertex of valence " + std::to_string(n), darts});
+    }
     ControlCage hole = dome_cage(scheme, 4);
     hole.holes = {0, 4};
     all.push_back({name + ", holes", hole});

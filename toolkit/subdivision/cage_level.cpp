@@ -353,6 +353,8 @@ std::span<const int> CageLevel::vertices(std::size_t cell) const {
   return {vertices.begin(), to_size(vertices.size())};
 }
 
+const dvec3& CageLevel::point(int vertex) const { return topology_->points[to_size(vertex)]; }
+
 int CageLevel::number(int vertex) const { return topology_->numbers[to_size(vertex)]; }
 
 CageLevel CageLevel::refined(std::span<const std::size_t> cells, EdgeMiddles& middles) const {

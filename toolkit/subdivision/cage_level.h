@@ -68,6 +68,8 @@ class CageLevel {
   void enclosure(std::size_t cell, std::vector<dvec3>& points) const;
   /// The vertices of a cell in their order, numbers of this level.
   std::span<const int> vertices(std::size_t cell) const;
+  /// A vertex's control point.
+  const dvec3& point(int vertex) const;
   /// The number of a vertex of a cell over all levels; the control cage's have their own.
   int number(int vertex) const;
 

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include "taut/core/tolerances.h"
 #include "taut/subdivision/cage_level.h"
+#include "taut/subdivision/dart_limit.h"
 #include "taut/subdivision/hull_distance.h"
 #include "taut/subdivision/smooth_caps.h"
 #include "taut/subdivision/touch_test.h"
@@ -115,6 +117,14 @@ std::vector<dvec3> turned(const CellPatch& patch, std::size_t corner, bool back 
   return result;
 }
 
+/// Cells around an inner vertex, counter-clockwise, and which of their corners are there.
+struct CellFan {
+  std::vector<std::size_t> cells;
+  std::vector<std::size_t> corners;
+  /// The side from the vertex to the first cell's next corner is sharp, all others are smooth.
+  bool is_dart = false;
+};
+
 /// Refines a cage.
 class Refinement {
  public:
@@ -136,6 +146,8 @@ class Refinement {
   void sort_out();
   void emit_rest();
   void finish_or_refine(const std::vector<std::size_t>& region);
+  std::optional<CellFan> fan(const std::vector<std::size_t>& region) const;
+  std::vector<dvec3> ring(const CellFan& fan) const;
   void smooth_fan(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, double enough) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
@@ -345,58 +357,91 @@ Surroundings Refinement::near(const std::vector<std::size_t>& region,
   return result;
 }
 
-/// Lets the caps of a region that is all cells around one inner vertex meet smoothly there.
-void Refinement::smooth_fan(const std::vector<std::size_t>& region) {
+/// The cells of a region that is all cells around one inner vertex, at which one side at most is
+/// sharp; with that of the first cell.
+std::optional<CellFan> Refinement::fan(const std::vector<std::size_t>& region) const {
   const std::size_t n = region.size();
-  if (n < 3) return;
-  const auto vertices = [&](std::size_t k) { return level_.vertices(region[k]); };
+  if (n < 3) return std::nullopt;
   // The vertex that all have, and where.
-  const auto place_in = [&](std::size_t k, int vertex) {
-    const std::span<const int> own = vertices(k);
+  const auto place_in = [&](std::size_t c, int vertex) {
+    const std::span<const int> own = level_.vertices(c);
     return to_size(to_int(std::find(own.begin(), own.end(), vertex) - own.begin()));
   };
-  const std::span<const int> first = vertices(0);
+  const std::span<const int> first = level_.vertices(region.front());
   const auto centre = std::find_if(first.begin(), first.end(), [&](int v) {
-    for (std::size_t k = 1; k < n; ++k) {
-      if (place_in(k, v) == vertices(k).size()) return false;
-    }
-    return true;
+    return std::all_of(region.begin(), region.end(), [&](std::size_t c) {
+      return place_in(c, v) < level_.vertices(c).size();
+    });
   });
-  if (centre == first.end()) return;
-  // The cells from spoke to spoke.
-  std::vector<std::size_t> order;
-  std::vector<std::size_t> corner;
-  for (std::size_t k = 0; order.size() < n;) {
-    const std::span<const int> own = vertices(k);
-    const std::size_t at = place_in(k, *centre);
-    const std::size_t before = (at + own.size() - 1) % own.size();
-    const auto& smooth = patches_[region[k]].smooth;
-    if (!smooth[at] || !smooth[before]) return;
-    order.push_back(k);
-    corner.push_back(at);
-    std::size_t next = 0;
-    while (next < n) {
-      const std::span<const int> other = vertices(next);
-      const std::size_t there = place_in(next, *centre);
-      if (other[(there + 1) % other.size()] == own[before]) break;
-      ++next;
+  if (centre == first.end()) return std::nullopt;
+  // From spoke to spoke.
+  const auto spoke_end = [&](std::size_t c, std::size_t turn) {
+    const std::span<const int> own = level_.vertices(c);
+    return own[(place_in(c, *centre) + turn) % own.size()];
+  };
+  CellFan fan;
+  for (std::size_t c = region.front(); fan.cells.size() < n;) {
+    fan.cells.push_back(c);
+    fan.corners.push_back(place_in(c, *centre));
+    const int last = spoke_end(c, level_.vertices(c).size() - 1);
+    const auto next = std::find_if(region.begin(), region.end(), [&](std::size_t other) {
+      return spoke_end(other, 1) == last;
+    });
+    if (next == region.end()) return std::nullopt;
+    c = *next;
+    const bool closes = fan.cells.size() == n && c == fan.cells.front();
+    if (!closes && std::find(fan.cells.begin(), fan.cells.end(), c) != fan.cells.end()) {
+      return std::nullopt;
     }
-    const bool closes = order.size() == n && next == order.front();
-    if (next == n || (!closes && std::find(order.begin(), order.end(), next) != order.end()))
-      return;
-    k = next;
+  }
+  std::vector<std::ptrdiff_t> sharp;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!patches_[fan.cells[k]].smooth[fan.corners[k]]) sharp.push_back(std::ptrdiff_t(k));
+  }
+  if (sharp.size() > 1) return std::nullopt;
+  fan.is_dart = !sharp.empty();
+  if (fan.is_dart) {
+    std::rotate(fan.cells.begin(), fan.cells.begin() + sharp.front(), fan.cells.end());
+    std::rotate(fan.corners.begin(), fan.corners.begin() + sharp.front(), fan.corners.end());
+  }
+  return fan;
+}
+
+/// The points about the centre of a fan at a dart, as dart_limit() takes them.
+std::vector<dvec3> Refinement::ring(const CellFan& fan) const {
+  const auto vertex = [&](std::size_t k, std::size_t turn) {
+    const std::span<const int> own = level_.vertices(fan.cells[k]);
+    return level_.point(own[(fan.corners[k] + turn) % own.size()]);
+  };
+  std::vector<dvec3> points = {vertex(0, 0)};
+  for (std::size_t k = 0; k < fan.cells.size(); ++k) points.push_back(vertex(k, 1));
+  if (level_.vertices(fan.cells.front()).size() == 3) return points;
+  for (std::size_t k = 0; k < fan.cells.size(); ++k) points.push_back(vertex(k, 2));
+  return points;
+}
+
+/// Lets the caps of a region that is all cells around one inner vertex meet smoothly there.
+void Refinement::smooth_fan(const std::vector<std::size_t>& region) {
+  const std::optional<CellFan> fan = this->fan(region);
+  if (!fan) return;
+  const bool quads = is_quad(patches_[region.front()]);
+  std::optional<VertexLimit> dart;
+  if (fan->is_dart) {
+    dart = dart_limit(quads ? CageScheme::catmark : CageScheme::loop, ring(*fan));
+    if (!dart) return;
   }
   std::vector<std::vector<dvec3>> nets;
-  nets.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) nets.push_back(turned(patches_[region[order[i]]], corner[i]));
-  const bool quads = is_quad(patches_[region.front()]);
+  nets.reserve(fan->cells.size());
+  for (std::size_t k = 0; k < fan->cells.size(); ++k) {
+    nets.push_back(turned(patches_[fan->cells[k]], fan->corners[k]));
+  }
   std::vector<std::vector<dvec3>> caps =
-      quads ? smooth_quad_caps(nets) : smooth_triangle_caps(nets);
-  for (std::size_t i = 0; i < n; ++i) {
-    CellPatch& patch = patches_[region[order[i]]];
-    patch.points = std::move(caps[i]);
+      quads ? smooth_quad_caps(nets, dart) : smooth_triangle_caps(nets, dart);
+  for (std::size_t k = 0; k < fan->cells.size(); ++k) {
+    CellPatch& patch = patches_[fan->cells[k]];
+    patch.points = std::move(caps[k]);
     patch.degree += 2;
-    patch.points = turned(patch, corner[i], true);
+    patch.points = turned(patch, fan->corners[k], true);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "taut/subdivision/triangle_points.h"
 
@@ -74,12 +75,14 @@ void keep_turns(Points& x, std::span<const int> turns) {
 }
 
 /// Mixed derivatives of the cells at the vertex, those of neighbours adding up to `sums` on the
-/// spoke between them; as near as may be to the given ones.
-Points twists(const Points& given, const Points& sums) {
+/// spoke between them, but not on the first one if that is sharp; as near as may be to the given
+/// ones.
+Points twists(const Points& given, const Points& sums, bool sharp) {
   const auto n = Eigen::Index(given.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXd off(n, 3);
-  for (Eigen::Index j = 0; j < n; ++j) {
+  off.row(0).setZero();
+  for (Eigen::Index j = sharp ? 1 : 0; j < n; ++j) {
     const Eigen::Index before = (j + n - 1) % n;
     a(j, j) = a(j, before) = 1;
     const dvec3 d = sums[std::size_t(j)] - given[std::size_t(j)] - given[std::size_t(before)];
@@ -106,8 +109,10 @@ struct SpokeEnds {
 /// The spokes and the derivatives across them.
 class Fan {
  public:
-  /// `end_bend`: c'' at the other ends, where that is given too; `w` is the w above.
-  Fan(std::vector<SpokeEnds> ends, const Points& end_bends, std::vector<double> w)
+  /// `end_bend`: c'' at the other ends, where that is given too; `w` is the w above. `beyond`: of
+  /// the first spoke, if it is sharp, with the derivatives into the last cell.
+  Fan(std::vector<SpokeEnds> ends, const Points& end_bends, std::vector<double> w,
+      const std::optional<SpokeEnds>& beyond)
       : ends_(std::move(ends)), w_(std::move(w)) {
     const std::size_t n = ends_.size();
     Points leaving(n), bends(n);
@@ -140,7 +145,7 @@ class Fan {
       sums[j] = derivative(turned[j]).front();
       given[j] = ends_[j].twist;
     }
-    const Points twist = twists(given, sums);
+    const Points twist = twists(given, sums, beyond.has_value());
     for (std::size_t j = 0; j < n; ++j) {
       const SpokeEnds& e = ends_[j];
       const Points slope = derivative(turned[j]);
@@ -156,6 +161,12 @@ class Fan {
       right_.push_back(std::move(right));
       left_.push_back(std::move(left));
     }
+    if (!beyond) return;
+    const auto across = [&](const dvec3& start, const dvec3& twisted, const SpokeEnds& e) {
+      return raised(hermite(start, twisted, e.across, e.turn), turned[0].size() - 1);
+    };
+    right_[0] = across(leaving[1], twist[0], ends_[0]);
+    left_[0] = across(leaving[n - 1], twist[n - 1], *beyond);
   }
 
   /// Spoke j, the first one of cell j, and the derivatives from it into cell j and into the one
@@ -170,6 +181,23 @@ class Fan {
   std::vector<Points> curves_, right_, left_;
 };
 
+/// The corner of a net as it is at a dart: the vertex where it belongs, the first derivatives in its
+/// tangent plane, the mixed one as it was.
+template <class AnyNet>
+void move_to(AnyNet& net, const VertexLimit& dart) {
+  const dvec3 vertex = net.at(0, 0);
+  const auto moved = [&](const dvec3& x) {
+    const dvec3 d = x - vertex;
+    return dart.x + d - glm::dot(d, dart.normal) * dart.normal;
+  };
+  const dvec3 first = moved(net.at(1, 0)) - net.at(1, 0);
+  const dvec3 second = moved(net.at(0, 1)) - net.at(0, 1);
+  net.at(1, 1) += first + second - (dart.x - vertex);
+  net.at(1, 0) += first;
+  net.at(0, 1) += second;
+  net.at(0, 0) = dart.x;
+}
+
 /// A square net of points along v within along u.
 class Net {
  public:
@@ -178,6 +206,14 @@ class Net {
   dvec3& at(std::size_t i, std::size_t j) { return points_[i * (degree_ + 1) + j]; }
   const dvec3& at(std::size_t i, std::size_t j) const { return points_[i * (degree_ + 1) + j]; }
   Points take() { return std::move(points_); }
+
+  Net mirrored() const {
+    Net result(degree_);
+    for (std::size_t i = 0; i <= degree_; ++i) {
+      for (std::size_t j = 0; j <= degree_; ++j) result.at(i, j) = at(j, i);
+    }
+    return result;
+  }
 
  private:
   std::size_t degree_;
@@ -243,6 +279,14 @@ class Triangle {
   }
   Points take() { return std::move(points_); }
 
+  Triangle mirrored() const {
+    Triangle result(degree_);
+    for (std::size_t j = 0; j <= degree_; ++j) {
+      for (std::size_t i = 0; i + j <= degree_; ++i) result.at(i, j) = at(j, i);
+    }
+    return result;
+  }
+
   Triangle raised() const {
     Triangle up(degree_ + 1);
     const auto n = double(degree_ + 1);
@@ -263,6 +307,11 @@ class Triangle {
   Points points_;
 };
 
+/// The triangle's point (2, 0) with which its first spoke has this second derivative at the end.
+dvec3 bent(const Triangle& p, const dvec3& end_bend) {
+  return end_bend / 12.0 - p.at(4, 0) + 2.0 * p.at(3, 0);
+}
+
 /// Of the cell's first spoke, from its first corner to its second.
 SpokeEnds spoke_ends(const Triangle& p, const dvec3& end_bend) {
   SpokeEnds e;
@@ -272,11 +321,14 @@ SpokeEnds spoke_ends(const Triangle& p, const dvec3& end_bend) {
   e.arriving = 4.0 * (p.at(4, 0) - p.at(3, 0));
   e.bend = 12.0 * (p.at(2, 0) - 2.0 * p.at(1, 0) + p.at(0, 0));
   e.across = 4.0 * (p.at(3, 1) - p.at(3, 0));
-  // The mixed derivative with that second derivative.
-  const dvec3 second = end_bend / 12.0 - p.at(4, 0) + 2.0 * p.at(3, 0);
-  e.turn = 12.0 * (p.at(3, 1) - p.at(2, 1) - p.at(3, 0) + second);
+  e.turn = 12.0 * (p.at(3, 1) - p.at(2, 1) - p.at(3, 0) + bent(p, end_bend));
   e.twist = 12.0 * (p.at(1, 1) - p.at(1, 0) - p.at(0, 1) + p.at(0, 0));
   return e;
+}
+
+/// c'' at the end of the triangle's first spoke.
+dvec3 own_end_bend(const Triangle& p) {
+  return 12.0 * (p.at(4, 0) - 2.0 * p.at(3, 0) + p.at(2, 0));
 }
 
 /// c'' at the end of the spoke between two cells with which their mixed derivatives there, as the
@@ -292,7 +344,8 @@ dvec3 end_bend(const Triangle& right, const Triangle& left, double slope) {
 
 }  // namespace
 
-std::vector<Points> smooth_quad_caps(std::span<const Points> nets) {
+std::vector<Points> smooth_quad_caps(std::span<const Points> nets,
+                                     const std::optional<VertexLimit>& dart) {
   const std::size_t n = nets.size();
   const double turn = 2 * std::cos(2 * std::numbers::pi / double(n));
   std::vector<SpokeEnds> ends;
@@ -300,8 +353,13 @@ std::vector<Points> smooth_quad_caps(std::span<const Points> nets) {
   ends.reserve(n);
   given.reserve(n);
   for (const Points& points : nets) given.emplace_back(std::size_t{3}, points);
+  std::optional<SpokeEnds> beyond;
+  if (dart) {
+    for (Net& net : given) move_to(net, *dart);
+    beyond = spoke_ends(given.back().mirrored());
+  }
   for (const Net& net : given) ends.push_back(spoke_ends(net));
-  const Fan fan(std::move(ends), {}, {turn, 0, 0});
+  const Fan fan(std::move(ends), {}, {turn, 0, 0}, beyond);
   std::vector<Points> result;
   for (std::size_t j = 0; j < n; ++j) {
     const Net old = raised(given[j]);
@@ -323,7 +381,8 @@ std::vector<Points> smooth_quad_caps(std::span<const Points> nets) {
   return result;
 }
 
-std::vector<Points> smooth_triangle_caps(std::span<const Points> nets) {
+std::vector<Points> smooth_triangle_caps(std::span<const Points> nets,
+                                         const std::optional<VertexLimit>& dart) {
   const std::size_t n = nets.size();
   const double turn = 2 * std::cos(2 * std::numbers::pi / double(n));
   std::vector<Triangle> given;
@@ -331,10 +390,20 @@ std::vector<Points> smooth_triangle_caps(std::span<const Points> nets) {
   std::vector<SpokeEnds> ends;
   Points end_bends;
   for (std::size_t j = 0; j < n; ++j) {
-    end_bends.push_back(end_bend(given[j], given[(j + n - 1) % n], 1 - turn));
-    ends.push_back(spoke_ends(given[j], end_bends.back()));
+    const bool sharp = dart && j == 0;
+    end_bends.push_back(sharp ? own_end_bend(given[j])
+                              : end_bend(given[j], given[(j + n - 1) % n], 1 - turn));
   }
-  const Fan fan(std::move(ends), end_bends, {turn, 1});
+  std::optional<SpokeEnds> beyond;
+  if (dart) {
+    for (std::size_t j = 0; j < n; ++j) {
+      move_to(given[j], *dart);
+      if (j > 0) given[j].at(2, 0) = given[j - 1].at(0, 2) = bent(given[j], end_bends[j]);
+    }
+    beyond = spoke_ends(given.back().mirrored(), end_bends[0]);
+  }
+  for (std::size_t j = 0; j < n; ++j) ends.push_back(spoke_ends(given[j], end_bends[j]));
+  const Fan fan(std::move(ends), end_bends, {turn, 1}, beyond);
   std::vector<Points> result;
   for (std::size_t j = 0; j < n; ++j) {
     const Triangle old = given[j].raised().raised();
