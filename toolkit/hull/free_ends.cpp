@@ -37,7 +37,7 @@ constexpr double noise_length = 1e-8;
 constexpr double noise_limit = 1e-4;
 /// Of central difference quotients: their error slows Newton's method by its square.
 constexpr double difference = 1e-5;
-/// How far rounding may put a root beyond the border on which it lies.
+/// How far rounding may move a root off the end or beyond the border on which it lies.
 constexpr double parameter_slack = 1e-11;
 /// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
 /// rounding on a circle of flat points.
@@ -57,6 +57,12 @@ constexpr double pole_distance = 1e-6;
 constexpr double beside_border = 0.1;
 
 bool within(double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; }
+
+/// A root of a side or piece where it is surely within it, and at its end where it may be.
+double placed(double t) {
+  if (t < parameter_slack) return 0;
+  return t > 1 - parameter_slack ? 1 : t;
+}
 
 Contact clamped(Contact c) {
   c.u = std::clamp(c.u, 0.0, 1.0);
@@ -440,7 +446,7 @@ bool is_at_flat_corner(const ContactGeometry& geometry, const Contact& patch, Si
 std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact& patch, Side side,
                                   double t) {
   if (!within(t) || is_at_flat_corner(geometry, patch, side, t)) return std::nullopt;
-  const Contact c = on_side_of(patch, side, std::clamp(t, 0.0, 1.0));
+  const Contact c = on_side_of(patch, side, placed(t));
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
   const Departure own = inward_departure(*b, side);
