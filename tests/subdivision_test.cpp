@@ -20,6 +20,7 @@
 #include "taut/hull/convex_hull.h"
 #include "taut/subdivision/add_cage.h"
 #include "taut/subdivision/conforming.h"
+#include "taut/subdivision/dart_limit.h"
 #include "taut/subdivision/hull_distance.h"
 #include "taut/subdivision/limit_patches.h"
 #include "taut/subdivision/reparametrize.h"
@@ -153,15 +154,20 @@ TEST(LimitPatches, KeepTheirAccuracy) {
 }
 
 /// The largest angle between the normals on both sides of smooth joins, and the number of joins
-/// between two patches of this degree.
+/// between two patches of this degree, which are caps that touch the hull. Those that do not may
+/// have kinks.
 std::pair<double, int> largest_kink(const Part& part, int degree) {
   double kink = 0;
   int count = 0;
+  const auto may_kink = [&](const Patch& patch) {
+    return patch.stand_in && patch.bezier.degree_u != degree;
+  };
   for (const Patch& patch : part.patches()) {
     for (const Side side : all_sides) {
       const Border& border = patch.borders[std::size_t(side)];
       if (border.kind != BorderKind::smooth) continue;
       const Patch& other = part.patches()[std::size_t(border.neighbor)];
+      if (may_kink(patch) || may_kink(other)) continue;
       const bool are_caps = patch.bezier.degree_u == degree && other.bezier.degree_u == degree;
       count += are_caps && patch.stand_in && other.stand_in ? 1 : 0;
       for (int k = 0; k <= 8; ++k) {
@@ -193,6 +199,113 @@ TEST(LimitPatches, CapsMeetSmoothly) {
       }
     }
   }
+}
+
+/// With a sharp edge from its top to the rim.
+ControlCage dome_with_darts(CageScheme scheme, int valence) {
+  ControlCage cage = dome_cage(scheme, valence);
+  cage.creases = {{{0, 2}, infinite_sharpness}};
+  return cage;
+}
+
+TEST(LimitPatches, CapsMeetSmoothlyAtDarts) {
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    const bool loop = scheme == CageScheme::loop;
+    for (const int n : {3, 4, 5, 6, 7, 12}) {
+      for (const double accuracy : {1e-3, 1e-6}) {
+        const ControlCage cage = dome_with_darts(scheme, n);
+        const Model model = cage_model(cage, accuracy);
+        const auto [kink, count] = largest_kink(model.parts()[0], loop ? 6 : 5);
+        EXPECT_GE(count, n) << n;
+        EXPECT_LE(kink, 1e-12 / std::sqrt(accuracy))
+            << name_of(scheme) << " " << n << " " << accuracy;
+        LimitOptions options;
+        options.accuracy = accuracy;
+        EXPECT_LE(limit_patches(cage, options).deviation_bound, accuracy * size_of(cage));
+      }
+    }
+  }
+}
+
+bool is_dart(const RefinedCage& cage, int vertex) {
+  const auto edges = cage.level().GetVertexEdges(vertex);
+  const auto sharp = std::count_if(edges.begin(), edges.end(),
+                                   [&](int e) { return cage.level().IsEdgeInfSharp(e); });
+  return sharp == 1 && !cage.level().IsVertexInfSharp(vertex);
+}
+
+/// The points about a dart as dart_limit() takes them.
+std::vector<dvec3> ring_about(const RefinedCage& cage, int dart) {
+  const auto level = cage.level();
+  const auto edges = level.GetVertexEdges(dart);
+  const auto faces = level.GetVertexFaces(dart);
+  const int first = int(std::find_if(edges.begin(), edges.end(),
+                                     [&](int e) { return level.IsEdgeInfSharp(e); }) -
+                        edges.begin());
+  std::vector<int> ring = {dart};
+  for (int k = 0; k < edges.size(); ++k) {
+    const auto ends = level.GetEdgeVertices(edges[(first + k) % edges.size()]);
+    ring.push_back(ends[0] == dart ? ends[1] : ends[0]);
+  }
+  for (int k = 0; k < faces.size(); ++k) {
+    const auto corners = level.GetFaceVertices(faces[(first + k) % faces.size()]);
+    if (corners.size() == 3) break;
+    const auto at = std::find(corners.begin(), corners.end(), dart) - corners.begin();
+    ring.push_back(corners[int((at + 2) % 4)]);
+  }
+  std::vector<dvec3> points;
+  for (const int v : ring) points.push_back(cage.points()[std::size_t(v)]);
+  return points;
+}
+
+/// The dart among the corners of the faces that is nearest to a point.
+int nearest_dart(const RefinedCage& cage, const dvec3& x) {
+  int found = -1;
+  const auto distance = [&](int v) { return glm::distance(cage.points()[std::size_t(v)], x); };
+  for (const int face : cage.faces()) {
+    for (const int v : cage.level().GetFaceVertices(face)) {
+      if (is_dart(cage, v) && (found < 0 || distance(v) < distance(found))) found = v;
+    }
+  }
+  return found;
+}
+
+/// Rings of all levels have the limit to which refinement leads.
+TEST(DartLimit, IsWhereRefinementLeads) {
+  for (const CageScheme scheme : {CageScheme::catmark, CageScheme::loop}) {
+    for (const int n : {3, 4, 5, 6, 7, 8, 12}) {
+      const ControlCage cage = dome_with_darts(scheme, n);
+      for (const int end : {0, 2}) {
+        RefinedCage level(cage, 2);
+        int dart = nearest_dart(level, cage.points[std::size_t(end)]);
+        ASSERT_GE(dart, 0);
+        const std::optional<VertexLimit> limit = dart_limit(scheme, ring_about(level, dart));
+        ASSERT_TRUE(limit.has_value());
+        const double slack = 1e-14 * size_of(cage);
+        for (int k = 3; k <= 40; ++k) {
+          const auto faces = level.level().GetVertexFaces(dart);
+          level = level.refined({faces.begin(), faces.end()});
+          dart = nearest_dart(level, limit->x);
+          ASSERT_GE(dart, 0);
+          if (k > 10) continue;
+          const std::optional<VertexLimit> finer = dart_limit(scheme, ring_about(level, dart));
+          ASSERT_TRUE(finer.has_value());
+          EXPECT_LT(glm::distance(finer->x, limit->x), slack);
+          // The ring has the rounding of coordinates over its size.
+          EXPECT_LT(glm::length(glm::cross(finer->normal, limit->normal)), 1e-14 * std::pow(3, k));
+        }
+        // The way left halves about from level to level; it goes with a power of 0.62 at the most.
+        EXPECT_LT(glm::distance(level.points()[std::size_t(dart)], limit->x), 1e-7 * size_of(cage));
+      }
+    }
+  }
+}
+
+TEST(DartLimit, HasNoNormalWhereTheRingIsInOneLine) {
+  std::vector<dvec3> ring;
+  for (int k = 0; k < 9; ++k) ring.emplace_back(k, 2 * k, 3 * k);
+  EXPECT_FALSE(dart_limit(CageScheme::catmark, ring));
+  EXPECT_FALSE(dart_limit(CageScheme::loop, ring));
 }
 
 TEST(LimitPatches, RefineOnlyWhatCanTouch) {

@@ -353,6 +353,19 @@ std::span<const int> CageLevel::vertices(std::size_t cell) const {
   return {vertices.begin(), to_size(vertices.size())};
 }
 
+std::optional<std::size_t> CageLevel::across(std::size_t cell, std::size_t side) const {
+  const Far::TopologyLevel base = topology_->level();
+  const int own = cells_[cell].face;
+  const auto faces = base.GetEdgeFaces(base.GetFaceEdges(own)[to_int(side)]);
+  if (faces.size() != 2) return std::nullopt;
+  const int other = faces[0] == own ? faces[1] : faces[0];
+  const auto found =
+      std::lower_bound(cells_.begin(), cells_.end(), other,
+                       [](const CageCell& c, int face) { return c.face < face; });
+  if (found == cells_.end() || found->face != other) return std::nullopt;
+  return std::size_t(found - cells_.begin());
+}
+
 const dvec3& CageLevel::point(int vertex) const { return topology_->points[to_size(vertex)]; }
 
 int CageLevel::number(int vertex) const { return topology_->numbers[to_size(vertex)]; }

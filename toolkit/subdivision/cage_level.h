@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -68,6 +69,8 @@ class CageLevel {
   void enclosure(std::size_t cell, std::vector<dvec3>& points) const;
   /// The vertices of a cell in their order, numbers of this level.
   std::span<const int> vertices(std::size_t cell) const;
+  /// The cell beyond a side, from that corner to the next, if there is one and no other besides.
+  std::optional<std::size_t> across(std::size_t cell, std::size_t side) const;
   /// A vertex's control point.
   const dvec3& point(int vertex) const;
   /// The number of a vertex of a cell over all levels; the control cage's have their own.

@@ -117,6 +117,27 @@ std::vector<dvec3> turned(const CellPatch& patch, std::size_t corner, bool back 
   return result;
 }
 
+/// Lets a cap go on, with its first derivatives, as a regular cell does beyond its side between the
+/// corner `side` and the next: 1 or 2 of a quad, 1 of a triangle. The other one's first corner is
+/// that of the side's ends which is not opposite to the cap's first; of triangles, the one that is
+/// not on the side.
+void continue_beyond(std::vector<dvec3>& cap, const std::vector<dvec3>& beyond, std::size_t side) {
+  if (cap.size() == 16) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto at = [&](std::size_t row) { return side == 1 ? 4 * row + k : 4 * k + row; };
+      cap[at(3)] = beyond[at(0)];
+      cap[at(2)] = 2.0 * beyond[at(0)] - beyond[at(1)];
+    }
+    return;
+  }
+  const auto on_side = [&](std::size_t k) { return beyond[triangle_point(4, k, 4 - k)]; };
+  for (std::size_t k = 0; k <= 4; ++k) cap[triangle_point(4, 4 - k, k)] = on_side(k);
+  for (std::size_t k = 0; k <= 3; ++k) {
+    cap[triangle_point(4, 3 - k, k)] =
+        on_side(k) + on_side(k + 1) - beyond[triangle_point(4, k, 3 - k)];
+  }
+}
+
 /// Cells around an inner vertex, counter-clockwise, and which of their corners are there.
 struct CellFan {
   std::vector<std::size_t> cells;
@@ -148,6 +169,7 @@ class Refinement {
   void finish_or_refine(const std::vector<std::size_t>& region);
   std::optional<CellFan> fan(const std::vector<std::size_t>& region) const;
   std::vector<dvec3> ring(const CellFan& fan) const;
+  std::optional<std::vector<dvec3>> cap_of(const CellFan& fan, std::size_t k) const;
   void smooth_fan(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, double enough) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
@@ -420,6 +442,29 @@ std::vector<dvec3> Refinement::ring(const CellFan& fan) const {
   return points;
 }
 
+/// The cap of a fan's cell with the fan's vertex first. OpenSubdiv's caps at a dart, as if that
+/// were smooth, do not go on in the regular cells around: there they are made to.
+std::optional<std::vector<dvec3>> Refinement::cap_of(const CellFan& fan, std::size_t k) const {
+  const std::size_t cell = fan.cells[k];
+  std::vector<dvec3> cap = turned(patches_[cell], fan.corners[k]);
+  if (!fan.is_dart) return cap;
+  const std::span<const int> own = level_.vertices(cell);
+  for (std::size_t side = 1; side + 1 < own.size(); ++side) {
+    const std::size_t from = (fan.corners[k] + side) % own.size();
+    const std::size_t to = (from + 1) % own.size();
+    const std::optional<std::size_t> other = level_.across(cell, from);
+    if (!other || is_irregular(patches_[*other])) return std::nullopt;
+    const std::span<const int> others = level_.vertices(*other);
+    const auto corner = [&](int vertex) {
+      return std::size_t(std::find(others.begin(), others.end(), vertex) - others.begin());
+    };
+    const std::size_t first = own.size() == 3 ? (corner(own[from]) + 1) % 3
+                                              : corner(own[side == 1 ? from : to]);
+    continue_beyond(cap, turned(patches_[*other], first), side);
+  }
+  return cap;
+}
+
 /// Lets the caps of a region that is all cells around one inner vertex meet smoothly there.
 void Refinement::smooth_fan(const std::vector<std::size_t>& region) {
   const std::optional<CellFan> fan = this->fan(region);
@@ -433,7 +478,9 @@ void Refinement::smooth_fan(const std::vector<std::size_t>& region) {
   std::vector<std::vector<dvec3>> nets;
   nets.reserve(fan->cells.size());
   for (std::size_t k = 0; k < fan->cells.size(); ++k) {
-    nets.push_back(turned(patches_[fan->cells[k]], fan->corners[k]));
+    std::optional<std::vector<dvec3>> cap = cap_of(*fan, k);
+    if (!cap) return;
+    nets.push_back(std::move(*cap));
   }
   std::vector<std::vector<dvec3>> caps =
       quads ? smooth_quad_caps(nets, dart) : smooth_triangle_caps(nets, dart);
