@@ -222,9 +222,9 @@ ControlCage lattice_cage(unsigned seed) {
 
 TEST(CageHull, OfLattices) {
   for (const unsigned seed :
-       {0U,  1U,  2U,  3U,  4U,  6U,  7U,  8U,  9U,  10U, 11U, 12U, 13U, 14U, 15U, 16U,
-        17U, 19U, 20U, 22U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U, 34U, 35U, 36U,
-        37U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 73U, 78U, 80U}) {
+       {0U,  1U,  2U,  3U,  4U,  6U,  7U,  8U,  9U,  10U, 11U, 12U, 13U, 14U, 15U, 16U, 17U,
+        19U, 20U, 22U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U, 34U, 35U, 36U, 37U,
+        39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 73U, 78U, 80U}) {
     const std::string name = "lattice " + std::to_string(seed);
     const Model model = cage_model(lattice_cage(seed));
     const Hull hull = whole_hull(model, name);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "freeform.h"
 #include "models.h"
 #include "taut/bounds/support_query.h"
 
@@ -649,6 +650,36 @@ TEST(AtRest, OfEdgesAndWhatIsNotRuled) {
        {Contact{0, SourceKind::face, 1, 0.3, 0.4}, Contact{0, SourceKind::edge, 1, 0.3, 0}}) {
     expect_contact(at_rest(curved, c, n), c);
   }
+}
+
+/// Both pieces of a curve, from end to end; then it is at its own end.
+TEST(FoundOnEdge, FollowsTheEdge) {
+  const BezierCurve arc{{{-1, 0, 0, 1}, {0, 2, 0, 1}, {1, 0, 0, 1}}};
+  const Scene scene = make_scene(split({{}, {as_nurbs(arc)}, {}}, 0.5, 0.5));
+  const ContactGeometry geometry(scene);
+  ASSERT_EQ(geometry.part({0}).pieces().size(), 2U);
+  SupportQuery query(scene);
+  const Contact end = geometry.canonical(query(dvec3(-1, 0, 0)).contact);
+  ASSERT_EQ(end.kind, SourceKind::vertex);
+  const std::vector<Contact> pieces = piece_ends(geometry, end);
+  ASSERT_EQ(pieces.size(), 1U);
+  std::vector<dvec3> ends;
+  const auto visit = [&](const Contact& begin, const Contact& last) {
+    ends.push_back(geometry.point(begin));
+    ends.push_back(geometry.point(last));
+    return EdgeVisit::on;
+  };
+  EXPECT_FALSE(found_on_edge(geometry, pieces.front(), visit));
+  ASSERT_EQ(ends.size(), 4U);
+  EXPECT_EQ(ends[0], geometry.point(end));
+  EXPECT_EQ(ends[1], ends[2]);
+  EXPECT_EQ(ends[3], query(dvec3(1, 0, 0)).point);
+  int visits = 0;
+  const auto found = [&](const Contact&, const Contact&) {
+    return ++visits == 2 ? EdgeVisit::found : EdgeVisit::on;
+  };
+  EXPECT_TRUE(found_on_edge(geometry, pieces.front(), found));
+  EXPECT_EQ(visits, 2);
 }
 
 }  // namespace

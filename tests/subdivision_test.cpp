@@ -239,9 +239,9 @@ std::vector<dvec3> ring_about(const RefinedCage& cage, int dart) {
   const auto level = cage.level();
   const auto edges = level.GetVertexEdges(dart);
   const auto faces = level.GetVertexFaces(dart);
-  const int first = int(std::find_if(edges.begin(), edges.end(),
-                                     [&](int e) { return level.IsEdgeInfSharp(e); }) -
-                        edges.begin());
+  const int first =
+      int(std::find_if(edges.begin(), edges.end(), [&](int e) { return level.IsEdgeInfSharp(e); }) -
+          edges.begin());
   std::vector<int> ring = {dart};
   for (int k = 0; k < edges.size(); ++k) {
     const auto ends = level.GetEdgeVertices(edges[(first + k) % edges.size()]);

@@ -13,6 +13,7 @@
 #include "taut/hull/in_line_contacts.h"
 #include "taut/hull/level_way.h"
 #include "taut/hull/merging.h"
+#include "taut/hull/tied_end.h"
 
 namespace taut {
 namespace {
@@ -39,7 +40,7 @@ constexpr double stuck_share = 0.01;
 constexpr int idle_limit = 12;
 constexpr int bisection_limit = 60;
 /// Contacts nearer than this are lost where support values tell them apart.
-constexpr double least_distance = 1e-6;
+constexpr double lost_distance = 1e-6;
 /// Contacts that end and hop to others that tie with them, at most, and the first step after that.
 constexpr int hop_limit = 16;
 constexpr double level_hop_step = 1e-6;
@@ -174,7 +175,7 @@ std::optional<Trace::Pace> Trace::reaches_flat_ends() {
   return exchange(event);
 }
 
-/// Ends the arc where the contacts merge, if they do.
+/// Ends the arc as told, if it is.
 bool Trace::ends_in(std::optional<MergedEnd> end) {
   if (!end) return false;
   const std::vector<Ruling>& rest = end->pieces.front().rulings;
@@ -281,7 +282,7 @@ std::optional<Trace::Pace> Trace::near_merging() {
   if (ends_in(merged_end(point_))) return Pace::ended;
   if (apart < std::min(1.0, -rate) * least_distance_at(point_)) {
     if (ends_in(tied_end(point_))) return Pace::ended;
-    if (apart < least_distance) return lost("two contacts approach each other and do not merge");
+    if (apart < lost_distance) return lost("two contacts approach each other and do not merge");
   }
   // A third contact may yet surpass them.
   step_ = -0.5 * apart / rate;
@@ -472,11 +473,9 @@ void Trace::settle_at_segment(std::size_t i) {
   if (own.kind != SourceKind::edge || other.kind != SourceKind::vertex) return;
   const Contact vertex = snapped(geometry_, own, told_distance);
   if (vertex.kind != SourceKind::vertex) return;
-  for (const ContactGeometry::PieceEnd& end : geometry_.ends(vertex)) {
-    const int instance = end.instance < 0 ? vertex.instance : end.instance;
-    const Contact piece{instance, SourceKind::edge, end.piece, double(end.end), 0};
+  for (const Contact& piece : piece_ends(geometry_, vertex)) {
     if (!geometry_.is_straight(piece)) continue;
-    if (same_element(geometry_.straight_end(piece, 1 - end.end), other)) {
+    if (same_element(geometry_.straight_end(piece, 1 - int(piece.u)), other)) {
       own = vertex;
       return;
     }
@@ -498,14 +497,11 @@ bool Trace::hops_ahead() {
       glm::length(point_.tangent.x[0]) >= glm::length(point_.tangent.x[1]) ? 0 : 1;
   for (const std::size_t i : {faster, 1 - faster}) {
     if (hops_ >= hop_limit) return false;
-    const Contact from = start.contact[i];
-    const std::optional<Contact> ahead =
-        tied_ahead(geometry_, from, point_.tangent.parameter[i], start.n);
+    const std::optional<LevelStep> ahead =
+        tied_ahead(geometry_, start.contact[i], point_.tangent.parameter[i], start.n);
     if (!ahead) continue;
-    const auto way = level_way(geometry_, from, *ahead, start.n);
-    if (!way) continue;
     ++hops_;
-    for (const WayCrossing& crossing : *way) {
+    for (const WayCrossing& crossing : ahead->way) {
       point_.at.contact[i] = crossing.from;
       point_.at.evaluate(geometry_);
       push(point_.at.ruling());
@@ -513,12 +509,12 @@ bool Trace::hops_ahead() {
       point_.at.evaluate(geometry_);
       begin_piece(point_.at.ruling());
     }
-    point_.at.contact[i] = *ahead;
+    point_.at.contact[i] = ahead->to;
     point_.at.evaluate(geometry_);
     point_.tangent = CurveTangent();
     if (!point_.settle()) return false;
     push(point_.at.ruling());
-    if (!way->empty()) begin_piece(point_.at.ruling());
+    if (!ahead->way.empty()) begin_piece(point_.at.ruling());
     step_ = level_hop_step;
     return true;
   }

@@ -78,6 +78,8 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   return Contact{c.instance, SourceKind::edge, next, t, 0};
 }
 
+/// Pieces of an edge in a row.
+constexpr int run_limit = 64;
 /// A contact whose parameter is so near to a collapsed side is at the pole.
 constexpr double pole_parameter = 1e-9;
 /// How near to a pole, as a parameter, a climb in the direction of its normal need not go on.
@@ -469,6 +471,28 @@ std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
     }
   }
   return std::nullopt;
+}
+
+std::vector<Contact> piece_ends(const ContactGeometry& geometry, const Contact& vertex) {
+  std::vector<Contact> result;
+  for (const ContactGeometry::PieceEnd& end : geometry.ends(vertex)) {
+    result.push_back(at_end(vertex, end));
+  }
+  return result;
+}
+
+bool found_on_edge(
+    const ContactGeometry& geometry, const Contact& from,
+    const std::function<EdgeVisit(const Contact& begin, const Contact& end)>& visit) {
+  std::optional<Contact> at = from;
+  for (int k = 0; k < run_limit && at && at->kind == SourceKind::edge; ++k) {
+    Contact end = *at;
+    end.u = at->u < 0.5 ? 1 : 0;
+    const EdgeVisit answer = visit(*at, end);
+    if (answer != EdgeVisit::on) return answer == EdgeVisit::found;
+    at = beyond(geometry, end, {ContactExit::Kind::end, int(end.u)});
+  }
+  return false;
 }
 
 bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side) {

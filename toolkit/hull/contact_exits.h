@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -50,6 +51,16 @@ Contact at_exit(Contact c, const ContactExit& exit);
 /// there is no next one that is known (the pole of a collapsed side).
 std::optional<Contact> beyond(const ContactGeometry& geometry, const Contact& c,
                               const ContactExit& exit);
+
+/// The vertex as the ends of all pieces that have it.
+std::vector<Contact> piece_ends(const ContactGeometry& geometry, const Contact& vertex);
+
+/// Follows an edge from the end of a piece on. `visit` gets each piece at its beginning and at its
+/// end, and tells whether what was looked for is there, or ends the search. False where the edge
+/// ends before.
+enum class EdgeVisit { found, lost, on };
+bool found_on_edge(const ContactGeometry& geometry, const Contact& from,
+                   const std::function<EdgeVisit(const Contact& begin, const Contact& end)>& visit);
 
 /// A side collapsed to a point at which the surface is smooth.
 bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side);

@@ -32,6 +32,8 @@ std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const d
 /// The normal curvature of the contact's element where n supports, the least of those along its
 /// tangents, is below `least`. Vertices are not flat.
 bool is_flat(const ContactJet& j, const dvec3& n, double least);
+/// The least in the scene's frame with which a contact's motion is told.
+inline constexpr double least_curvature = 1e-8;
 
 /// A model's elements in the scene's frame, and how they meet: what all contacts look like.
 ///

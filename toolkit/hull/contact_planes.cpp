@@ -10,7 +10,8 @@ namespace {
 
 /// Sine of the angle below which control points are in line.
 constexpr double least_sine = 1e-6;
-/// Slope below which pieces are level.
+/// Slope below which pieces are level. A curve that leaves the plane by its third derivative ties
+/// with it in height over 1e-4 of the part and more: tiny pieces there are told by slopes alone.
 constexpr double least_slope = 1e-10;
 
 std::vector<dvec3> control_points(const BezierCurve& curve) {

@@ -45,9 +45,6 @@ constexpr double corner_distance = 1e-9;
 /// Directions in which a curved side is asked for contacts beyond it differ by no more, in radians.
 constexpr double side_angle = 0.2;
 
-/// Edges in a row.
-constexpr int run_limit = 64;
-
 /// The corners of the contacts' convex hull, counter-clockwise about n.
 FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
   const auto turn = [&](std::size_t k) {
@@ -135,7 +132,7 @@ class ContactSet {
   FacetContacts line() const;
   std::vector<Probe> probes(const FacetContacts& f) const;
   bool is_beyond_end(const FacetContacts& f, const Contact& c) const;
-  bool leads_level(Contact from, const Contact& c) const;
+  bool leads_level(const Contact& from, const Contact& c) const;
   std::optional<Contact> found(const dvec3& towards);
 
   const ContactGeometry& geometry_;
@@ -243,19 +240,14 @@ std::optional<Contact> ContactSet::found(const dvec3& towards) {
 
 /// From the end of a piece on, other edges lead to the contact that are not straight and leave the
 /// plane by no more than a tie.
-bool ContactSet::leads_level(Contact from, const Contact& c) const {
+bool ContactSet::leads_level(const Contact& from, const Contact& c) const {
   const dvec3 x = geometry_.point(c);
-  std::optional<Contact> at = from;
-  for (int k = 0; k < run_limit && at && at->kind == SourceKind::edge; ++k) {
-    if (geometry_.is_straight(*at)) return false;
-    if (same_element(*at, c)) return true;
-    at->u = at->u < 0.5 ? 1 : 0;
-    const dvec3 end = geometry_.point(*at);
-    if (glm::distance(end, x) <= same_contact) return true;
-    if (glm::dot(end, n_) < least_height()) return false;
-    at = beyond(geometry_, *at, {ContactExit::Kind::end, int(at->u)});
-  }
-  return false;
+  return found_on_edge(geometry_, from, [&](const Contact& begin, const Contact& end) {
+    if (geometry_.is_straight(begin)) return EdgeVisit::lost;
+    const dvec3 there = geometry_.point(end);
+    if (same_element(begin, c) || glm::distance(there, x) <= same_contact) return EdgeVisit::found;
+    return glm::dot(there, n_) < least_height() ? EdgeVisit::lost : EdgeVisit::on;
+  });
 }
 
 /// The contact is where the end of a curved side of the outline goes on so nearly in the plane that
@@ -268,9 +260,7 @@ bool ContactSet::is_beyond_end(const FacetContacts& f, const Contact& c) const {
     const std::optional<Contact> next = beyond(geometry_, end, {ContactExit::Kind::end, int(t)});
     if (next && next->kind == SourceKind::edge) result.push_back(*next);
     if (!next || next->kind != SourceKind::vertex) return result;
-    for (const ContactGeometry::PieceEnd& other : geometry_.ends(*next)) {
-      const int instance = other.instance < 0 ? next->instance : other.instance;
-      const Contact begin{instance, SourceKind::edge, other.piece, double(other.end), 0};
+    for (const Contact& begin : piece_ends(geometry_, *next)) {
       if (!same_element(begin, end)) result.push_back(begin);
     }
     return result;

@@ -357,8 +357,8 @@ struct Shear {
   double operator()(double t) const { return start + slope * t; }
 };
 
-/// The asymptotic directions across the side in two of its points, joined by linear functions: those
-/// that may be asymptotic all along it.
+/// The asymptotic directions across the side in two of its points, joined by linear functions:
+/// those that may be asymptotic all along it.
 std::vector<Shear> possible_shears(const ContactGeometry& geometry, const Contact& patch,
                                    Side side) {
   // Away from the ends, the middle and the quarters, where symmetric models have their events.
@@ -740,10 +740,8 @@ class Polish {
     }
   }
   void end() {
-    for (const ContactGeometry::PieceEnd& own : geometry_.ends(near_.contact)) {
-      const Contact c{own.instance < 0 ? near_.contact.instance : own.instance, SourceKind::edge,
-                      own.piece, 0, 0};
-      for (const double sign : {1.0, -1.0}) keep(piece_end(geometry_, c, own.end, sign));
+    for (const Contact& c : piece_ends(geometry_, near_.contact)) {
+      for (const double sign : {1.0, -1.0}) keep(piece_end(geometry_, c, int(c.u), sign));
     }
   }
   void on_border(const Contact& c, Side side) {

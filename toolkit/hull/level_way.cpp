@@ -13,8 +13,6 @@ namespace {
 constexpr double longest_way = 1e-3;
 /// Contacts nearer to each other than this are one.
 constexpr double shortest_way = 1e-7;
-/// Normal curvature below which a contact is taken for flat.
-constexpr double least_curvature = 1e-8;
 /// Elements in a row.
 constexpr int element_limit = 8;
 /// Parts of the way in an element, at the ends of which heights are compared.
@@ -70,10 +68,8 @@ std::optional<Contact> edge_towards(const ContactGeometry& geometry, const Conta
   std::optional<Contact> best;
   double most = 0;
   const dvec3 way = unit(x - geometry.point(vertex));
-  for (const ContactGeometry::PieceEnd& end : geometry.ends(vertex)) {
-    const Contact c{end.instance < 0 ? vertex.instance : end.instance, SourceKind::edge, end.piece,
-                    double(end.end), 0};
-    const double along = (end.end == 0 ? 1 : -1) * glm::dot(unit(geometry.jet(c).dx[0]), way);
+  for (const Contact& c : piece_ends(geometry, vertex)) {
+    const double along = (c.u == 0 ? 1 : -1) * glm::dot(unit(geometry.jet(c).dx[0]), way);
     if (along <= most) continue;
     most = along;
     best = c;
@@ -162,11 +158,11 @@ std::optional<std::vector<WayCrossing>> level_way(const ContactGeometry& geometr
   return crossings;
 }
 
-std::optional<Contact> tied_ahead(const ContactGeometry& geometry, const Contact& c,
-                                  const dvec2& rate, const dvec3& n) {
+std::optional<LevelStep> tied_ahead(const ContactGeometry& geometry, const Contact& c,
+                                    const dvec2& rate, const dvec3& n) {
   const ContactJet j = geometry.jet(c);
   const dvec3 along = unit(rate.x * j.dx[0] + rate.y * j.dx[1]);
-  std::optional<Contact> best;
+  std::optional<LevelStep> best;
   double highest = 0;
   for (double reach = shortest_way; reach < longest_way; reach *= 2) {
     const std::optional<Contact> from = walked(geometry, c, j.x + reach * along);
@@ -176,8 +172,9 @@ std::optional<Contact> tied_ahead(const ContactGeometry& geometry, const Contact
     const dvec3 x = geometry.point(*top);
     const double height = glm::dot(x, n);
     if (glm::distance(x, j.x) < shortest_way || (best && height <= highest)) continue;
-    if (!level_way(geometry, c, *top, n)) continue;
-    best = top;
+    std::optional<std::vector<WayCrossing>> way = level_way(geometry, c, *top, n);
+    if (!way) continue;
+    best = LevelStep{*top, std::move(*way)};
     highest = height;
   }
   return best;

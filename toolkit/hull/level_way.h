@@ -19,10 +19,16 @@ struct WayCrossing {
 std::optional<std::vector<WayCrossing>> level_way(const ContactGeometry& geometry, const Contact& a,
                                                   const Contact& b, const dvec3& n);
 
+/// A contact to which a level way leads.
+struct LevelStep {
+  Contact to;
+  std::vector<WayCrossing> way;
+};
+
 /// The contact that a climb leads to from beyond where the contact stands, ahead at these rates of
 /// its parameters: another local maximum of x . n near by, if the way there is level. None
 /// elsewhere.
-std::optional<Contact> tied_ahead(const ContactGeometry& geometry, const Contact& c,
-                                  const dvec2& rate, const dvec3& n);
+std::optional<LevelStep> tied_ahead(const ContactGeometry& geometry, const Contact& c,
+                                    const dvec2& rate, const dvec3& n);
 
 }  // namespace taut

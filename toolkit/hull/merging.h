@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct MergedEnd {
 /// extrapolated; in a pole about which planes touch twice; or where two surfaces or curves touch.
 std::optional<MergedEnd> merged_end(const CurvePoint& point);
 
-/// The end of two contacts of one smooth surface or curve that support values do not tell apart any
-/// more (level_way): where they are, without a free end that is known.
-std::optional<MergedEnd> tied_end(const CurvePoint& point);
+/// The direction in which two contacts merge at a common point: a face's normal; across the
+/// tangents of two edges; of an edge and its end, across the edge's osculating plane. `near` tells
+/// the sense, and the direction where these are none.
+dvec3 limit_normal(const std::array<ContactJet, 2>& jet, const dvec3& near);
 
 }  // namespace taut

@@ -16,8 +16,6 @@ constexpr double first_order = 0.2;
 constexpr int newton_limit = 60;
 /// Values of two contacts that differ by so little are equal.
 constexpr double parting_tie = 1e-15;
-/// Straight pieces of edges in a row.
-constexpr int run_limit = 64;
 
 /// From a vertex or the end of a piece, straight pieces of edges lead one after the other to the
 /// point. In a direction across them all of them support: no climb leads from one end to the other.
@@ -31,15 +29,11 @@ bool leads_straight(const ContactGeometry& geometry, const Contact& from, const 
     if (next && next->kind == SourceKind::edge) starts.push_back(*next);
   }
   return std::any_of(starts.begin(), starts.end(), [&](const Contact& start) {
-    std::optional<Contact> at = start;
-    for (int k = 0; k < run_limit && at && at->kind == SourceKind::edge; ++k) {
-      if (!is_straight(geometry.curve(*at))) return false;
-      const int end = at->u < 0.5 ? 1 : 0;
-      at->u = end;
-      if (glm::distance(geometry.point(*at), x) < branch_distance(geometry)) return true;
-      at = beyond(geometry, *at, {ContactExit::Kind::end, end});
-    }
-    return false;
+    return found_on_edge(geometry, start, [&](const Contact& begin, const Contact& end) {
+      if (!is_straight(geometry.curve(begin))) return EdgeVisit::lost;
+      const double way = glm::distance(geometry.point(end), x);
+      return way < branch_distance(geometry) ? EdgeVisit::found : EdgeVisit::on;
+    });
   });
 }
 

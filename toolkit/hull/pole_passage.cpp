@@ -1,7 +1,6 @@
 #include "taut/hull/pole_passage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "taut/core/tolerances.h"
@@ -20,8 +19,6 @@ constexpr double turn_factor = 0.6;
 constexpr int turn_count = 30;
 /// Share of such a turn by which contacts are told apart.
 constexpr double share_inward = 0.1;
-/// Normal curvature, in the scene's frame, below which a contact is taken for flat.
-constexpr double least_curvature = 1e-8;
 
 }  // namespace
 

@@ -278,9 +278,9 @@ std::vector<CellPatch> CageLevel::patches() const {
     result[c].smooth = topology.smooth_sides(cells_[c].face);
     const int own = cells_[c].face;
     if (topology.scheme == CageScheme::loop) {
-      if (const std::optional<int> corner = lone_corner(topology.level(), own)) {
+      if (auto points = lone_triangle(topology.level(), topology.points, own)) {
         result[c].kind = CellPatch::Kind::regular;
-        result[c].points = lone_triangle(topology.level(), topology.points, own, *corner);
+        result[c].points = std::move(*points);
         result[c].degree = 4;
         continue;
       }
@@ -359,9 +359,8 @@ std::optional<std::size_t> CageLevel::across(std::size_t cell, std::size_t side)
   const auto faces = base.GetEdgeFaces(base.GetFaceEdges(own)[to_int(side)]);
   if (faces.size() != 2) return std::nullopt;
   const int other = faces[0] == own ? faces[1] : faces[0];
-  const auto found =
-      std::lower_bound(cells_.begin(), cells_.end(), other,
-                       [](const CageCell& c, int face) { return c.face < face; });
+  const auto found = std::lower_bound(cells_.begin(), cells_.end(), other,
+                                      [](const CageCell& c, int face) { return c.face < face; });
   if (found == cells_.end() || found->face != other) return std::nullopt;
   return std::size_t(found - cells_.begin());
 }

@@ -88,8 +88,8 @@ std::optional<VertexLimit> dart_limit(CageScheme scheme, std::span<const dvec3> 
   const auto size = Index(ring.size());
   const Ring about{quads ? (size - 1) / 2 : size - 1, quads};
   const MatrixXd s = quads ? catmark_matrix(about) : loop_matrix(about);
-  // Of the even parts' eigenvalues 1 and the next are simple, of the odd parts' the greatest; of all
-  // but 1 these two are the greatest (seen for 3 to 50 edges).
+  // Of the even parts' eigenvalues 1 and the next are simple, of the odd parts' the greatest; of
+  // all but 1 these two are the greatest (seen for 3 to 50 edges).
   MatrixXd even = 0.5 * s;
   MatrixXd odd = 0.5 * s;
   for (Index k = 0; k < size; ++k) {

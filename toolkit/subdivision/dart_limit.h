@@ -14,10 +14,10 @@ struct VertexLimit {
   dvec3 normal;  ///< unit
 };
 
-/// The limit at a dart: an inner vertex at which one infinitely sharp edge ends. By the eigenvectors
-/// of its own subdivision matrix, in which the points about the vertex are those of a smooth one but
-/// for the middle of that edge. Their part that is even and their part that is odd over the edge
-/// tell one tangent each. (OpenSubdiv has the limit of a smooth vertex there.)
+/// The limit at a dart: an inner vertex at which one infinitely sharp edge ends. By the
+/// eigenvectors of its own subdivision matrix, in which the points about the vertex are those of a
+/// smooth one but for the middle of that edge. Their part that is even and their part that is odd
+/// over the edge tell one tangent each. (OpenSubdiv has the limit of a smooth vertex there.)
 ///
 /// `ring`: the vertex; the other ends of its n edges, the sharp one first, counter-clockwise; in
 /// cages of quads then the corners between each edge and the next. None where the ring has no

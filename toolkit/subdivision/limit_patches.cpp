@@ -391,9 +391,8 @@ std::optional<CellFan> Refinement::fan(const std::vector<std::size_t>& region) c
   };
   const std::span<const int> first = level_.vertices(region.front());
   const auto centre = std::find_if(first.begin(), first.end(), [&](int v) {
-    return std::all_of(region.begin(), region.end(), [&](std::size_t c) {
-      return place_in(c, v) < level_.vertices(c).size();
-    });
+    return std::all_of(region.begin(), region.end(),
+                       [&](std::size_t c) { return place_in(c, v) < level_.vertices(c).size(); });
   });
   if (centre == first.end()) return std::nullopt;
   // From spoke to spoke.
@@ -406,9 +405,8 @@ std::optional<CellFan> Refinement::fan(const std::vector<std::size_t>& region) c
     fan.cells.push_back(c);
     fan.corners.push_back(place_in(c, *centre));
     const int last = spoke_end(c, level_.vertices(c).size() - 1);
-    const auto next = std::find_if(region.begin(), region.end(), [&](std::size_t other) {
-      return spoke_end(other, 1) == last;
-    });
+    const auto next = std::find_if(region.begin(), region.end(),
+                                   [&](std::size_t other) { return spoke_end(other, 1) == last; });
     if (next == region.end()) return std::nullopt;
     c = *next;
     const bool closes = fan.cells.size() == n && c == fan.cells.front();
@@ -458,8 +456,8 @@ std::optional<std::vector<dvec3>> Refinement::cap_of(const CellFan& fan, std::si
     const auto corner = [&](int vertex) {
       return std::size_t(std::find(others.begin(), others.end(), vertex) - others.begin());
     };
-    const std::size_t first = own.size() == 3 ? (corner(own[from]) + 1) % 3
-                                              : corner(own[side == 1 ? from : to]);
+    const std::size_t first =
+        own.size() == 3 ? (corner(own[from]) + 1) % 3 : corner(own[side == 1 ? from : to]);
     continue_beyond(cap, turned(patches_[*other], first), side);
   }
   return cap;

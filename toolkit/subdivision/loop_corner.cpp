@@ -77,8 +77,6 @@ bool is_smooth(const Far::TopologyLevel& level, int edge) {
   return !is_crease(level, edge) && !level.IsEdgeSemiSharp(edge);
 }
 
-int edge_between(const Far::TopologyLevel& level, int a, int b) { return level.FindEdge(a, b); }
-
 /// The third vertex of the other triangle at a smooth edge of this one, or -1.
 int opposite(const Far::TopologyLevel& level, int face, int edge) {
   const auto faces = level.GetEdgeFaces(edge);
@@ -114,10 +112,10 @@ std::optional<Neighbors> neighbors(const Far::TopologyLevel& level, int face, in
   n.v = vertices[corner];
   n.a = vertices[(corner + 1) % 3];
   n.b = vertices[(corner + 2) % 3];
-  const int across = edge_between(level, n.a, n.b);
-  if (!is_crease(level, edge_between(level, n.v, n.a)) ||
-      !is_crease(level, edge_between(level, n.v, n.b)) || !is_smooth(level, across) ||
-      !is_on_crease(level, n.v) || !is_on_crease(level, n.a) || !is_on_crease(level, n.b)) {
+  const int across = level.FindEdge(n.a, n.b);
+  if (!is_crease(level, level.FindEdge(n.v, n.a)) || !is_crease(level, level.FindEdge(n.v, n.b)) ||
+      !is_smooth(level, across) || !is_on_crease(level, n.v) || !is_on_crease(level, n.a) ||
+      !is_on_crease(level, n.b)) {
     return std::nullopt;
   }
   n.over = opposite(level, face, across);
@@ -125,10 +123,10 @@ std::optional<Neighbors> neighbors(const Far::TopologyLevel& level, int face, in
   const auto faces = level.GetEdgeFaces(across);
   const int next = faces[0] == face ? faces[1] : faces[0];
   const auto beyond = [&](int end) {
-    const int edge = edge_between(level, end, n.over);
+    const int edge = level.FindEdge(end, n.over);
     if (!is_smooth(level, edge)) return -1;
     const int after = opposite(level, next, edge);
-    return after >= 0 && is_crease(level, edge_between(level, end, after)) ? after : -1;
+    return after >= 0 && is_crease(level, level.FindEdge(end, after)) ? after : -1;
   };
   n.after_a = beyond(n.a);
   n.after_b = beyond(n.b);
@@ -137,17 +135,14 @@ std::optional<Neighbors> neighbors(const Far::TopologyLevel& level, int face, in
 
 }  // namespace
 
-std::optional<int> lone_corner(const Far::TopologyLevel& level, int face) {
+std::optional<std::vector<dvec3>> lone_triangle(const Far::TopologyLevel& level,
+                                                std::span<const dvec3> points, int face) {
   if (level.GetFaceVertices(face).size() != 3) return std::nullopt;
-  for (int corner = 0; corner < 3; ++corner) {
-    if (neighbors(level, face, corner)) return corner;
-  }
-  return std::nullopt;
-}
-
-std::vector<dvec3> lone_triangle(const Far::TopologyLevel& level, std::span<const dvec3> points,
-                                 int face, int corner) {
-  const Neighbors n = *neighbors(level, face, corner);
+  int corner = 0;
+  std::optional<Neighbors> found;
+  while (corner < 3 && !(found = neighbors(level, face, corner))) ++corner;
+  if (!found) return std::nullopt;
+  const Neighbors& n = *found;
   const auto point = [&](int vertex) { return points[to_size(vertex)]; };
   const dvec3 v = point(n.v), a = point(n.a), b = point(n.b);
   const dvec3 over = point(n.over), after_a = point(n.after_a), after_b = point(n.after_b);

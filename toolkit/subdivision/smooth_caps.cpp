@@ -181,8 +181,8 @@ class Fan {
   std::vector<Points> curves_, right_, left_;
 };
 
-/// The corner of a net as it is at a dart: the vertex where it belongs, the first derivatives in its
-/// tangent plane, the mixed one as it was.
+/// The corner of a net as it is at a dart: the vertex where it belongs, the first derivatives in
+/// its tangent plane, the mixed one as it was.
 template <class AnyNet>
 void move_to(AnyNet& net, const VertexLimit& dart) {
   const dvec3 vertex = net.at(0, 0);

@@ -19,8 +19,9 @@ namespace taut {
 /// first derivatives of both along the sides; so are the vertex, and its tangent plane. Second
 /// derivatives at the vertex are those of one quadratic form where the caps' own tell more than it
 /// (n > 5). At a dart the first spoke is the sharp edge, along which the caps meet with two tangent
-/// planes, and the vertex's place and tangent plane are the given ones. The caps may differ from the given ones by as much as these are not smooth. Mirrored
-/// and rotated cells give mirrored and rotated caps, to within rounding.
+/// planes, and the vertex's place and tangent plane are the given ones. The caps may differ from
+/// the given ones by as much as these are not smooth. Mirrored and rotated cells give mirrored and
+/// rotated caps, to within rounding.
 /// @pre n >= 3; the tangents of the spokes in the vertex are an affine image of those of a regular
 /// polygon; the cells are a regular lattice around the spokes' other ends
 /// @{
