@@ -58,7 +58,7 @@ constexpr double beside_border = 0.1;
 
 bool within(double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; }
 
-/// A root of a side or piece where it is surely within it, and at its end where it may be.
+/// A root along a side where it is surely within, and at the side's end where it may be.
 double placed(double t) {
   if (t < parameter_slack) return 0;
   return t > 1 - parameter_slack ? 1 : t;
@@ -426,19 +426,15 @@ bool parts_at_corner(const ContactGeometry& geometry, const Contact& a, const Co
 /// At a vertex, in the plane of two edges that end there: above it both edges' contacts compete,
 /// unless a face's takes over between them.
 std::optional<FreeEnd> corner_end(const ContactGeometry& geometry, const Contact& vertex,
-                                  const std::array<ContactGeometry::PieceEnd, 2>& ends,
-                                  double sign) {
-  std::array<Contact, 2> c;
+                                  const std::array<Contact, 2>& c, double sign) {
   std::array<CurveBend, 2> bend;
   std::array<dvec3, 2> away;
   for (std::size_t i = 0; i < 2; ++i) {
-    const int instance = ends[i].instance < 0 ? vertex.instance : ends[i].instance;
-    c[i] = {instance, SourceKind::edge, ends[i].piece, double(ends[i].end), 0};
-    const bool seam = geometry.part(c[i]).pieces()[std::size_t(ends[i].piece)].edge < 0;
+    const bool seam = geometry.part(c[i]).pieces()[std::size_t(c[i].element)].edge < 0;
     const std::optional<CurveBend> b = curve_bend(geometry, c[i]);
     if (seam || !b || geometry.is_straight(c[i])) return std::nullopt;
     bend[i] = *b;
-    away[i] = ends[i].end == 0 ? b->along : -b->along;
+    away[i] = c[i].u == 0 ? b->along : -b->along;
   }
   const dvec3 cross = glm::cross(away[0], away[1]);
   if (glm::length(cross) < smooth_join_angle) return std::nullopt;
@@ -456,7 +452,7 @@ std::optional<FreeEnd> corner_end(const ContactGeometry& geometry, const Contact
 /// Calls visit with the candidates at a vertex between any two of its edges.
 template <class Visit>
 void each_corner_end(const ContactGeometry& geometry, const Contact& vertex, const Visit& visit) {
-  const std::vector<ContactGeometry::PieceEnd>& ends = geometry.ends(vertex);
+  const std::vector<Contact> ends = piece_ends(geometry, vertex);
   for (std::size_t i = 0; i < ends.size(); ++i) {
     for (std::size_t j = i + 1; j < ends.size(); ++j) {
       for (const double sign : {1.0, -1.0}) {

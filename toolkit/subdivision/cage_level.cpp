@@ -359,6 +359,7 @@ std::optional<std::size_t> CageLevel::across(std::size_t cell, std::size_t side)
   const auto faces = base.GetEdgeFaces(base.GetFaceEdges(own)[to_int(side)]);
   if (faces.size() != 2) return std::nullopt;
   const int other = faces[0] == own ? faces[1] : faces[0];
+  // Cells are in the order of their faces.
   const auto found = std::lower_bound(cells_.begin(), cells_.end(), other,
                                       [](const CageCell& c, int face) { return c.face < face; });
   if (found == cells_.end() || found->face != other) return std::nullopt;

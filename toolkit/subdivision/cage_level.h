@@ -69,7 +69,8 @@ class CageLevel {
   void enclosure(std::size_t cell, std::vector<dvec3>& points) const;
   /// The vertices of a cell in their order, numbers of this level.
   std::span<const int> vertices(std::size_t cell) const;
-  /// The cell beyond a side, from that corner to the next, if there is one and no other besides.
+  /// The cell beyond the side from a corner to the next. None where there is no cell, or more than
+  /// one.
   std::optional<std::size_t> across(std::size_t cell, std::size_t side) const;
   /// A vertex's control point.
   const dvec3& point(int vertex) const;
