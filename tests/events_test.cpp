@@ -355,6 +355,49 @@ TEST(Events, ParabolicCurveTouchingABorder) {
   }
 }
 
+// ---- A face that is touched inside of its straight edge
+
+/// z = -((x - 0.1)^2 y + y^m): the plane that turns about the edge y = 0 meets the sheet in
+/// (0.1, 0, 0), as z = 0, in line with the edge's ends. A curve leads from there to each of them.
+TEST(Events, FaceTouchedInsideOfItsStraightEdge) {
+  const double a = -1.1;
+  const double b = 0.9;
+  const std::array<double, 3> square = {a * a, a * b, b * b};  // of x - 0.1
+  for (const int power : {2, 3}) {
+    BezierPatch sheet{2, 3, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        const double y = double(j) / 3;
+        const double raised = j == 3 ? 1 : j == 2 && power == 2 ? 1.0 / 3 : 0;
+        sheet.points.emplace_back(double(i) - 1, y, -square[i] * y - raised, 1);
+      }
+    }
+    const Shape whole{{as_nurbs(sheet)}, {}, {}};
+    for (const Shape& shape : {whole, split(whole, 0.55, 0.5), split(whole, 0.3, 1e-3)}) {
+      for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+        SCOPED_TRACE(power);
+        const Scene scene = make_scene(mapped(shape, turn));
+        const Hull hull = precise_hull(scene, {.relative = 1e-2, .threads = 1, .progress = {}});
+        ASSERT_NE(hull.boundary, nullptr);
+        expect_complete(*hull.boundary);
+        const dvec3 place = hull.boundary->frame.to_frame(turn * dvec3(0.1, 0, 0));
+        const dvec3 normal = turn * dvec3(0, 0, 1);
+        const auto touches = [&](const HullFace& face) {
+          return face.kind == FaceKind::facet && glm::distance(face.n, normal) < 1e-12 &&
+                 face.points.size() == 3 &&
+                 std::any_of(face.points.begin(), face.points.end(),
+                             [&](const dvec3& x) { return glm::distance(x, place) < 1e-12; });
+        };
+        const std::vector<HullFace>& faces = hull.boundary->faces;
+        EXPECT_EQ(std::count_if(faces.begin(), faces.end(), touches), 1);
+        const BoundaryFacts facts = boundary_facts(scene, hull, 300);
+        EXPECT_TRUE(facts.sound()) << facts;
+        EXPECT_LE(measures_of(scene, hull).accuracy, 1e-9);
+      }
+    }
+  }
+}
+
 // ---- Tips, open borders, flat faces
 
 /// All directions of a fan belong to each tip; the surface itself is the hull.

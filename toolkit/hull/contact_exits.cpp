@@ -211,16 +211,16 @@ class Climb {
     const double vv = glm::dot(j.dyy, n_);
     dvec2 step(0.0);
     const double det = uu * vv - uv * uv;
-    if (uu < 0 && det > 0) {
+    if (uu < 0 && det > geometry_.rounding() * std::abs(uu + vv)) {
       step = {(uv * slope.y - vv * slope.x) / det, (uv * slope.x - uu * slope.y) / det};
     } else {
       for (int a = 0; a < 2; ++a) {
         if (size[a] == 0) continue;
         const double second = a == 0 ? uu : vv;
         // Where the value is not concave, far, off a minimum too; where it is flat, nowhere.
-        const bool level =
-            std::abs(slope[a]) <= slack(size[a] + small_tangent) && !is_bent(second, size[a]);
-        step[a] = second < 0 ? -slope[a] / second : level ? 0 : std::copysign(stride, slope[a]);
+        const bool level = std::abs(slope[a]) <= slack(size[a] + small_tangent) &&
+                           !is_bent(std::abs(second), size[a]);
+        step[a] = level ? 0 : second < 0 ? -slope[a] / second : std::copysign(stride, slope[a]);
       }
     }
     // On a border that the slope does not lead over.
@@ -302,8 +302,8 @@ class Climb {
     if (c_.u <= 0 && slope < -slack(size)) return leave({ContactExit::Kind::end, 0});
     if (c_.u >= 1 && slope > slack(size)) return leave({ContactExit::Kind::end, 1});
     const double second = glm::dot(j.dxx, n_);
-    const bool level = std::abs(slope) <= slack(size) && !is_bent(second, size);
-    double step = second < 0 ? -slope / second : level ? 0 : std::copysign(stride, slope);
+    const bool level = std::abs(slope) <= slack(size) && !is_bent(std::abs(second), size);
+    double step = level ? 0 : second < 0 ? -slope / second : std::copysign(stride, slope);
     step = std::clamp(step, -0.5, 0.5);
     const double to = std::clamp(c_.u + step, 0.0, 1.0);
     const bool to_end = to != c_.u && (to == 0 || to == 1);
@@ -314,17 +314,17 @@ class Climb {
       c_.u = to;
       return Progress::moved;
     }
-    if (geometry_.is_straight(c_)) {  // level: its ends are as high
-      c_ = geometry_.straight_end(c_, c_.u < 0.5 ? 0 : 1);
-      return Progress::moved;
-    }
-    if (std::abs(slope) > slack(size) && second >= 0) return Progress::lost;
+    const bool straight = geometry_.is_straight(c_);
+    if (!straight && std::abs(slope) > slack(size) && second >= 0) return Progress::lost;
     const auto& sides = geometry_.sides(c_);
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const dvec3 c = inward(geometry_.jet(on_side(c_, sides[k])), sides[k].side);
       if (rises(c)) return leave({ContactExit::Kind::face, int(k)});
     }
-    return Progress::arrived;
+    if (!straight) return Progress::arrived;
+    // Level: its ends are as high.
+    c_ = geometry_.straight_end(c_, c_.u < 0.5 ? 0 : 1);
+    return Progress::moved;
   }
 
   Progress at_vertex() {

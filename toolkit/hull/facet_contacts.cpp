@@ -110,11 +110,14 @@ class ContactSet {
         at_level_border(geometry_, piece, unit(glm::cross(dx, n_)));
     return level ? level->u : t;
   }
-  /// On the border that is no farther, or that the direction does not tell from where it is.
+  /// On the border that is no farther, or that the direction does not tell from where it is. On
+  /// straight edges, inside of which nothing is a contact, it stays a face's.
   Contact settled(const Contact& c) const {
     const Contact inside = clamped(c);
-    const std::optional<Contact> level = at_level_border(geometry_, inside, n_);
-    return snapped(geometry_, level.value_or(inside), nearness());
+    const Contact level = at_level_border(geometry_, inside, n_).value_or(inside);
+    const Contact result = snapped(geometry_, level, nearness());
+    const bool on_segment = result.kind == SourceKind::edge && geometry_.is_straight(result);
+    return on_segment ? level : result;
   }
   bool is_known(const Contact& c) const {
     const dvec3 x = geometry_.point(c);

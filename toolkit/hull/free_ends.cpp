@@ -12,6 +12,7 @@
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/parabolic_sides.h"
+#include "taut/hull/sign_changes.h"
 
 namespace taut {
 namespace {
@@ -20,14 +21,8 @@ using Kind = FreeEnd::Kind;
 
 /// Cells that may hold a parabolic point are split down to this level.
 constexpr int finest_level = 6;
-/// Intervals of a border or piece whose ends are compared by sign.
-constexpr int samples_along = 64;
-/// Bisections after which an interval of a 64th is down to rounding.
-constexpr int bisection_limit = 60;
 /// Of a bisection for a start of Newton's method.
 constexpr int start_steps = 12;
-/// Steps of a ternary search for a change of sign.
-constexpr int dip_limit = 40;
 
 constexpr int newton_limit = 20;
 /// Steps of a parameter below this end Newton's method. Those below a length, if they do not get
@@ -37,13 +32,9 @@ constexpr double noise_length = 1e-8;
 constexpr double noise_limit = 1e-4;
 /// Of central difference quotients: their error slows Newton's method by its square.
 constexpr double difference = 1e-5;
-/// How far rounding may move a root off the end or beyond the border on which it lies.
-constexpr double parameter_slack = 1e-11;
 /// Change of (flat, cubic) by an area, in the scene's frame, that makes a root a simple one. It is
 /// rounding on a circle of flat points.
 constexpr double least_change = 1e-5;
-/// A curvature or twist that stays below this everywhere vanishes.
-constexpr double least_extent = 1e-9;
 /// Third derivatives across a plane that are below this, relative to the whole ones or the unit,
 /// may be zero.
 constexpr double cubic_slack = 1e-9;
@@ -55,14 +46,6 @@ constexpr double level_reach = 1e-6;
 constexpr double pole_distance = 1e-6;
 /// Elements over a border that is no farther are searched too.
 constexpr double beside_border = 0.1;
-
-bool within(double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; }
-
-/// A root along a side where it is surely within, and at the side's end where it may be.
-double placed(double t) {
-  if (t < parameter_slack) return 0;
-  return t > 1 - parameter_slack ? 1 : t;
-}
 
 Contact clamped(Contact c) {
   c.u = std::clamp(c.u, 0.0, 1.0);
@@ -99,8 +82,7 @@ double noise_step(const ContactGeometry& geometry, const Contact& c) {
 
 /// Newton's method with difference quotients; within [-reach, reach] of the start. Steps below
 /// `noise` may be rounding.
-template <class Function>
-std::optional<double> root_near(const Function& f, double start, double reach, double noise) {
+std::optional<double> root_near(const SideFunction& f, double start, double reach, double noise) {
   double t = start;
   double last = reach;
   for (int k = 0; k < newton_limit; ++k) {
@@ -113,67 +95,6 @@ std::optional<double> root_near(const Function& f, double start, double reach, d
     last = length;
   }
   return std::nullopt;
-}
-
-double sample(int k) { return double(k) / samples_along; }
-
-/// The function is zero over all of [0, 1], up to rounding.
-template <class Function>
-bool vanishes(const Function& f) {
-  double extent = 0;
-  for (int k = 0; k <= samples_along; ++k) extent = std::max(extent, std::abs(f(sample(k))));
-  return !(extent > least_extent);
-}
-
-template <class Function>
-double bisected(const Function& f, double a, double b, int steps = bisection_limit) {
-  const bool negative = f(a) < 0;
-  for (int i = 0; i < steps; ++i) {
-    const double middle = 0.5 * (a + b);
-    ((f(middle) < 0) == negative ? a : b) = middle;
-  }
-  return 0.5 * (a + b);
-}
-
-/// Where a function of one sign at both ends and about a dip between them has the other one, if
-/// ternary search finds that.
-template <class Function>
-std::optional<double> across_dip(const Function& f, double a, double b) {
-  const double first = f(a);
-  for (int i = 0; i < dip_limit; ++i) {
-    const double s = a + (b - a) / 3;
-    const double t = b - (b - a) / 3;
-    const double at_s = f(s);
-    const double at_t = f(t);
-    if ((at_s < 0) != (first < 0)) return s;
-    if ((at_t < 0) != (first < 0)) return t;
-    (std::abs(at_s) < std::abs(at_t) ? b : a) = std::abs(at_s) < std::abs(at_t) ? t : s;
-  }
-  return std::nullopt;
-}
-
-/// Zeros of a function over [0, 1] at which it changes sign: between samples, or twice in a dip.
-template <class Function>
-std::vector<double> sign_changes(const Function& f) {
-  std::vector<double> values(samples_along + 1);
-  for (int k = 0; k <= samples_along; ++k) values[std::size_t(k)] = f(sample(k));
-  const auto value = [&](int k) { return values[std::size_t(std::clamp(k, 0, samples_along))]; };
-  const auto changes = [&](int k) { return (value(k) < 0) != (value(k + 1) < 0); };
-  std::vector<double> roots;
-  for (int k = 0; k <= samples_along; ++k) {
-    if (changes(k)) roots.push_back(bisected(f, sample(k), sample(k + 1)));
-    if (changes(k - 1) || changes(k) || std::abs(value(k - 1)) < std::abs(value(k)) ||
-        std::abs(value(k + 1)) < std::abs(value(k))) {
-      continue;
-    }
-    const double a = sample(std::max(k - 1, 0));
-    const double b = sample(std::min(k + 1, samples_along));
-    if (const std::optional<double> across = across_dip(f, a, b)) {
-      roots.push_back(bisected(f, a, *across));
-      roots.push_back(bisected(f, *across, b));
-    }
-  }
-  return roots;
 }
 
 /// The cusp's two equations: the flat curvature vanishes, and so does the cubic along it. Its sense
@@ -276,7 +197,7 @@ std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Conta
 
 /// From where a cusp was found.
 std::optional<FreeEnd> cusp(const ContactGeometry& geometry, const Contact& root) {
-  if (!within(root.u) || !within(root.v)) return std::nullopt;
+  if (!is_within(root.u) || !is_within(root.v)) return std::nullopt;
   const Contact c = clamped(root);
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
@@ -352,7 +273,7 @@ bool is_at_flat_corner(const ContactGeometry& geometry, const Contact& patch, Si
 /// of flat points, which is none.
 std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact& patch, Side side,
                                   double t) {
-  if (!within(t) || is_at_flat_corner(geometry, patch, side, t)) return std::nullopt;
+  if (!is_within(t) || is_at_flat_corner(geometry, patch, side, t)) return std::nullopt;
   const Contact c = on_side_of(patch, side, placed(t));
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
@@ -372,7 +293,7 @@ double twist_at(const ContactGeometry& geometry, Contact c, double t) {
 
 /// From where the torsion was found to vanish; n is the binormal times the sign.
 std::optional<FreeEnd> edge_end(const ContactGeometry& geometry, Contact c, double t, double sign) {
-  if (!within(t)) return std::nullopt;
+  if (!is_within(t)) return std::nullopt;
   c.u = std::clamp(t, 0.0, 1.0);
   const std::optional<CurveBend> b = curve_bend(geometry, c);
   if (!b || b->binormal == dvec3(0.0)) return std::nullopt;

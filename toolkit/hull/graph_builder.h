@@ -15,9 +15,6 @@
 
 namespace taut {
 
-/// Normals of facets are the same below this difference.
-inline constexpr double same_plane = 1e-7;
-
 /// A separating graph while it is traced: arcs and nodes are added and connected, and starts of
 /// further curves are compared with what is known by then.
 class GraphBuilder {

@@ -98,8 +98,7 @@ Contact on_side_of(Contact patch, Side side, double t) {
   return patch;
 }
 
-std::function<double(double)> parabolic_along(const ContactGeometry& geometry, const Contact& patch,
-                                              Side side) {
+SideFunction parabolic_along(const ContactGeometry& geometry, const Contact& patch, Side side) {
   if (const std::optional<Shear> shear = level_shear(geometry, patch, side)) {
     return [&geometry, patch, side, shear = *shear](double t) {
       return SideForm(geometry, patch, side, t).twist(shear(t));

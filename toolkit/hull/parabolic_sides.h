@@ -1,8 +1,7 @@
 #pragma once
 
-#include <functional>
-
 #include "taut/hull/contact_geometry.h"
+#include "taut/hull/sign_changes.h"
 
 namespace taut {
 
@@ -16,7 +15,6 @@ Contact on_side_of(Contact patch, Side side, double t);
 ///
 /// Level are Catmull-Clark surfaces across boundaries: in a direction of their lattice, or in its
 /// image in a tapered piece, which is linear along the side.
-std::function<double(double)> parabolic_along(const ContactGeometry& geometry, const Contact& patch,
-                                              Side side);
+SideFunction parabolic_along(const ContactGeometry& geometry, const Contact& patch, Side side);
 
 }  // namespace taut

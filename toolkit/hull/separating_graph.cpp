@@ -12,6 +12,7 @@
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
+#include "taut/hull/edge_touches.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_end_seeds.h"
 #include "taut/hull/free_ends.h"
@@ -96,6 +97,9 @@ class GraphTracer {
   static constexpr int no_node = -2;
   void find_planes();
   void find_poles();
+  void find_touches(const std::vector<CulledCell>& cells);
+  void add_landmark(const Landmark& landmark);
+  bool is_landmark(const dvec3& n) const;
   void add_pole(const SupportingPole& pole);
   bool is_in_plane(const dvec3& n) const;
   void find_settled(const std::vector<CulledCell>& cells);
@@ -158,8 +162,7 @@ void GraphTracer::find_planes() {
     for (const Contact& c : plane.pieces) {
       built_.add_contact({c.instance, c.element, 0, 1});
     }
-    landmarks_.push_back({plane.n, *f});
-    add_node(plane.n, std::move(*f));
+    add_landmark({plane.n, *f});
   }
 }
 
@@ -174,15 +177,27 @@ bool GraphTracer::is_in_plane(const dvec3& n) const {
 void GraphTracer::find_poles() {
   for (const SupportingPole& pole : supporting_poles(geometry_, query_)) {
     add_pole(pole);
-    const bool known = std::any_of(landmarks_.begin(), landmarks_.end(), [&](const Landmark& l) {
-      return glm::distance(l.n, pole.n) < same_plane;
-    });
-    if (known) continue;
+    if (is_landmark(pole.n)) continue;
     const std::optional<Landmark> facet = facet_at_pole(geometry_, query_, pole);
-    if (!facet) continue;
-    landmarks_.push_back(*facet);
-    add_node(facet->n, facet->facet);
+    if (facet) add_landmark(*facet);
   }
+}
+
+/// Where planes that turn about straight edges touch the faces beside them.
+void GraphTracer::find_touches(const std::vector<CulledCell>& cells) {
+  for (const Landmark& touch : edge_touches(geometry_, query_, cells)) {
+    if (!is_landmark(touch.n)) add_landmark(touch);
+  }
+}
+
+void GraphTracer::add_landmark(const Landmark& landmark) {
+  landmarks_.push_back(landmark);
+  add_node(landmark.n, landmark.facet);
+}
+
+bool GraphTracer::is_landmark(const dvec3& n) const {
+  return std::any_of(landmarks_.begin(), landmarks_.end(),
+                     [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
 }
 
 /// Once for all patches that meet in it.
@@ -526,6 +541,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   find_settled(cells);
   find_planes();
   find_poles();
+  find_touches(cells);
   trace_waiting();
   part_cells(cells);
   for (const SupportingPole& pole : poles_) part_about(pole);
