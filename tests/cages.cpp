@@ -28,6 +28,16 @@ ControlCage cube_cage() {
   return cage;
 }
 
+ControlCage rimmed_cage(bool flat) {
+  ControlCage cage = cube_cage();
+  const std::vector<int>& top = cage.faces[1];
+  for (std::size_t k = 0; k < 4; ++k) {
+    cage.creases.push_back({{top[k], top[(k + 1) % 4]}, taut::infinite_sharpness});
+    if (!flat && k % 2 == 0) cage.points[std::size_t(top[k])].z += 0.2 + 0.1 * double(k);
+  }
+  return cage;
+}
+
 ControlCage tetrahedron_cage(CageScheme scheme) {
   ControlCage cage;
   cage.scheme = scheme;
@@ -205,6 +215,11 @@ std::vector<NamedCage> tagged_cages() {
     for (std::size_t k = 0; k < 4; ++k) box.creases.push_back({{f[k], f[(k + 1) % 4]}, 10});
   }
   all.push_back({"cube with sharp edges", box});
+  for (const bool flat : {true, false}) {
+    const std::string name = flat ? "cube with a flat rim" : "cube with a bent rim";
+    all.push_back({name, rimmed_cage(flat)});
+    all.push_back({name + ", loop", triangulated(rimmed_cage(flat))});
+  }
   all.push_back({"sheet", sheet_cage(3, 4)});
   // At two corners one triangle is alone, at the others there are two.
   ControlCage cut = triangulated(sheet_cage(3, 4));

@@ -27,6 +27,9 @@ ControlCage triangle_torus_cage(int m, int n);
 /// A closed, convex body about the z axis with a vertex of the valence at its top and its bottom,
 /// in no symmetric position.
 ControlCage dome_cage(CageScheme scheme, int valence);
+/// A cube with a sharp rim around its top, which is flat, or bent up at two of its corners. At each
+/// corner the top is alone between two edges that go on smoothly into each other.
+ControlCage rimmed_cage(bool flat);
 /// m x n quads of a bulging sheet over [-1, 1]^2, open.
 ControlCage sheet_cage(int m, int n);
 /// A dome for the scheme loop with two triangles on one of its edges, which share the other two: in

@@ -322,6 +322,66 @@ TEST(LimitPatches, RefineOnlyWhatCanTouch) {
   EXPECT_EQ(surface.deviation_bound, 0);
 }
 
+/// How far a point is from the closed uniform cubic spline of four control points.
+double distance_from_spline(const std::array<dvec3, 4>& control, const dvec3& x) {
+  const auto at = [&](double t) {
+    const int first = int(std::floor(t));
+    const double s = t - first;
+    const std::array<double, 4> weight = {(1 - s) * (1 - s) * (1 - s),
+                                          4 - 6 * s * s + 3 * s * s * s,
+                                          1 + 3 * s + 3 * s * s - 3 * s * s * s, s * s * s};
+    dvec3 p(0.0);
+    for (int k = 0; k < 4; ++k) {
+      p += weight[std::size_t(k)] / 6 * control[std::size_t((first + k + 4) % 4)];
+    }
+    return p;
+  };
+  const auto distance = [&](double t) { return glm::distance(at(t), x); };
+  double nearest = 0;
+  for (double t = 0; t < 4; t += 1.0 / 64) nearest = distance(t) < distance(nearest) ? t : nearest;
+  double a = nearest - 1.0 / 32;
+  double b = nearest + 1.0 / 32;
+  for (int k = 0; k < 80; ++k) {
+    const double third = (b - a) / 3;
+    (distance(a + third) < distance(b - third) ? b : a) =
+        distance(a + third) < distance(b - third) ? b - third : a + third;
+  }
+  return distance(0.5 * (a + b));
+}
+
+/// The caps of the top, alone between two pieces of its rim, have these for sides; what the rim's
+/// own curvature is does not count for what they miss: nothing, where the top is flat.
+TEST(LimitPatches, KeepToCreases) {
+  for (const bool flat : {true, false}) {
+    for (const bool triangles : {false, true}) {
+      const ControlCage quads = rimmed_cage(flat);
+      const ControlCage cage = triangles ? triangulated(quads) : quads;
+      std::array<dvec3, 4> control;
+      for (std::size_t k = 0; k < 4; ++k) {
+        control[k] = quads.points[std::size_t(quads.creases[k].vertices[0])];
+      }
+      const LimitSurface surface = limit_patches(cage);
+      int sides = 0;
+      for (const SurfacePatch& patch : surface.patches) {
+        for (const Side side : all_sides) {
+          if (patch.smooth[std::size_t(side)]) continue;
+          for (int k = 0; k <= 4; ++k) {
+            const dvec2 uv = on_side(side, k / 4.0);
+            EXPECT_LE(distance_from_spline(control, point(patch.bezier, uv.x, uv.y)), 1e-15);
+          }
+          ++sides;
+        }
+      }
+      EXPECT_GE(sides, 16);
+      EXPECT_LE(surface.deviation_bound, 1e-9 * size_of(cage));
+      // Without levels of the caps at the rim.
+      if (!triangles) {
+        EXPECT_LE(sides, 32);
+      }
+    }
+  }
+}
+
 /// A side of a patch, and the vertices from which and to which it runs.
 struct SideUse {
   const SurfacePatch* patch;

@@ -204,16 +204,37 @@ struct CageLevel::Topology {
     return result;
   }
 
-  std::array<bool, 4> smooth_sides(int face) const {
+  bool is_sharp(int edge) const {
     const Far::TopologyLevel base = level();
-    const auto edges = base.GetFaceEdges(face);
+    return base.IsEdgeInfSharp(edge) || base.IsEdgeBoundary(edge) || base.IsEdgeNonManifold(edge);
+  }
+
+  std::array<bool, 4> smooth_sides(int face) const {
+    const auto edges = level().GetFaceEdges(face);
     std::array<bool, 4> smooth = {};
     if (edges.size() > 4) return smooth;
-    for (int k = 0; k < edges.size(); ++k) {
-      smooth[to_size(k)] = !base.IsEdgeInfSharp(edges[k]) && !base.IsEdgeBoundary(edges[k]) &&
-                           !base.IsEdgeNonManifold(edges[k]);
-    }
+    for (int k = 0; k < edges.size(); ++k) smooth[to_size(k)] = !is_sharp(edges[k]);
     return smooth;
+  }
+
+  /// The point of the cubic spline that a crease is, before that of a vertex on it, from which the
+  /// edge leads on: where the vertex is a corner, the one that makes the spline end there. None if
+  /// the crease does not go on.
+  std::optional<dvec3> before_on_crease(int edge, int vertex) const {
+    if (near_semi_sharp[to_size(vertex)]) return std::nullopt;
+    const Far::TopologyLevel base = level();
+    const auto beyond = [&](int e) -> const dvec3& {
+      const auto ends = base.GetEdgeVertices(e);
+      return points[to_size(ends[ends[0] == vertex ? 1 : 0])];
+    };
+    const Sdc::Crease::Rule rule = base.GetVertexRule(vertex);
+    if (rule == Sdc::Crease::RULE_CORNER) return 2.0 * points[to_size(vertex)] - beyond(edge);
+    if (rule != Sdc::Crease::RULE_CREASE) return std::nullopt;
+    const auto edges = base.GetVertexEdges(vertex);
+    for (int k = 0; k < edges.size(); ++k) {
+      if (edges[k] != edge && is_sharp(edges[k])) return beyond(edges[k]);
+    }
+    return std::nullopt;
   }
 };
 
@@ -364,6 +385,22 @@ std::optional<std::size_t> CageLevel::across(std::size_t cell, std::size_t side)
                                       [](const CageCell& c, int face) { return c.face < face; });
   if (found == cells_.end() || found->face != other) return std::nullopt;
   return std::size_t(found - cells_.begin());
+}
+
+std::optional<std::array<dvec3, 4>> CageLevel::crease(std::size_t cell, std::size_t side) const {
+  const int face = cells_[cell].face;
+  const auto vertices = topology_->level().GetFaceVertices(face);
+  const int edge = topology_->level().GetFaceEdges(face)[to_int(side)];
+  const int a = vertices[to_int(side)];
+  const int b = vertices[(to_int(side) + 1) % vertices.size()];
+  if (!topology_->is_sharp(edge)) return std::nullopt;
+  const std::optional<dvec3> before = topology_->before_on_crease(edge, a);
+  const std::optional<dvec3> after = topology_->before_on_crease(edge, b);
+  if (!before || !after) return std::nullopt;
+  const dvec3 p = point(a);
+  const dvec3 q = point(b);
+  return std::array<dvec3, 4>{p + ((*before - p) + (q - p)) / 6.0, p + (q - p) / 3.0,
+                              q + (p - q) / 3.0, q + ((*after - q) + (p - q)) / 6.0};
 }
 
 const dvec3& CageLevel::point(int vertex) const { return topology_->points[to_size(vertex)]; }

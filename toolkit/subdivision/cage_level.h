@@ -28,7 +28,7 @@ struct CellPatch {
     none,
     regular,  ///< exactly the limit surface
     /// Stands for it, polynomial too: its corners are the limit's, and so are its borders to
-    /// regular cells and the tangent planes there.
+    /// regular cells, with the tangent planes there, and on creases (crease()).
     cap,
   };
   Kind kind = Kind::none;
@@ -72,6 +72,9 @@ class CageLevel {
   /// The cell beyond the side from a corner to the next. None where there is no cell, or more than
   /// one.
   std::optional<std::size_t> across(std::size_t cell, std::size_t side) const;
+  /// The limit of a sharp side of a cell, from a corner to the next, as a cubic Bezier curve. None
+  /// of a smooth one, and of one that at one of its ends is a dart or near semi-sharp ones.
+  std::optional<std::array<dvec3, 4>> crease(std::size_t cell, std::size_t side) const;
   /// A vertex's control point.
   const dvec3& point(int vertex) const;
   /// The number of a vertex of a cell over all levels; the control cage's have their own.

@@ -13,7 +13,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/subdivision/cage_level.h"
 #include "taut/subdivision/dart_limit.h"
-#include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/region_bound.h"
 #include "taut/subdivision/smooth_caps.h"
 #include "taut/subdivision/touch_test.h"
 #include "taut/subdivision/triangle_points.h"
@@ -79,13 +79,15 @@ std::vector<dvec3> corners(const CellPatch& patch) {
 }
 
 /// Of the sides but those that are `point` long at most, which are points at all levels; 0 if all
-/// are.
-double least_side(const CellPatch& patch, double point) {
+/// are. Of the diagonals too: a quad between two sides of a smooth crease gets thin.
+double least_width(const CellPatch& patch, double point) {
   const std::vector<dvec3> c = corners(patch);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < c.size(); ++k) {
-    const double length = glm::distance(c[k], c[(k + 1) % c.size()]);
-    if (length > point) least = std::min(least, length);
+    for (std::size_t i = 0; i < k; ++i) {
+      const double length = glm::distance(c[k], c[i]);
+      if (length > point) least = std::min(least, length);
+    }
   }
   return std::isinf(least) ? 0 : least;
 }
@@ -171,7 +173,7 @@ class Refinement {
   std::vector<dvec3> ring(const CellFan& fan) const;
   std::optional<std::vector<dvec3>> cap_of(const CellFan& fan, std::size_t k) const;
   void smooth_fan(const std::vector<std::size_t>& region);
-  double bound_of(const std::vector<std::size_t>& region, double enough) const;
+  double bound_of(const std::vector<std::size_t>& region, bool least) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
   void emit(std::size_t cell, bool may_touch = true);
   void count_irregular();
@@ -330,9 +332,9 @@ void Refinement::emit_rest() {
   }
 }
 
-/// What stands for a region and the region itself are no farther than this from the convex hull of
-/// points of the surface; anything above `enough` if it is more than that.
-double Refinement::bound_of(const std::vector<std::size_t>& region, double enough) const {
+/// What stands for a region changes the support function by no more than this; more than the
+/// accuracy if it is too much, the least that can be said of it if asked for.
+double Refinement::bound_of(const std::vector<std::size_t>& region, bool least) const {
   std::vector<dvec3> known;
   const int number = level_.cells()[region.front()].region;
   if (number >= 0) {
@@ -340,26 +342,16 @@ double Refinement::bound_of(const std::vector<std::size_t>& region, double enoug
       known.insert(known.end(), level.begin(), level.end());
     }
   }
-  double bound = 0;
-  std::vector<dvec3> points;
-  if (known.empty()) {
-    for (const std::size_t c : region) {
-      level_.enclosure(c, points);
-      known.insert(known.end(), points.begin(), points.end());
-    }
-    Box box;
-    for (const dvec3& p : known) box.include(p);
-    return diagonal(box);
+  if (!known.empty()) {
+    return region_bound(level_, region, patches_, std::move(known), tolerance_, least);
   }
+  Box box;
+  std::vector<dvec3> points;
   for (const std::size_t c : region) {
     level_.enclosure(c, points);
-    points.insert(points.end(), patches_[c].points.begin(), patches_[c].points.end());
-    for (const dvec3& p : points) {
-      bound = std::max(bound, distance_from_hull_bound(p, known));
-      if (bound > enough) return bound;
-    }
+    for (const dvec3& p : points) box.include(p);
   }
-  return bound;
+  return diagonal(box);
 }
 
 /// Those of the points that are near a region, as its own size goes.
@@ -497,11 +489,10 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
   if (has_caps && depth_ > 0) {
     const bool small =
         depth_ >= level_limit || std::any_of(region.begin(), region.end(), [&](std::size_t c) {
-          return least_side(patches_[c], point_side_) < least_side_;
+          return least_width(patches_[c], point_side_) < least_side_;
         });
     smooth_fan(region);
-    const double bound =
-        bound_of(region, small ? std::numeric_limits<double>::infinity() : tolerance_);
+    const double bound = bound_of(region, small);
     if (bound <= tolerance_ || small) {
       result_.deviation_bound = std::max(result_.deviation_bound, bound);
       for (const std::size_t c : region) emit(c);
