@@ -10,6 +10,7 @@
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/element_changes.h"
+#include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_ends.h"
 #include "taut/hull/pole_passage.h"
 
@@ -167,6 +168,7 @@ class Merging {
   void push(const Ruling& ruling) { end_.pieces.back().rulings.push_back(ruling); }
   bool merge();
   Approach approach() const;
+  bool meet(const Ruling& end) const;
   std::optional<FreeEnd> exact_end(const Ruling& near) const;
   std::optional<FreeEnd> end_ahead(const Approach& a) const;
   bool is_ahead(const FreeEnd& end, double length) const;
@@ -331,16 +333,23 @@ std::optional<FreeEnd> Merging::end_ahead(const Approach& a) const {
   return exact;
 }
 
+/// The contacts are on one element in the end: a face's is on an edge, or at the corner of a face
+/// where the edge's next piece begins.
+bool Merging::meet(const Ruling& end) const {
+  const Contact a = geometry_.canonical(end.contact[0]);
+  const Contact b = geometry_.canonical(end.contact[1]);
+  if (same_element(a, b)) return true;
+  return a.kind == SourceKind::edge && continues(geometry_, a, b) &&
+         glm::distance(geometry_.point(a), geometry_.point(b)) < same_contact;
+}
+
 /// Ends the arc where the contacts merge, if they do.
 bool Merging::merge() {
   if (merge_at_pole()) return true;
   Approach a = approach();
   Ruling& end = a.end;
   const double rho = a.length;
-  if (!a.smooth &&
-      !same_element(geometry_.canonical(end.contact[0]), geometry_.canonical(end.contact[1]))) {
-    return crosses();
-  }
+  if (!a.smooth && !meet(end)) return crosses();
   if (const std::optional<FreeEnd> exact = end_ahead(a)) {
     if (const std::optional<Ruling> ruling = ruling_at(geometry_, *exact, end)) {
       push(*ruling);
@@ -500,15 +509,22 @@ bool Merging::tie_at_exit(ElementChange& event) const {
   return std::abs(glm::dot(s.d(), s.n)) <= geometry_.rounding();
 }
 
-/// About where the contacts have approached each other to this length, before the free end.
+/// About where the contacts have approached each other to this length, before the free end: at a
+/// border or an edge's end all is linear in it, else n is so in its square.
 CommonSupport Merging::near_end(const FreeEnd& end, double length) const {
+  const bool is_linear = end.kind == FreeEnd::Kind::border || end.kind == FreeEnd::Kind::end;
   const double apart = point_.apart();
   const double rate = point_.rate_apart();
   const double share = length / apart;
   CommonSupport s = point_.at;
-  s.n = glm::normalize(end.n + share * share * (point_.at.n - end.n));
+  s.n = glm::normalize(end.n + (is_linear ? share : share * share) * (point_.at.n - end.n));
   for (std::size_t i = 0; i < 2; ++i) {
     Contact& c = s.contact[i];
+    if (is_linear && same_element(c, end.contact)) {
+      c.u = (1 - share) * end.contact.u + share * c.u;
+      c.v = (1 - share) * end.contact.v + share * c.v;
+      continue;
+    }
     const dvec2 ahead = (length - apart) / rate * point_.tangent.parameter[i];
     c.u = std::clamp(c.u + ahead.x, 0.0, 1.0);
     c.v = std::clamp(c.v + ahead.y, 0.0, 1.0);
