@@ -14,7 +14,7 @@ namespace taut {
 namespace {
 
 /// Neighbours of slivers that are asked for a direction, one after the other.
-constexpr int sliver_limit = 8;
+constexpr std::size_t sliver_limit = 8;
 
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
@@ -33,6 +33,7 @@ class Sampler {
   struct Plane {
     bool known = false;
     dvec3 n;
+    int facet = -1;  ///< of which n is the normal
     double h_bound = 0;
     dvec3 point;  ///< the support point, in model coordinates
     Contact contact;
@@ -47,7 +48,13 @@ class Sampler {
   dvec3 scaled(const dvec3& point) const { return scene_.frame().scale * point; }
 
   void begin(std::vector<Sample> samples, const std::vector<dvec3>& points);
-  dvec3 direction_of(int facet) const;
+  /// A facet and its normal.
+  struct Facing {
+    int facet;
+    dvec3 n;
+  };
+  Facing facing(int facet) const;
+  bool has_lost_facet(const Plane& plane) const;
   bool take_slivers_seriously();
   void find_planes();
   void bound_vertices();
@@ -90,29 +97,31 @@ void Sampler::begin(std::vector<Sample> samples, const std::vector<dvec3>& point
   hull_.add(all, options_.progress);
 }
 
-/// The facet's normal; of a sliver, with corners in line but for rounding, that of the neighbour
-/// across its longest side. A certificate needs no more than directions about each vertex, and a
-/// sliver's own means nothing.
-dvec3 Sampler::direction_of(int facet) const {
+/// The facet itself; of a sliver, with corners in line but for rounding, the nearest
+/// other facet, first across its longest side. A certificate needs no more than directions about
+/// each vertex, and a sliver's own means nothing.
+Sampler::Facing Sampler::facing(int facet) const {
   const double rounding = scene_.frame().length_to_frame(8 * vertex_rounding(scene_));
-  int f = facet;
-  for (int k = 0; k < sliver_limit && !slivers_count_; ++k) {
-    const PointHull::Facet& own = hull_.facet(f);
-    std::size_t longest = 0;
-    double length = 0;
+  std::vector<int> reached = {facet};
+  for (std::size_t k = 0; k < reached.size() && k < sliver_limit && !slivers_count_; ++k) {
+    const PointHull::Facet& own = hull_.facet(reached[k]);
+    std::array<std::pair<double, int>, 3> sides;
     for (std::size_t side = 0; side < 3; ++side) {
-      const double own_length =
-          glm::distance(hull_.points()[std::size_t(own.vertex[side])],
-                        hull_.points()[std::size_t(own.vertex[(side + 1) % 3])]);
-      if (own_length <= length) continue;
-      length = own_length;
-      longest = side;
+      const dvec3& a = hull_.points()[std::size_t(own.vertex[side])];
+      const dvec3& b = hull_.points()[std::size_t(own.vertex[(side + 1) % 3])];
+      sides[side] = {-glm::distance(a, b), own.neighbor[side]};
     }
+    std::stable_sort(sides.begin(), sides.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     const dvec3 normal = own.side.normal();
-    if (glm::length(normal) > rounding * length) return unit(normal);
-    f = own.neighbor[longest];
+    if (glm::length(normal) > -rounding * sides[0].first) return {reached[k], unit(normal)};
+    for (const auto& [length, neighbor] : sides) {
+      if (std::find(reached.begin(), reached.end(), neighbor) == reached.end()) {
+        reached.push_back(neighbor);
+      }
+    }
   }
-  return unit(hull_.facet(facet).side.normal());
+  return {facet, unit(hull_.facet(facet).side.normal())};
 }
 
 /// Lets slivers have their own directions from now on. False if that changes nothing.
@@ -121,11 +130,17 @@ bool Sampler::take_slivers_seriously() {
   slivers_count_ = true;
   bool changes = false;
   for (std::size_t f = 0; f < planes_.size(); ++f) {
-    if (!hull_.facets()[f].alive || planes_[f].n == direction_of(int(f))) continue;
+    if (!hull_.facets()[f].alive || planes_[f].n == facing(int(f)).n) continue;
     planes_[f].known = false;
     changes = true;
   }
   return changes;
+}
+
+/// The facet of which the plane has its direction is no more.
+bool Sampler::has_lost_facet(const Plane& plane) const {
+  const PointHull::Facet& facet = hull_.facet(plane.facet);
+  return !facet.alive || unit(facet.side.normal()) != plane.n;
 }
 
 /// Queries the supporting plane of every facet that has none yet, in parallel; each query starts
@@ -134,7 +149,8 @@ void Sampler::find_planes() {
   planes_.resize(hull_.facets().size());
   std::vector<int> wanted;
   for (std::size_t f = 0; f < planes_.size(); ++f) {
-    if (hull_.facets()[f].alive && !planes_[f].known) wanted.push_back(int(f));
+    if (!hull_.facets()[f].alive) continue;
+    if (!planes_[f].known || has_lost_facet(planes_[f])) wanted.push_back(int(f));
   }
   constexpr std::size_t grain = 64;
   std::vector<std::pair<long, long>> counts((wanted.size() + grain - 1) / grain);
@@ -144,7 +160,9 @@ void Sampler::find_planes() {
       options_.progress.check();
       const PointHull::Facet& facet = hull_.facet(wanted[k]);
       Plane& plane = planes_[std::size_t(wanted[k])];
-      plane.n = direction_of(wanted[k]);
+      const Facing seen = facing(wanted[k]);
+      plane.n = seen.n;
+      plane.facet = seen.facet;
       const Sample* nearest = nullptr;
       for (const int v : facet.vertex) {
         const Sample& s = samples_[std::size_t(v)];
@@ -277,8 +295,10 @@ bool Sampler::refine() {
     // A facet that an earlier insertion replaced has lost its plane.
     const Plane plane = planes_[std::size_t(c.facet)];
     if (!plane.known || plane.n != c.n) continue;
-    const bool bisected = kept_ != nullptr && bisect_hidden(plane.point, c.facet);
-    if (bisected || insert({plane.n, plane.contact}, plane.point, c.facet)) inserted = true;
+    // No point is beyond a sliver.
+    const int facet = has_lost_facet(plane) ? c.facet : plane.facet;
+    const bool bisected = kept_ != nullptr && bisect_hidden(plane.point, facet);
+    if (bisected || insert({plane.n, plane.contact}, plane.point, facet)) inserted = true;
   }
   return inserted;
 }
