@@ -355,46 +355,89 @@ TEST(Events, ParabolicCurveTouchingABorder) {
   }
 }
 
-// ---- A face that is touched inside of its straight edge
+// ---- Faces beside straight edges
+
+/// A sheet over x in [-1, 1], y in [0, 1], of degree (2, 3): z = -(a x^2 + b x + c) y - (d x^2 + e)
+/// y^power, the power being 2 or 3.
+Shape sheet_beside_an_edge(const dvec3& rise, double d, double e, int power) {
+  const auto square = [](const dvec3& f) {  // Bernstein coefficients over [-1, 1]
+    return std::array<double, 3>{f.x - f.y + f.z, f.z - f.x, f.x + f.y + f.z};
+  };
+  const std::array<double, 3> linear = square(rise);
+  const std::array<double, 3> bent = square({d, 0, e});
+  BezierPatch sheet{2, 3, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double y = double(j) / 3;
+      const double raised = j == 3 ? 1 : j == 2 && power == 2 ? 1.0 / 3 : 0;
+      sheet.points.emplace_back(double(i) - 1, y, -linear[i] * y - bent[i] * raised, 1);
+    }
+  }
+  return {{as_nurbs(sheet)}, {}, {}};
+}
+
+/// The hull, with a facet in z = 0 whose corners are those of the edge y = 0 at these x. `thin`:
+/// of a row of patches at the edge.
+void expect_in_line(const Shape& sheet, const std::vector<double>& corners, double thin = 1e-3) {
+  for (const Shape& shape : {sheet, split(sheet, 0.55, 0.5), split(sheet, 0.3, thin)}) {
+    for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+      const Scene scene = make_scene(mapped(shape, turn));
+      const Hull hull = precise_hull(scene, {.relative = 1e-2, .threads = 1, .progress = {}});
+      ASSERT_NE(hull.boundary, nullptr);
+      expect_complete(*hull.boundary);
+      const dvec3 normal = turn * dvec3(0, 0, 1);
+      const auto touches = [&](const HullFace& face) {
+        const auto has = [&](double x) {
+          const dvec3 place = hull.boundary->frame.to_frame(turn * dvec3(x, 0, 0));
+          return std::any_of(face.points.begin(), face.points.end(), [&](const dvec3& point) {
+            return glm::distance(point, place) < 1e-9;
+          });
+        };
+        return face.kind == FaceKind::facet && glm::distance(face.n, normal) < 1e-12 &&
+               std::all_of(corners.begin(), corners.end(), has);
+      };
+      const std::vector<HullFace>& faces = hull.boundary->faces;
+      EXPECT_EQ(std::count_if(faces.begin(), faces.end(), touches), 1);
+      BoundaryFacts facts = boundary_facts(scene, hull, 300);
+      facts.flat = 0;  // as it is beside the edge
+      EXPECT_TRUE(facts.sound()) << facts;
+      EXPECT_LE(measures_of(scene, hull).accuracy, 1e-9);
+    }
+  }
+}
 
 /// z = -((x - 0.1)^2 y + y^m): the plane that turns about the edge y = 0 meets the sheet in
 /// (0.1, 0, 0), as z = 0, in line with the edge's ends. A curve leads from there to each of them.
 TEST(Events, FaceTouchedInsideOfItsStraightEdge) {
-  const double a = -1.1;
-  const double b = 0.9;
-  const std::array<double, 3> square = {a * a, a * b, b * b};  // of x - 0.1
   for (const int power : {2, 3}) {
-    BezierPatch sheet{2, 3, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) {
-        const double y = double(j) / 3;
-        const double raised = j == 3 ? 1 : j == 2 && power == 2 ? 1.0 / 3 : 0;
-        sheet.points.emplace_back(double(i) - 1, y, -square[i] * y - raised, 1);
-      }
+    SCOPED_TRACE(power);
+    expect_in_line(sheet_beside_an_edge({1, -0.2, 0.01}, 0, 1, power), {-1, 0.1, 1});
+  }
+}
+
+/// z = -(1 + x^2) y^m: a plane that turns on from z = 0 by d is surpassed over (x, 0) by
+/// f = (1 + x^2)^(-1/(m - 1)), up to a factor that d tells. The concave hull of f over [-1, 1] has
+/// chords from both ends, tangent to it: for m = 2 where x = sqrt 2 - 1.
+TEST(Events, FaceTouchedAlongItsStraightEdge) {
+  for (const int power : {2, 3}) {
+    SCOPED_TRACE(power);
+    const double exponent = -1.0 / (power - 1);
+    const auto misses = [&](double x) {
+      const double f = std::pow(1 + x * x, exponent);
+      const double slope = 2 * x * exponent * f / (1 + x * x);
+      return f + slope * (1 - x) < std::pow(2, exponent);
+    };
+    double low = 0;
+    double high = 0.9;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      (misses(middle) ? high : low) = middle;
     }
-    const Shape whole{{as_nurbs(sheet)}, {}, {}};
-    for (const Shape& shape : {whole, split(whole, 0.55, 0.5), split(whole, 0.3, 1e-3)}) {
-      for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
-        SCOPED_TRACE(power);
-        const Scene scene = make_scene(mapped(shape, turn));
-        const Hull hull = precise_hull(scene, {.relative = 1e-2, .threads = 1, .progress = {}});
-        ASSERT_NE(hull.boundary, nullptr);
-        expect_complete(*hull.boundary);
-        const dvec3 place = hull.boundary->frame.to_frame(turn * dvec3(0.1, 0, 0));
-        const dvec3 normal = turn * dvec3(0, 0, 1);
-        const auto touches = [&](const HullFace& face) {
-          return face.kind == FaceKind::facet && glm::distance(face.n, normal) < 1e-12 &&
-                 face.points.size() == 3 &&
-                 std::any_of(face.points.begin(), face.points.end(),
-                             [&](const dvec3& x) { return glm::distance(x, place) < 1e-12; });
-        };
-        const std::vector<HullFace>& faces = hull.boundary->faces;
-        EXPECT_EQ(std::count_if(faces.begin(), faces.end(), touches), 1);
-        const BoundaryFacts facts = boundary_facts(scene, hull, 300);
-        EXPECT_TRUE(facts.sound()) << facts;
-        EXPECT_LE(measures_of(scene, hull).accuracy, 1e-9);
-      }
+    if (power == 2) {
+      EXPECT_NEAR(low, std::sqrt(2) - 1, 1e-14);
     }
+    // Along the edge the curvature falls with y^m: of thinner patches it is rounding.
+    expect_in_line(sheet_beside_an_edge(dvec3(0.0), 1, 1, power), {-1, -low, low, 1}, 0.4);
   }
 }
 

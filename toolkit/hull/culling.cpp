@@ -541,6 +541,14 @@ std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& c
   return result;
 }
 
+std::set<std::pair<int, int>> mixed_patches(const std::vector<CulledCell>& cells) {
+  std::set<std::pair<int, int>> patches;
+  for (const CulledCell& cell : cells) {
+    if (cell.state == CellState::mixed) patches.emplace(cell.instance, cell.patch);
+  }
+  return patches;
+}
+
 int culling_levels(long patches) {
   int levels = default_levels;
   while (levels > 0 && patches * (1L << (2 * levels)) > cells_in_all) --levels;

@@ -1,7 +1,8 @@
 #include "taut/hull/edge_touches.h"
 
 #include <algorithm>
-#include <set>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "taut/hull/contact_exits.h"
@@ -25,7 +26,6 @@ class TouchSearch {
     dvec3 n;
     std::vector<Contact> contacts;
   };
-  std::optional<Contact> straight_edge(const Contact& patch, Side side) const;
   std::vector<double> places(const Contact& patch, Side side) const;
   void offer(const Contact& c, const Contact& edge);
   void add(const dvec3& n, const std::array<Contact, 2>& ends, const Contact& c);
@@ -34,14 +34,6 @@ class TouchSearch {
   SupportQuery& query_;
   std::vector<Touch> touches_;
 };
-
-/// The straight edge at a side, if there is one.
-std::optional<Contact> TouchSearch::straight_edge(const Contact& patch, Side side) const {
-  const int piece = geometry_.patch(patch).borders[std::size_t(side)].piece;
-  if (piece < 0 || geometry_.part(patch).pieces()[std::size_t(piece)].edge < 0) return std::nullopt;
-  const Contact edge{patch.instance, SourceKind::edge, piece, 0, 0};
-  return geometry_.is_straight(edge) ? std::optional(edge) : std::nullopt;
-}
 
 /// Where the twist changes sign; over the side's ends, where other patches go on, it may do so too.
 std::vector<double> TouchSearch::places(const Contact& patch, Side side) const {
@@ -76,8 +68,7 @@ void TouchSearch::add(const dvec3& n, const std::array<Contact, 2>& ends, const 
 
 /// Takes the face's contact on the edge if it supports the model.
 void TouchSearch::offer(const Contact& c, const Contact& edge) {
-  const std::array<Contact, 2> ends = {geometry_.straight_end(edge, 0),
-                                       geometry_.straight_end(edge, 1)};
+  const std::array<Contact, 2> ends = segment_ends(geometry_, edge);
   const dvec3 x = geometry_.point(c);
   for (const Contact& end : ends) {
     if (glm::distance(geometry_.point(end), x) <= same_contact) return;
@@ -92,7 +83,7 @@ void TouchSearch::offer(const Contact& c, const Contact& edge) {
 void TouchSearch::search_patch(const Contact& patch) {
   if (geometry_.is_repeated(patch) || geometry_.is_ruled(patch)) return;
   for (const Side side : all_sides) {
-    const std::optional<Contact> edge = straight_edge(patch, side);
+    const std::optional<Contact> edge = straight_piece(geometry_, patch, side);
     if (!edge) continue;
     for (const double t : places(patch, side)) offer(on_side_of(patch, side, t), *edge);
   }
@@ -111,12 +102,8 @@ std::vector<Landmark> TouchSearch::landmarks() {
 
 std::vector<Landmark> edge_touches(const ContactGeometry& geometry, SupportQuery& query,
                                    const std::vector<CulledCell>& cells) {
-  std::set<std::pair<int, int>> patches;
-  for (const CulledCell& cell : cells) {
-    if (cell.state == CellState::mixed) patches.emplace(cell.instance, cell.patch);
-  }
   TouchSearch search(geometry, query);
-  for (const auto& [instance, patch] : patches) {
+  for (const auto& [instance, patch] : mixed_patches(cells)) {
     search.search_patch({instance, SourceKind::face, patch, 0, 0});
   }
   return search.landmarks();

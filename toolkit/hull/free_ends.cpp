@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "taut/bounds/patch_nets.h"
@@ -461,11 +460,7 @@ void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
 }
 
 void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
-  std::set<std::pair<int, int>> patches;
-  for (const CulledCell& cell : cells) {
-    if (cell.state == CellState::mixed) patches.emplace(cell.instance, cell.patch);
-  }
-  for (const auto& [instance, patch] : patches) {
+  for (const auto& [instance, patch] : mixed_patches(cells)) {
     const Contact c{instance, SourceKind::face, patch, 0, 0};
     for (const Side side : all_sides) {
       const Border& border = border_at(geometry_, c, side);

@@ -6,6 +6,7 @@
 
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/level_way.h"
 #include "taut/hull/partings.h"
 #include "taut/hull/rulings_between.h"
 
@@ -212,25 +213,29 @@ void GraphBuilder::connect_crossing(int arc, int end, int node) {
 }
 
 /// Whether an arc is there already that runs into the same free end, from the same side. In a pole
-/// several may end.
+/// several may end, and in one point of an edge two, their contacts on it coming from either side.
 bool GraphBuilder::is_end_known(const std::vector<ArcPiece>& pieces) const {
   const auto approach = [](const Ruling& end, const Ruling& before) {
     return unit(end.n - before.n);
   };
   const std::vector<Ruling>& own = pieces.back().rulings;
   const Ruling& end = own.back();
-  const dvec3 along = approach(end, own[own.size() - 2]);
-  const auto same = [&](const Ruling& other, const Ruling& before) {
+  const Ruling& own_before = own[own.size() - 2];
+  const dvec3 along = approach(end, own_before);
+  // Of an arc that begins in the end the first contact is the other's second one.
+  const auto same = [&](const Ruling& other, const Ruling& before, bool begins) {
+    const dvec3 aside = before.point[begins ? 1 : 0] - other.point[0];
     return other.point[0] == other.point[1] && glm::distance(other.n, end.n) < same_branch &&
            glm::distance(other.point[0], end.point[0]) < same_branch &&
-           glm::dot(approach(other, before), along) > same_approach;
+           glm::dot(approach(other, before), along) > same_approach &&
+           glm::dot(aside, own_before.point[0] - end.point[0]) > 0;
   };
   return std::any_of(graph_.arcs.begin(), graph_.arcs.end(), [&](const SeparatingArc& arc) {
     if (arc.closed) return false;
     const std::vector<Ruling>& first = arc.pieces.front().rulings;
     const std::vector<Ruling>& last = arc.pieces.back().rulings;
-    return (arc.facet[0] < 0 && same(first.front(), first[1])) ||
-           (arc.facet[1] < 0 && same(last.back(), last[last.size() - 2]));
+    return (arc.facet[0] < 0 && same(first.front(), first[1], true)) ||
+           (arc.facet[1] < 0 && same(last.back(), last[last.size() - 2], false));
   });
 }
 
@@ -267,6 +272,13 @@ bool GraphBuilder::is_crossed(const SupportChange& change) const {
   return odd;
 }
 
+/// The ruling has the contact, at x, as far as support values in the direction n tell.
+bool GraphBuilder::is_told(const Ruling& r, std::size_t i, const Contact& c, const dvec3& x,
+                           const dvec3& n) const {
+  return glm::distance(r.point[i], x) < same_curve ||
+         level_way(geometry_, r.contact[i], c, n).has_value();
+}
+
 bool GraphBuilder::is_traced(const CommonSupport& seed) const {
   const std::array<dvec3, 2> x = {seed.jet[0].x, seed.jet[1].x};
   for (std::size_t k = 0; k < graph_.arcs.size(); ++k) {
@@ -284,8 +296,8 @@ bool GraphBuilder::is_traced(const CommonSupport& seed) const {
           const dvec3& x1 = x[swapped ? 0 : 1];
           const auto is_seed = [&](const Ruling& r) {
             return glm::distance(r.n, seed.n) < same_curve &&
-                   glm::distance(r.point[0], x0) < same_curve &&
-                   glm::distance(r.point[1], x1) < same_curve;
+                   is_told(r, 0, seed.contact[swapped ? 1 : 0], x0, seed.n) &&
+                   is_told(r, 1, seed.contact[swapped ? 0 : 1], x1, seed.n);
           };
           // At a pole no ruling between others may be found.
           if (is_seed(from) || is_seed(to)) return true;

@@ -73,6 +73,8 @@ class GraphBuilder {
     int arc, piece, contact;
   };
   int side_of(int node, const dvec3& first, const dvec3& second) const;
+  bool is_told(const Ruling& r, std::size_t i, const Contact& c, const dvec3& x,
+               const dvec3& n) const;
   bool is_end_known(const std::vector<ArcPiece>& pieces) const;
   void settle_in(const FacetNode& node, std::size_t side, int end, Ruling& r) const;
   void settle_in_end(int arc, Ruling& r) const;

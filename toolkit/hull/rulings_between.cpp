@@ -6,6 +6,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/parabolic_sides.h"
 
 namespace taut {
 namespace {
@@ -38,10 +39,29 @@ bool is_flat(const CommonSupport& s, const ContactGeometry& geometry) {
   return is_flat(s.jet[0], s.n, least) || is_flat(s.jet[1], s.n, least);
 }
 
-/// One of the contacts is at the end of an edge that does not bend there.
-bool ends_straight(const ContactGeometry& geometry, const Ruling& r) {
+/// The side of the contact's patch that is a straight edge and on which it lies. Planes that turn
+/// about the edge touch the patch there first: along the edge it is flat.
+std::optional<Side> segment_side(const ContactGeometry& geometry, const Contact& c) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  for (const Side side : all_sides) {
+    const double value = along_v(side) ? c.u : c.v;
+    if (value == (at_upper_end(side) ? 1 : 0) && straight_piece(geometry, c, side)) return side;
+  }
+  return std::nullopt;
+}
+
+bool begins_on_segment(const ContactGeometry& geometry, const Ruling& r) {
   return std::any_of(r.contact.begin(), r.contact.end(),
-                     [&](const Contact& c) { return ends_straight(geometry, c); });
+                     [&](const Contact& c) { return segment_side(geometry, c).has_value(); });
+}
+
+/// From one of the contacts n turns with the square of its way: at the end of an edge that does not
+/// bend there, and on a straight edge across which the patch is level.
+bool ends_straight(const ContactGeometry& geometry, const Ruling& r) {
+  return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
+    const std::optional<Side> side = segment_side(geometry, c);
+    return ends_straight(geometry, c) || (side && is_level_across(geometry, c, *side, r.n));
+  });
 }
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.
@@ -155,10 +175,14 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   } else if (merged(from) == merged(to)) {
     nearly_merges_ = nearly_merge();
     straight_ = {ends_straight(system.geometry(), from), ends_straight(system.geometry(), to)};
-    lies_flat_ =
-        is_straight() || (system.geometry().tie() > support_tie &&
-                          (is_flat(CommonSupport(system.geometry(), from), system.geometry()) ||
-                           is_flat(CommonSupport(system.geometry(), to), system.geometry())));
+    const auto is_flat_far_off = [&](const Ruling& r) {
+      return system.geometry().tie() > support_tie &&
+             is_flat(CommonSupport(system.geometry(), r), system.geometry());
+    };
+    const auto lies_flat = [&](const Ruling& r) {
+      return begins_on_segment(system.geometry(), r) || is_flat_far_off(r);
+    };
+    lies_flat_ = is_straight() || lies_flat(from) || lies_flat(to);
     fit();
   } else {
     free_end_ = merged(from) ? 0 : 1;

@@ -12,6 +12,7 @@
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/contact_planes.h"
+#include "taut/hull/edge_stretches.h"
 #include "taut/hull/edge_touches.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_end_seeds.h"
@@ -185,8 +186,11 @@ void GraphTracer::find_poles() {
 
 /// Where planes that turn about straight edges touch the faces beside them.
 void GraphTracer::find_touches(const std::vector<CulledCell>& cells) {
-  for (const Landmark& touch : edge_touches(geometry_, query_, cells)) {
-    if (!is_landmark(touch.n)) add_landmark(touch);
+  for (const auto& touches :
+       {edge_touches(geometry_, query_, cells), edge_stretches(geometry_, query_, cells)}) {
+    for (const Landmark& touch : touches) {
+      if (!is_landmark(touch.n)) add_landmark(touch);
+    }
   }
 }
 
