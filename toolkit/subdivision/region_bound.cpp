@@ -62,14 +62,25 @@ std::vector<dvec3> inner_points(const CageLevel& level, std::size_t cell, const 
   return result;
 }
 
-/// Adds points of the cells' creases; false if there are none.
-bool know_creases(const CageLevel& level, std::span<const std::size_t> cells, Bound& bound) {
+/// Adds points of the cells' creases.
+void know_creases(const CageLevel& level, std::span<const std::size_t> cells, Bound& bound) {
+  for (const std::size_t c : cells) {
+    for (std::size_t side = 0; side < level.vertices(c).size(); ++side) {
+      if (const auto crease = level.crease(c, side)) bound.know(*crease);
+    }
+  }
+}
+
+/// The cells have sharp sides, and all of these are creases: so are then those of the levels below,
+/// and parts of them.
+bool has_creases(const CageLevel& level, std::span<const std::size_t> cells,
+                 const std::vector<CellPatch>& patches) {
   bool any = false;
   for (const std::size_t c : cells) {
     for (std::size_t side = 0; side < level.vertices(c).size(); ++side) {
-      const auto crease = level.crease(c, side);
-      if (crease) bound.know(*crease);
-      any = any || crease.has_value();
+      if (patches[c].smooth[side]) continue;
+      if (!level.crease(c, side)) return false;
+      any = true;
     }
   }
   return any;
@@ -142,8 +153,9 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
   for (const std::size_t c : region) {
     for (const dvec3& p : patches[c].points) plain.meet(p);
   }
+  if (plain.value() <= enough || !has_creases(level, region, patches)) return plain.value();
   Bound bound(std::move(known), limit);
-  if (plain.value() <= enough || !know_creases(level, region, bound)) return plain.value();
+  know_creases(level, region, bound);
   for (const std::size_t c : region) {
     for (const dvec3& p : inner_points(level, c, patches[c])) bound.meet(p);
   }

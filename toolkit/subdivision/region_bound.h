@@ -17,7 +17,7 @@ namespace taut {
 /// by its own curvature, do not count: a patch is within the convex hull of its side along the
 /// crease and its other control points. Of the limit surface this is asked of the patches of the
 /// levels below, down to where what is left of the region is small.
-/// @pre caps have the level's creases for sides
+/// @pre caps have the level's creases for sides; no cell has more than four
 double region_bound(const CageLevel& level, std::span<const std::size_t> region,
                     const std::vector<CellPatch>& patches, std::vector<dvec3> known, double enough,
                     bool least = false);
