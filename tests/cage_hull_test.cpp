@@ -224,6 +224,22 @@ TEST(CageHull, OfCubesWithSharpRims) {
   }
 }
 
+/// Smooth but for sharp vertices: the surface comes to a point there, and is concave around.
+TEST(CageHull, OfCubesWithApexes) {
+  for (const int count : {1, 4}) {
+    const std::string name = std::to_string(count) + " apexes";
+    ControlCage cage = cube_cage();
+    for (int v = 0; v < count; ++v) cage.corners.push_back({v, infinite_sharpness});
+    for (const bool loop : {false, true}) {
+      const Model model = cage_model(loop ? triangulated(cage) : cage);
+      EXPECT_LE(model.deviation_bound(), 1e-8) << name;
+      const Hull hull = whole_hull(model, name);
+      ASSERT_TRUE(hull.boundary);
+      expect_verified(model, hull, name);
+    }
+  }
+}
+
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);

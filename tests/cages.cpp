@@ -186,6 +186,11 @@ std::vector<NamedCage> tagged_cages() {
       darts.creases.resize(darts.creases.size() / 2);
       darts.creases.push_back({{0, ring}, taut::infinite_sharpness});
       all.push_back({name + ", darts at a vertex of valence " + std::to_string(n), darts});
+      darts.creases.erase(darts.creases.begin(), darts.creases.end() - 1);
+      darts.corners = {{0, taut::infinite_sharpness}};
+      all.push_back({name + ", a sharp edge to an apex of valence " + std::to_string(n), darts});
+      darts.creases.clear();
+      all.push_back({name + ", an apex of valence " + std::to_string(n), darts});
     }
     ControlCage hole = dome_cage(scheme, 4);
     hole.holes = {0, 4};

@@ -403,6 +403,17 @@ std::optional<std::array<dvec3, 4>> CageLevel::crease(std::size_t cell, std::siz
                               q + (p - q) / 3.0, q + ((*after - q) + (p - q)) / 6.0};
 }
 
+bool CageLevel::is_apex(int vertex) const {
+  const Far::TopologyLevel base = topology_->level();
+  if (base.GetVertexRule(vertex) != Sdc::Crease::RULE_CORNER || base.IsVertexBoundary(vertex) ||
+      topology_->near_semi_sharp[to_size(vertex)]) {
+    return false;
+  }
+  const auto edges = base.GetVertexEdges(vertex);
+  return std::count_if(edges.begin(), edges.end(), [&](int e) { return topology_->is_sharp(e); }) <
+         2;
+}
+
 const dvec3& CageLevel::point(int vertex) const { return topology_->points[to_size(vertex)]; }
 
 int CageLevel::number(int vertex) const { return topology_->numbers[to_size(vertex)]; }

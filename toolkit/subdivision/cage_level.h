@@ -75,6 +75,9 @@ class CageLevel {
   /// The limit of a sharp side of a cell, from a corner to the next, as a cubic Bezier curve. None
   /// of a smooth one, and of one that at one of its ends is a dart or near semi-sharp ones.
   std::optional<std::array<dvec3, 4>> crease(std::size_t cell, std::size_t side) const;
+  /// An inner vertex that is infinitely sharp, at which one edge at most is: its limit is its
+  /// control point, in which the surface around comes to a point, with no tangent plane.
+  bool is_apex(int vertex) const;
   /// A vertex's control point.
   const dvec3& point(int vertex) const;
   /// The number of a vertex of a cell over all levels; the control cage's have their own.

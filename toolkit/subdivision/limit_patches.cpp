@@ -14,6 +14,7 @@
 #include "taut/subdivision/cage_level.h"
 #include "taut/subdivision/dart_limit.h"
 #include "taut/subdivision/region_bound.h"
+#include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/smooth_caps.h"
 #include "taut/subdivision/touch_test.h"
 #include "taut/subdivision/triangle_points.h"
@@ -140,8 +141,35 @@ void continue_beyond(std::vector<dvec3>& cap, const std::vector<dvec3>& beyond, 
   }
 }
 
+/// What stands for a cell at an apex, its first corner, is free there, but for its two spokes that
+/// are creases: the surface comes to a point, and is no polynomial.
+void come_to_point(std::vector<dvec3>& cap, const dvec3& apex,
+                   const std::array<std::optional<std::array<dvec3, 4>>, 2>& creases) {
+  const bool is_quad = cap.size() == 16;
+  const auto at = [&](std::size_t i, std::size_t j) -> dvec3& {
+    return cap[is_quad ? 4 * i + j : triangle_point(4, i, j)];
+  };
+  const std::size_t n = is_quad ? 3 : 4;
+  for (const bool first : {true, false}) {
+    const auto spoke = [&](std::size_t k) -> dvec3& { return first ? at(k, 0) : at(0, k); };
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+      spoke(k) = glm::mix(apex, spoke(n - 1), double(k) / double(n - 1));
+    }
+    const auto& crease = creases[first ? 0 : 1];
+    if (!crease) continue;
+    const std::vector<dvec3> own = elevated_curve({crease->begin(), crease->end()}, n);
+    for (std::size_t k = 0; k <= n; ++k) spoke(k) = own[k];
+  }
+  if (is_quad) {
+    at(1, 1) = (at(0, 1) + at(1, 0) + at(1, 2) + at(2, 1)) / 4.0;
+  } else {
+    at(1, 1) = (at(2, 0) + at(0, 2)) / 2.0;
+  }
+}
+
 /// Cells around an inner vertex, counter-clockwise, and which of their corners are there.
 struct CellFan {
+  int centre = -1;
   std::vector<std::size_t> cells;
   std::vector<std::size_t> corners;
   /// The side from the vertex to the first cell's next corner is sharp, all others are smooth.
@@ -172,7 +200,10 @@ class Refinement {
   std::optional<CellFan> fan(const std::vector<std::size_t>& region) const;
   std::vector<dvec3> ring(const CellFan& fan) const;
   std::optional<std::vector<dvec3>> cap_of(const CellFan& fan, std::size_t k) const;
-  void smooth_fan(const std::vector<std::size_t>& region);
+  std::optional<std::vector<std::vector<dvec3>>> caps_of(const CellFan& fan) const;
+  std::optional<int> apex(const std::vector<std::size_t>& region) const;
+  bool fit_caps(const std::vector<std::size_t>& region);
+  void emit_caps(const std::vector<std::size_t>& region);
   double bound_of(const std::vector<std::size_t>& region, bool least) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
   void emit(std::size_t cell, bool may_touch = true);
@@ -342,6 +373,7 @@ double Refinement::bound_of(const std::vector<std::size_t>& region, bool least) 
       known.insert(known.end(), level.begin(), level.end());
     }
   }
+  if (const std::optional<int> apex = this->apex(region)) known.push_back(level_.point(*apex));
   if (!known.empty()) {
     return region_bound(level_, region, patches_, std::move(known), tolerance_, least);
   }
@@ -393,6 +425,7 @@ std::optional<CellFan> Refinement::fan(const std::vector<std::size_t>& region) c
     return own[(place_in(c, *centre) + turn) % own.size()];
   };
   CellFan fan;
+  fan.centre = *centre;
   for (std::size_t c = region.front(); fan.cells.size() < n;) {
     fan.cells.push_back(c);
     fan.corners.push_back(place_in(c, *centre));
@@ -432,12 +465,14 @@ std::vector<dvec3> Refinement::ring(const CellFan& fan) const {
   return points;
 }
 
-/// The cap of a fan's cell with the fan's vertex first. OpenSubdiv's caps at a dart, as if that
-/// were smooth, do not go on in the regular cells around: there they are made to.
+/// The cap of a fan's cell with the fan's vertex first. OpenSubdiv's caps at a dart or
+/// an apex, as if that were smooth, do not go on in the regular cells around: there they are made
+/// to.
 std::optional<std::vector<dvec3>> Refinement::cap_of(const CellFan& fan, std::size_t k) const {
   const std::size_t cell = fan.cells[k];
   std::vector<dvec3> cap = turned(patches_[cell], fan.corners[k]);
-  if (!fan.is_dart) return cap;
+  const bool is_apex = level_.is_apex(fan.centre);
+  if (!fan.is_dart && !is_apex) return cap;
   const std::span<const int> own = level_.vertices(cell);
   for (std::size_t side = 1; side + 1 < own.size(); ++side) {
     const std::size_t from = (fan.corners[k] + side) % own.size();
@@ -452,33 +487,69 @@ std::optional<std::vector<dvec3>> Refinement::cap_of(const CellFan& fan, std::si
         own.size() == 3 ? (corner(own[from]) + 1) % 3 : corner(own[side == 1 ? from : to]);
     continue_beyond(cap, turned(patches_[*other], first), side);
   }
+  if (is_apex) {
+    std::optional<std::array<dvec3, 4>> last =
+        level_.crease(cell, (fan.corners[k] + own.size() - 1) % own.size());
+    if (last) std::reverse(last->begin(), last->end());
+    come_to_point(cap, level_.point(fan.centre), {level_.crease(cell, fan.corners[k]), last});
+  }
   return cap;
 }
 
-/// Lets the caps of a region that is all cells around one inner vertex meet smoothly there.
-void Refinement::smooth_fan(const std::vector<std::size_t>& region) {
-  const std::optional<CellFan> fan = this->fan(region);
-  if (!fan) return;
-  const bool quads = is_quad(patches_[region.front()]);
+/// The caps of a fan's cells, each with the fan's vertex first; none if there is no telling them.
+std::optional<std::vector<std::vector<dvec3>>> Refinement::caps_of(const CellFan& fan) const {
+  std::vector<std::vector<dvec3>> caps;
+  for (std::size_t k = 0; k < fan.cells.size(); ++k) {
+    std::optional<std::vector<dvec3>> cap = cap_of(fan, k);
+    if (!cap) return std::nullopt;
+    caps.push_back(std::move(*cap));
+  }
+  if (level_.is_apex(fan.centre)) return caps;
+  const bool quads = is_quad(patches_[fan.cells.front()]);
   std::optional<VertexLimit> dart;
-  if (fan->is_dart) {
-    dart = dart_limit(quads ? CageScheme::catmark : CageScheme::loop, ring(*fan));
-    if (!dart) return;
+  if (fan.is_dart) {
+    dart = dart_limit(quads ? CageScheme::catmark : CageScheme::loop, ring(fan));
+    if (!dart) return std::nullopt;
   }
-  std::vector<std::vector<dvec3>> nets;
-  nets.reserve(fan->cells.size());
-  for (std::size_t k = 0; k < fan->cells.size(); ++k) {
-    std::optional<std::vector<dvec3>> cap = cap_of(*fan, k);
-    if (!cap) return;
-    nets.push_back(std::move(*cap));
+  return quads ? smooth_quad_caps(caps, dart) : smooth_triangle_caps(caps, dart);
+}
+
+/// The apex of a region's cells, if there is one.
+std::optional<int> Refinement::apex(const std::vector<std::size_t>& region) const {
+  for (const std::size_t c : region) {
+    for (const int v : level_.vertices(c)) {
+      if (level_.is_apex(v)) return v;
+    }
   }
-  std::vector<std::vector<dvec3>> caps =
-      quads ? smooth_quad_caps(nets, dart) : smooth_triangle_caps(nets, dart);
+  return std::nullopt;
+}
+
+/// Lets the caps of a region that is all cells around one inner vertex meet as the surface does
+/// there: smoothly, in a dart or in an apex. Whether they do.
+bool Refinement::fit_caps(const std::vector<std::size_t>& region) {
+  const std::optional<CellFan> fan = this->fan(region);
+  if (!fan) return false;
+  std::optional<std::vector<std::vector<dvec3>>> caps = caps_of(*fan);
+  if (!caps) return false;
   for (std::size_t k = 0; k < fan->cells.size(); ++k) {
     CellPatch& patch = patches_[fan->cells[k]];
-    patch.points = std::move(caps[k]);
-    patch.degree += 2;
+    patch.points = std::move((*caps)[k]);
+    if (!level_.is_apex(fan->centre)) patch.degree += 2;
     patch.points = turned(patch, fan->corners[k], true);
+  }
+  return true;
+}
+
+/// The caps of a region stand for it from now on. At an apex they do not go on into each other.
+void Refinement::emit_caps(const std::vector<std::size_t>& region) {
+  for (const std::size_t c : region) {
+    const std::span<const int> own = level_.vertices(c);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (level_.is_apex(own[k]) || level_.is_apex(own[(k + 1) % own.size()])) {
+        patches_[c].smooth[k] = false;
+      }
+    }
+    emit(c);
   }
 }
 
@@ -491,11 +562,11 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
         depth_ >= level_limit || std::any_of(region.begin(), region.end(), [&](std::size_t c) {
           return least_width(patches_[c], point_side_) < least_side_;
         });
-    smooth_fan(region);
+    const bool fit = fit_caps(region) || !apex(region);
     const double bound = bound_of(region, small);
-    if (bound <= tolerance_ || small) {
+    if ((fit && bound <= tolerance_) || small) {
       result_.deviation_bound = std::max(result_.deviation_bound, bound);
-      for (const std::size_t c : region) emit(c);
+      emit_caps(region);
       return;
     }
   }

@@ -8,6 +8,7 @@
 
 #include "taut/subdivision/edge_middles.h"
 #include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 
 namespace taut {
@@ -86,6 +87,25 @@ bool has_creases(const CageLevel& level, std::span<const std::size_t> cells,
   return any;
 }
 
+/// How far the caps' sides may be from the cells' creases.
+double side_gap(const CageLevel& level, std::span<const std::size_t> cells,
+                const std::vector<CellPatch>& patches) {
+  double gap = 0;
+  for (const std::size_t c : cells) {
+    for (std::size_t side = 0; side < level.vertices(c).size(); ++side) {
+      const auto crease = level.crease(c, side);
+      if (!crease) continue;
+      const std::vector<std::size_t> own = side_points(patches[c], side);
+      const std::vector<dvec3> there =
+          elevated_curve({crease->begin(), crease->end()}, own.size() - 1);
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        gap = std::max(gap, glm::distance(patches[c].points[own[k]], there[k]));
+      }
+    }
+  }
+  return gap;
+}
+
 /// The cells' limit surface is within the convex hull of these.
 std::vector<dvec3> enclosures(const CageLevel& level, std::span<const std::size_t> cells) {
   std::vector<dvec3> result;
@@ -160,7 +180,7 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
     for (const dvec3& p : inner_points(level, c, patches[c])) bound.meet(p);
   }
   meet_limit(level, region, bound, enough);
-  return std::min(plain.value(), bound.value());
+  return std::min(plain.value(), bound.value() + side_gap(level, region, patches));
 }
 
 }  // namespace taut

@@ -11,13 +11,13 @@ namespace taut {
 /// What stands for the cells of a region, and their limit surface itself, are no farther than this
 /// from the convex hull of points that are on both; if it is more than `enough`, something between,
 /// unless the least that can be said is asked for. Such points are those known, and those of the
-/// region's creases: each is an exact side of the cap beside it.
+/// region's creases, which are the sides of the caps beside them but for what is added.
 ///
 /// Both are within the convex hulls of their control points. Those on a crease, farther out than it
 /// by its own curvature, do not count: a patch is within the convex hull of its side along the
 /// crease and its other control points. Of the limit surface this is asked of the patches of the
 /// levels below, down to where what is left of the region is small.
-/// @pre caps have the level's creases for sides; no cell has more than four
+/// @pre no cell has more than four sides
 double region_bound(const CageLevel& level, std::span<const std::size_t> region,
                     const std::vector<CellPatch>& patches, std::vector<dvec3> known, double enough,
                     bool least = false);

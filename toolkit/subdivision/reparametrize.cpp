@@ -159,6 +159,18 @@ std::vector<dvec3> elevated_triangle(std::span<const dvec3> triangle) {
   return result;
 }
 
+std::vector<dvec3> elevated_curve(std::vector<dvec3> points, std::size_t degree) {
+  for (std::size_t n = points.size(); n <= degree; ++n) {
+    std::vector<dvec3> up(n + 1);
+    for (std::size_t k = 0; k <= n; ++k) {
+      const double s = double(k) / double(n);
+      up[k] = k == 0 ? points[0] : k == n ? points[n - 1] : s * points[k - 1] + (1 - s) * points[k];
+    }
+    points = std::move(up);
+  }
+  return points;
+}
+
 BezierPatch reversed_u(const BezierPatch& patch) {
   BezierPatch result = patch;
   for (int i = 0; i <= patch.degree_u; ++i) {

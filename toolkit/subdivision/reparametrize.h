@@ -29,6 +29,9 @@ std::vector<dvec3> sub_triangle(std::span<const dvec3> triangle,
                                 const std::array<dvec3, 3>& corners);
 std::vector<dvec3> elevated_triangle(std::span<const dvec3> triangle);
 
+/// The polynomial curve of these control points in a degree as high at least.
+std::vector<dvec3> elevated_curve(std::vector<dvec3> points, std::size_t degree);
+
 BezierPatch reversed_u(const BezierPatch& patch);
 BezierPatch reversed_v(const BezierPatch& patch);
 /// @}

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 
 namespace taut {
@@ -17,19 +18,6 @@ double binomial(std::size_t n, std::size_t k) {
   double result = 1;
   for (std::size_t i = 1; i <= k; ++i) result = result * double(n - k + i) / double(i);
   return result;
-}
-
-/// Of polynomial curves in Bernstein form.
-Points raised(Points c, std::size_t degree) {
-  for (std::size_t n = c.size(); n <= degree; ++n) {
-    Points up(n + 1);
-    for (std::size_t k = 0; k <= n; ++k) {
-      const double s = double(k) / double(n);
-      up[k] = k == 0 ? c[0] : k == n ? c[n - 1] : s * c[k - 1] + (1 - s) * c[k];
-    }
-    c = std::move(up);
-  }
-  return c;
 }
 
 Points derivative(const Points& c) {
@@ -152,7 +140,7 @@ class Fan {
       const dvec3 start = 0.5 * (leaving[(j + 1) % n] - leaving[(j + n - 1) % n]);
       Points half = hermite(start, twist[j] - 0.5 * slope.front(),
                             e.across - 0.5 * turned[j].back(), e.turn - 0.5 * slope.back());
-      half = raised(std::move(half), turned[j].size() - 1);
+      half = elevated_curve(std::move(half), turned[j].size() - 1);
       Points right(half.size()), left(half.size());
       for (std::size_t k = 0; k < half.size(); ++k) {
         right[k] = 0.5 * turned[j][k] + half[k];
@@ -163,7 +151,7 @@ class Fan {
     }
     if (!beyond) return;
     const auto across = [&](const dvec3& start, const dvec3& twisted, const SpokeEnds& e) {
-      return raised(hermite(start, twisted, e.across, e.turn), turned[0].size() - 1);
+      return elevated_curve(hermite(start, twisted, e.across, e.turn), turned[0].size() - 1);
     };
     right_[0] = across(leaving[1], twist[0], ends_[0]);
     left_[0] = across(leaving[n - 1], twist[n - 1], *beyond);
@@ -226,10 +214,12 @@ Net raised(const Net& cubic) {
   Net result(quad_degree);
   std::array<Points, 4> rows;
   for (std::size_t i = 0; i < 4; ++i) {
-    rows[i] = raised({cubic.at(i, 0), cubic.at(i, 1), cubic.at(i, 2), cubic.at(i, 3)}, quad_degree);
+    rows[i] = elevated_curve({cubic.at(i, 0), cubic.at(i, 1), cubic.at(i, 2), cubic.at(i, 3)},
+                             quad_degree);
   }
   for (std::size_t j = 0; j <= quad_degree; ++j) {
-    const Points column = raised({rows[0][j], rows[1][j], rows[2][j], rows[3][j]}, quad_degree);
+    const Points column =
+        elevated_curve({rows[0][j], rows[1][j], rows[2][j], rows[3][j]}, quad_degree);
     for (std::size_t i = 0; i <= quad_degree; ++i) result.at(i, j) = column[i];
   }
   return result;
@@ -365,8 +355,8 @@ std::vector<Points> smooth_quad_caps(std::span<const Points> nets,
     const Net old = raised(given[j]);
     Net net = old;
     const std::size_t next = (j + 1) % n;
-    const Points first = raised(fan.curve(j), quad_degree);
-    const Points second = raised(fan.curve(next), quad_degree);
+    const Points first = elevated_curve(fan.curve(j), quad_degree);
+    const Points second = elevated_curve(fan.curve(next), quad_degree);
     for (std::size_t k = 0; k <= quad_degree - 2; ++k) {
       net.at(k, 0) = first[k];
       net.at(0, k) = second[k];
@@ -410,8 +400,8 @@ std::vector<Points> smooth_triangle_caps(std::span<const Points> nets,
     Triangle net = old;
     constexpr std::size_t d = triangle_degree;
     const std::size_t next = (j + 1) % n;
-    const Points first = raised(fan.curve(j), d);
-    const Points second = raised(fan.curve(next), d);
+    const Points first = elevated_curve(fan.curve(j), d);
+    const Points second = elevated_curve(fan.curve(next), d);
     for (std::size_t k = 0; k <= d - 2; ++k) {
       net.at(k, 0) = first[k];
       net.at(0, k) = second[k];
