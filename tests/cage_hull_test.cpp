@@ -240,6 +240,22 @@ TEST(CageHull, OfCubesWithApexes) {
   }
 }
 
+/// At the notch's ends, regular vertices of the cage, the Gaussian curvature vanishes: contacts of
+/// two patches that only have the corner in common merge there.
+TEST(CageHull, OfLProfiles) {
+  for (const bool has_rim : {false, true}) {
+    ControlCage cage = l_profile_cage();
+    for (int k = 0; k < 6 && has_rim; ++k) {
+      cage.creases.push_back({{6 + k, 6 + (k + 1) % 6}, infinite_sharpness});
+    }
+    const std::string name = has_rim ? "L profile with a rim" : "L profile";
+    const Model model = cage_model(cage);
+    const Hull hull = whole_hull(model, name);
+    ASSERT_TRUE(hull.boundary);
+    expect_verified(model, hull, name);
+  }
+}
+
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);

@@ -28,6 +28,18 @@ ControlCage cube_cage() {
   return cage;
 }
 
+ControlCage l_profile_cage() {
+  ControlCage cage;
+  for (const double z : {0.0, 1.0}) {
+    for (const auto& [x, y] : {std::pair{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}) {
+      cage.points.emplace_back(x, y, z);
+    }
+  }
+  cage.faces = {{0, 3, 2, 1}, {0, 5, 4, 3}, {6, 7, 8, 9}, {6, 9, 10, 11}};
+  for (int k = 0; k < 6; ++k) cage.faces.push_back({k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k});
+  return cage;
+}
+
 ControlCage rimmed_cage(bool flat) {
   ControlCage cage = cube_cage();
   const std::vector<int>& top = cage.faces[1];

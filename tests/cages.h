@@ -30,6 +30,9 @@ ControlCage dome_cage(CageScheme scheme, int valence);
 /// A cube with a sharp rim around its top, which is flat, or bent up at two of its corners. At each
 /// corner the top is alone between two edges that go on smoothly into each other.
 ControlCage rimmed_cage(bool flat);
+/// The prism over an L with arms of 2 and widths of 1, one high: vertices 0 to 5 are its bottom's,
+/// 6 to 11 those above them.
+ControlCage l_profile_cage();
 /// m x n quads of a bulging sheet over [-1, 1]^2, open.
 ControlCage sheet_cage(int m, int n);
 /// A dome for the scheme loop with two triangles on one of its edges, which share the other two: in

@@ -9,6 +9,7 @@
 #include "freeform.h"
 #include "models.h"
 #include "taut/bounds/support_query.h"
+#include "taut/hull/joined_elements.h"
 
 namespace taut {
 namespace {

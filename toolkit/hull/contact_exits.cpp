@@ -6,6 +6,7 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/joined_elements.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {
@@ -443,6 +444,11 @@ bool leads_over_border(const ContactExit& exit) {
   return exit.kind == ContactExit::Kind::side || exit.kind == ContactExit::Kind::end;
 }
 
+bool stands_at(const Contact& c, const ContactExit& exit) {
+  const Contact at = at_exit(c, exit);
+  return at.u == c.u && at.v == c.v;
+}
+
 Contact at_exit(Contact c, const ContactExit& exit) {
   if (exit.kind == ContactExit::Kind::side) {
     const Side side = all_sides[std::size_t(exit.index)];
@@ -536,46 +542,6 @@ std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contac
                                    const dvec3& n) {
   const std::optional<Contact> start = way_off_pole(geometry, pole, n);
   return start ? climbed(geometry, *start, n) : std::nullopt;
-}
-
-bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
-  if (a.instance != b.instance || a.kind != b.kind || a.kind == SourceKind::vertex) return false;
-  if (a.element == b.element) return true;
-  for (const ContactExit& exit : exits(geometry, a)) {
-    if (!leads_over_border(exit)) continue;
-    const std::optional<Contact> over = beyond(geometry, at_exit(a, exit), exit);
-    if (over && same_element(*over, b)) return true;
-  }
-  return false;
-}
-
-void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
-  if (a.instance != b.instance || same_element(a, b)) return;
-  const auto moved = [&](Contact& from, Contact& to) {
-    for (const ContactExit& exit : exits(geometry, from)) {
-      if (!leads_over_border(exit)) continue;
-      const Contact border = at_exit(from, exit);
-      const std::optional<Contact> over = beyond(geometry, border, exit);
-      if (!over || !same_element(*over, to)) continue;
-      from = border;
-      to = *over;
-      return true;
-    }
-    return false;
-  };
-  if (moved(a, b) || moved(b, a)) return;
-  // Two edges that end in one vertex.
-  for (const ContactExit& own : exits(geometry, a)) {
-    if (own.kind != ContactExit::Kind::end) continue;
-    const std::optional<Contact> vertex = beyond(geometry, at_exit(a, own), own);
-    if (!vertex || vertex->kind != SourceKind::vertex) continue;
-    Contact other = *vertex;
-    Contact edge = b;
-    if (edge.kind != SourceKind::edge || !moved(edge, other)) continue;
-    a = at_exit(a, own);
-    b = edge;
-    return;
-  }
 }
 
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
@@ -727,10 +693,11 @@ std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Conta
     return std::nullopt;
   }
   for (const ContactExit& exit : exits(geometry, c)) {
-    // Where it stands at the exit.
-    const Contact at = at_exit(c, exit);
-    if (at.u != c.u || at.v != c.v) continue;
+    if (!stands_at(c, exit)) continue;
     if (const auto next = found(beyond(geometry, c, exit))) return next;
+  }
+  for (const Contact& at : about(geometry, c)) {
+    if (const auto next = found(at)) return next;
   }
   return std::nullopt;
 }

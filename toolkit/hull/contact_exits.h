@@ -44,6 +44,9 @@ bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side sid
 /// To the same point in another element, not into what an edge or a vertex bounds.
 bool leads_over_border(const ContactExit& exit);
 
+/// The contact is on the side or at the end at which the exit lies.
+bool stands_at(const Contact& c, const ContactExit& exit);
+
 /// The contact moved to the side or end at which the exit lies.
 Contact at_exit(Contact c, const ContactExit& exit);
 
@@ -83,14 +86,6 @@ double pole_turn(const ContactGeometry& geometry, const Contact& pole);
 /// pole's normal. @pre the contact lies at a pole
 std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
                                    const dvec3& n);
-
-/// Both lie on one smooth surface or curve: in one element or in two that go on smoothly into each
-/// other.
-bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b);
-
-/// Two neighbouring elements' contacts that are about to merge, moved onto the border or to the
-/// vertex between them; as they are where there is none.
-void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
 
 /// The contact in its canonical form where it supports in the direction n; inside of a straight
 /// edge or of a ruled patch, which support only together with the ends of the segments in them, the

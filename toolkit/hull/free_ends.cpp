@@ -10,6 +10,7 @@
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
+#include "taut/hull/joined_elements.h"
 #include "taut/hull/parabolic_sides.h"
 #include "taut/hull/sign_changes.h"
 
@@ -41,6 +42,10 @@ constexpr double cubic_slack = 1e-9;
 constexpr double flat_slack = 1e-7;
 /// Where a departure is level for a cusp or a zero of the torsion, that is no farther.
 constexpr double level_reach = 1e-6;
+/// Roots that are no farther from a side's end may be there.
+constexpr double at_end = 1e-9;
+/// Share of a direction's rate across a side below which it may lead along that.
+constexpr double along_side = 1e-9;
 /// What is nearer to a collapsed side is at it.
 constexpr double pole_distance = 1e-6;
 /// Elements over a border that is no farther are searched too.
@@ -250,6 +255,39 @@ bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side,
   return b->flat < flat_slack * b->steep || inward_departure(*b, over->side) == own;
 }
 
+/// The contacts of all patches about a smooth corner. None if the contact lies on one side only, or
+/// if the corner is on an edge.
+std::vector<Contact> about_corner(const ContactGeometry& geometry, const Contact& c) {
+  std::vector<Contact> found = about(geometry, c);
+  const auto is_corner = [&](const Contact& at) {
+    const std::vector<ContactExit> all = exits(geometry, at);
+    return std::count_if(all.begin(), all.end(), [&](const ContactExit& exit) {
+             return leads_over_border(exit) && stands_at(at, exit) &&
+                    beyond_join(geometry, at, all_sides[std::size_t(exit.index)]);
+           }) == 2;
+  };
+  if (!std::all_of(found.begin(), found.end(), is_corner)) found.clear();
+  return found;
+}
+
+/// The same in a direction from a corner, of the patch into which it leads.
+std::optional<Departure> corner_departure(const ContactGeometry& geometry,
+                                          const std::vector<Contact>& around, const dvec3& along) {
+  for (const Contact& c : around) {
+    const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+    if (!b) return std::nullopt;
+    const double sense = glm::dot(b->along, along) < 0 ? -1 : 1;
+    const bool leads_in = std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+      return distance_from(c, side) != 0 ||
+             sense * inward_rate(*b, side) > -along_side * glm::length(b->rate);
+    });
+    if (leads_in) {
+      return departure(sense * b->cubic, cubic_slack * std::max(1.0, b->third));
+    }
+  }
+  return std::nullopt;
+}
+
 /// The root is that at a corner in which the patch is flat to second order, as sheets are whose
 /// corner is a planar quad; no generic end. The twist has a double root there: Newton's method,
 /// halving its distance, ends no farther than its last step, or where the twist is rounding.
@@ -276,8 +314,15 @@ std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact
   const Contact c = on_side_of(patch, side, placed(t));
   const std::optional<SurfaceBend> b = surface_bend(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
-  const Departure own = inward_departure(*b, side);
-  if (own == Departure::above || !agrees_beyond(geometry, c, side, own)) return std::nullopt;
+  const std::vector<Contact> around = about_corner(geometry, c);
+  std::optional<Departure> own = inward_departure(*b, side);
+  if (around.empty()) {
+    if (!agrees_beyond(geometry, c, side, *own)) return std::nullopt;
+  } else {
+    own = corner_departure(geometry, around, b->along);
+    if (own != corner_departure(geometry, around, -b->along)) return std::nullopt;
+  }
+  if (!own || own == Departure::above) return std::nullopt;
   if (own == Departure::level && !cusp_near(geometry, c, level_reach)) return std::nullopt;
   const Contact place = geometry.canonical(c);
   const Kind kind = place.kind == SourceKind::face ? Kind::face : Kind::border;
@@ -468,8 +513,12 @@ void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
       if (border.kind == BorderKind::collapsed || seam) continue;
       const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
       if (vanishes(curvature)) continue;
-      for (const double t : sign_changes(parabolic_along(geometry_, c, side))) {
-        offer(border_end(geometry_, c, side, t));
+      const SideFunction parabolic = parabolic_along(geometry_, c, side);
+      for (const double t : sign_changes(parabolic)) offer(border_end(geometry_, c, side, t));
+      // It may change its sign at a corner, from patch to patch.
+      for (const double end : {0.0, 1.0}) {
+        const auto t = root_near(parabolic, end, at_end, noise_step(geometry_, c));
+        if (t && placed(*t) == end) offer(border_end(geometry_, c, side, end));
       }
     }
   }

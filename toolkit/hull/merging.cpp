@@ -12,6 +12,7 @@
 #include "taut/hull/element_changes.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/free_ends.h"
+#include "taut/hull/joined_elements.h"
 #include "taut/hull/pole_passage.h"
 
 namespace taut {
@@ -132,10 +133,8 @@ std::optional<BorderPoint> border_ahead(const ContactGeometry& geometry, const F
 std::optional<ContactExit> exit_to(const ContactGeometry& geometry, const Contact& c,
                                    const Contact& other) {
   for (const ContactExit& exit : exits(geometry, c)) {
-    if (!leads_over_border(exit)) continue;
-    const Contact at = at_exit(c, exit);
-    if (at.u != c.u || at.v != c.v) continue;
-    const std::optional<Contact> over = beyond(geometry, at, exit);
+    if (!leads_over_border(exit) || !stands_at(c, exit)) continue;
+    const std::optional<Contact> over = beyond(geometry, c, exit);
     if (over && same_element(*over, other)) return exit;
   }
   return std::nullopt;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/hull/contact_geometry.h"
+
+namespace taut {
+
+/// The contact, and the same point in all other elements of its kind of which it is on a border,
+/// as far as one goes on smoothly into the next.
+std::vector<Contact> about(const ContactGeometry& geometry, const Contact& c);
+
+/// Both lie on one smooth surface or curve: in one element, in two that go on smoothly into each
+/// other, or about a smooth corner.
+bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b);
+
+/// Two neighbouring elements' contacts that are about to merge, moved onto the border, or to the
+/// corner or the vertex, between them; as they are where there is none.
+void move_together(const ContactGeometry& geometry, Contact& a, Contact& b);
+
+}  // namespace taut
