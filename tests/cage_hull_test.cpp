@@ -256,6 +256,83 @@ TEST(CageHull, OfLProfiles) {
   }
 }
 
+/// Rounded about its edges: faces and edges keep flat and cylindrical middles, beside which other
+/// patches are level.
+TEST(CageHull, OfASemiSharpCube) {
+  ControlCage cage = cube_cage();
+  for (int v = 0; v < 8; ++v) {
+    for (const int axis : {1, 2, 4}) {
+      if ((v & axis) == 0) cage.creases.push_back({{v, v | axis}, 2});
+    }
+  }
+  const Model model = cage_model(cage);
+  const Hull hull = whole_hull(model, "semi-sharp cube");
+  ASSERT_TRUE(hull.boundary);
+  expect_verified(model, hull, "semi-sharp cube");
+}
+
+/// In 2 x 2 quads a side, surfaces have no curvature across the sides' middles, where contacts and
+/// ends of edges are level; in 3 x 3 the middles are plane, and facets' sides run along seams.
+TEST(CageHull, OfBoxesWithoutLids) {
+  for (const int k : {2, 3}) {
+    for (const double taper : {0.0, 0.1}) {
+      for (const bool open_bottom : {false, true}) {
+        const std::string name = std::to_string(k) + (open_bottom ? ", both open" : ", open");
+        const Model model = cage_model(box_cage({k, taper, true, open_bottom}));
+        const Hull hull = whole_hull(model, name);
+        ASSERT_TRUE(hull.boundary);
+        expect_verified(model, hull, name);
+      }
+    }
+  }
+}
+
+/// Separating curves of a sharp edge and of the faces beside it, through or to where both are
+/// level: in 3 x 3 quads a side they begin at chords of the facets' sides.
+TEST(CageHull, OfBoxesWithASharpEdge) {
+  for (const int k : {2, 3}) {
+    ControlCage cage = box_cage({k});
+    const auto is_on = [&](int v) {
+      const dvec3& x = cage.points[std::size_t(v)];
+      return x.x == 1 && x.z == 1;
+    };
+    for (const std::vector<int>& face : cage.faces) {
+      for (std::size_t i = 0; i < face.size(); ++i) {
+        const int a = face[i];
+        const int b = face[(i + 1) % face.size()];
+        if (a < b && is_on(a) && is_on(b)) cage.creases.push_back({{a, b}, infinite_sharpness});
+      }
+    }
+    ASSERT_EQ(int(cage.creases.size()), k);
+    const std::string name = std::to_string(k) + " edges";
+    const Model model = cage_model(cage);
+    const Hull hull = whole_hull(model, name);
+    ASSERT_TRUE(hull.boundary);
+    expect_verified(model, hull, name);
+    EXPECT_EQ(hull.boundary->count(FaceKind::facet), k == 2 ? 0 : 6) << name;
+  }
+}
+
+/// The curve of an apex and the sides around runs through the flat middles of the sides; of four
+/// apexes, ends there, where two of them are in one plane with a middle.
+TEST(CageHull, OfBoxesWithApexes) {
+  for (const bool all : {false, true}) {
+    ControlCage cage = box_cage({2});
+    for (int v = 0; v < int(cage.points.size()); ++v) {
+      const dvec3& x = cage.points[std::size_t(v)];
+      const bool is_top = x.z == 1 && std::abs(x.x) == 1 && std::abs(x.y) == 1;
+      if (is_top && (all || x.x + x.y == 2)) cage.corners.push_back({v, infinite_sharpness});
+    }
+    const std::string name = std::to_string(cage.corners.size()) + " apexes";
+    const Model model = cage_model(cage);
+    const Hull hull = whole_hull(model, name);
+    ASSERT_TRUE(hull.boundary);
+    expect_verified(model, hull, name);
+    EXPECT_EQ(hull.boundary->count(FaceKind::facet), all ? 5 : 0) << name;
+    EXPECT_EQ(hull.boundary->count(FaceKind::scroll), all ? 4 : 1) << name;
+  }
+}
+
 /// A cage file from elsewhere.
 void expect_whole(const char* file, double accuracy, std::optional<Scheme> scheme) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);

@@ -1,6 +1,7 @@
 #include "cages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -37,6 +38,40 @@ ControlCage l_profile_cage() {
   }
   cage.faces = {{0, 3, 2, 1}, {0, 5, 4, 3}, {6, 7, 8, 9}, {6, 9, 10, 11}};
   for (int k = 0; k < 6; ++k) cage.faces.push_back({k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k});
+  return cage;
+}
+
+ControlCage box_cage(const BoxCage& box) {
+  ControlCage cage;
+  std::map<std::array<int, 3>, int> known;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [place, is_new] = known.emplace(at, int(cage.points.size()));
+    if (is_new) {
+      const dvec3 p = 2.0 / box.k * dvec3(at[0], at[1], at[2]) - 1.0;
+      const double share = 1 - box.taper * (p.z + 1);
+      cage.points.emplace_back(share * p.x, share * p.y, p.z);
+    }
+    return place->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool upper : {false, true}) {
+      if (axis == 2 && (upper ? box.open_top : box.open_bottom)) continue;
+      for (int i = 0; i < box.k; ++i) {
+        for (int j = 0; j < box.k; ++j) {
+          std::vector<int> face;
+          for (const auto& [a, b] : {std::pair{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+            std::array<int, 3> at{};
+            at[axis] = upper ? box.k : 0;
+            at[(axis + 1) % 3] = a;
+            at[(axis + 2) % 3] = b;
+            face.push_back(vertex(at));
+          }
+          if (!upper) std::reverse(face.begin(), face.end());
+          cage.faces.push_back(face);
+        }
+      }
+    }
+  }
   return cage;
 }
 

@@ -33,6 +33,15 @@ ControlCage rimmed_cage(bool flat);
 /// The prism over an L with arms of 2 and widths of 1, one high: vertices 0 to 5 are its bottom's,
 /// 6 to 11 those above them.
 ControlCage l_profile_cage();
+/// The box [-1, 1]^3 in k x k quads a side, without its top, and without its bottom, if it is open
+/// there; at height z its sides are `taper` (z + 1) nearer to the axis.
+struct BoxCage {
+  int k = 1;
+  double taper = 0;
+  bool open_top = false;
+  bool open_bottom = false;
+};
+ControlCage box_cage(const BoxCage& box);
 /// m x n quads of a bulging sheet over [-1, 1]^2, open.
 ControlCage sheet_cage(int m, int n);
 /// A dome for the scheme loop with two triangles on one of its edges, which share the other two: in

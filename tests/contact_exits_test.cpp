@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "freeform.h"
@@ -681,6 +682,66 @@ TEST(FoundOnEdge, FollowsTheEdge) {
   };
   EXPECT_TRUE(found_on_edge(geometry, pieces.front(), found));
   EXPECT_EQ(visits, 2);
+}
+
+/// z = -y^2 / 2 - x^3 / 6 over x from 0 to 1, as a graph over (u, v) with x = u, y = v + u / 2 -
+/// 1/2: level across x = 0, in a direction oblique to the parameter u.
+Shape oblique_shelf() {
+  BezierPatch patch{3, 2, {}};
+  for (int i = 0; i <= 3; ++i) {
+    for (int j = 0; j <= 2; ++j) {
+      // The blossom at i ones in u and j in v, the other arguments being zero.
+      const double u = i / 3.0;
+      const double v = j / 2.0 - 0.5;
+      const double uu = i * (i - 1) / 6.0;
+      const double vv = j == 1 ? -0.25 : 0.25;
+      const double square = vv + u * v + uu / 4;
+      const double cube = i == 3 ? 1 : 0;
+      patch.points.push_back(homogeneous({u, v + u / 2, -square / 2 - cube / 6}));
+    }
+  }
+  return {{as_nurbs(patch)}, {}, {}};
+}
+
+TEST(LevelSides, InDirectionsObliqueToTheParameters) {
+  const Shape shelf = oblique_shelf();
+  const dvec3 up(0, 0, 1);
+  std::set<Side> found;
+  for (const Shape& shape :
+       {shelf, with_reversed_parameters(shelf), with_exchanged_parameters(shelf),
+        with_exchanged_parameters(with_reversed_parameters(shelf))}) {
+    const Scene scene = make_scene(shape);
+    const ContactGeometry geometry(scene);
+    const auto in_model = [&](const Contact& c) {
+      return scene.frame().to_model(geometry.point(c));
+    };
+    for (const Side side : all_sides) {
+      const dvec2 uv = on_side(side, 0.5);
+      const Contact middle{0, SourceKind::face, 0, uv.x, uv.y};
+      const bool is_origin = glm::length(in_model(middle)) < 1e-14;
+      EXPECT_EQ(is_level_across(geometry, middle, side, up), is_origin);
+      if (!is_origin) continue;
+      found.insert(side);
+      const double way = 1e-8;
+      const double sense = at_upper_end(side) ? -1 : 1;
+      Contact beside = middle;
+      (along_v(side) ? beside.u : beside.v) += sense * way;
+      const std::optional<Contact> edge = on_level_edge(geometry, beside, side, up);
+      ASSERT_TRUE(edge);
+      EXPECT_EQ(edge->kind, SourceKind::edge);
+      EXPECT_LT(glm::length(in_model(*edge)), 1e-14);
+      // The maximum of a x - y^2 / 2 - x^3 / 6.
+      for (const double a : {1e-2, 1e-5, 1e-10}) {
+        const std::optional<Contact> inside =
+            inside_level(geometry, middle, glm::normalize(dvec3(a, 0, 1)));
+        ASSERT_TRUE(inside);
+        EXPECT_NEAR(in_model(*inside).x, std::sqrt(2 * a), 1e-12);
+        EXPECT_NEAR(in_model(*inside).y, 0, 1e-12);
+      }
+      EXPECT_FALSE(inside_level(geometry, middle, glm::normalize(dvec3(-1e-2, 0, 1))));
+    }
+  }
+  EXPECT_EQ(found.size(), 4U);
 }
 
 }  // namespace

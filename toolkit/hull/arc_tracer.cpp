@@ -13,6 +13,7 @@
 #include "taut/hull/in_line_contacts.h"
 #include "taut/hull/level_way.h"
 #include "taut/hull/merging.h"
+#include "taut/hull/rulings_between.h"
 #include "taut/hull/tied_end.h"
 
 namespace taut {
@@ -71,6 +72,7 @@ class Trace {
   bool leave();
   bool pass_pole(int contact, Side side);
   bool arrives(const Landmark& landmark);
+  bool ends_in_flat_facet(const CommonSupport& end);
   std::optional<Pace> reaches_flat_ends();
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
@@ -161,17 +163,44 @@ bool Trace::arrives(const Landmark& landmark) {
   return false;
 }
 
-/// Goes to the ends of two edges without bends there, and on beyond the one's.
+/// Ends the arc where its contacts' elements are flat, if that is in a facet and in no landmark.
+bool Trace::ends_in_flat_facet(const CommonSupport& end) {
+  const bool is_landmark =
+      std::any_of(landmarks_.begin(), landmarks_.end(),
+                  [&](const Landmark& l) { return glm::distance(l.n, end.n) < same_plane; });
+  if (is_landmark) return false;
+  std::optional<FacetContacts> f =
+      facet_contacts(geometry_, point_.query(), end.n, {end.contact[0], end.contact[1]});
+  if (!f || !f->is_facet()) return false;
+  push(end.ruling());
+  arc_.n = end.n;
+  arc_.contacts = std::move(f->contacts);
+  return true;
+}
+
+/// Goes to where both contacts' elements are flat at their ends, and on beyond both, or the one's.
 std::optional<Trace::Pace> Trace::reaches_flat_ends() {
-  const std::optional<CommonSupport> end = passage_.at_flat_ends(step_);
+  const std::optional<CommonSupport> end = passage_.at_flat_ends(2 * step_);
   if (!end) return std::nullopt;
+  const CommonSupport before = point_.at;
+  point_.at = *end;
+  if (const std::optional<Ruling> first = passage_.go_on()) {
+    push(end->ruling());
+    has_moved_ = true;
+    begin_piece(*first);
+    push(point_.at.ruling());
+    return Pace::on;
+  }
+  if (end->contact[0].kind != SourceKind::edge || end->contact[1].kind != SourceKind::edge) {
+    point_.at = before;
+    return ends_in_flat_facet(*end) ? std::optional(ended(TracedArc::End::plane)) : std::nullopt;
+  }
+  push(end->ruling());
+  has_moved_ = true;
   ElementChange event;
   event.contact = 0;
   event.exit = {ContactExit::Kind::end, int(end->contact[0].u)};
   event.support = *end;
-  point_.at = *end;
-  push(point_.at.ruling());
-  has_moved_ = true;
   return exchange(event);
 }
 
@@ -638,6 +667,7 @@ TracedArc Trace::run(const Progress& progress, bool aside) {
     pace = k < step_limit ? advance() : lost("a separating curve has no end");
   }
   if (!is_sound()) lost("a separating curve is not finite");
+  for (ArcPiece& piece : arc_.pieces) divide_flat_ends(system_, piece.rulings);
   drop_empty_pieces(geometry_, arc_.pieces);
   return std::move(arc_);
 }

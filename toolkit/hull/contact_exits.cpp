@@ -348,6 +348,65 @@ class Climb {
   double last_length_ = std::numeric_limits<double>::infinity();
 };
 
+/// Roundings of coordinates in a second derivative: those of cubics are some 24 coordinates.
+constexpr double second_roundings = 8;
+
+/// x . n of a patch from a contact on a side inwards, where it is highest along the side: a cubic
+/// in the inward parameter, of which the one along the side has the multiple `shear`.
+struct InwardCubic {
+  InwardCubic(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& n)
+      : is_u(along_v(side)), sense(at_upper_end(side) ? -1 : 1) {
+    const PatchJet3 j = geometry.patch_jet(c);
+    const double along = glm::dot(is_u ? j.Svv : j.Suu, n);
+    const double mixed = sense * glm::dot(j.Suv, n);
+    if (along < -geometry.rounding()) shear = -mixed / along;
+    const dvec3 twice = is_u ? j.Suuv : j.Suvv;
+    const dvec3 once = is_u ? j.Suvv : j.Suuv;
+    slope = sense * glm::dot(is_u ? j.Su : j.Sv, n) + shear * glm::dot(is_u ? j.Sv : j.Su, n);
+    second = glm::dot(is_u ? j.Suu : j.Svv, n) + shear * (2 * mixed + shear * along);
+    third =
+        sense * glm::dot(is_u ? j.Suuu : j.Svvv, n) +
+        shear * (3 * glm::dot(twice, n) + shear * (3 * sense * glm::dot(once, n) +
+                                                   shear * glm::dot(is_u ? j.Svvv : j.Suuu, n)));
+    noise = (1 + shear * shear) * second_roundings * geometry.rounding();
+  }
+
+  /// The contact moved inwards by so much.
+  Contact inside(Contact c, double way) const {
+    (is_u ? c.u : c.v) += sense * way;
+    (is_u ? c.v : c.u) += shear * way;
+    return c;
+  }
+
+  bool is_u;
+  double sense;
+  double shear = 0;
+  double slope, second, third;
+  double noise;  ///< of `second`
+};
+
+/// The slope of x . n at the contact is not more than this.
+bool is_level(const ContactGeometry& geometry, const Contact& c, const dvec3& n, double slope) {
+  const ContactJet j = geometry.jet(c);
+  const auto is_small = [&](const dvec3& dx) {
+    return std::abs(glm::dot(dx, n)) <= slope * glm::length(dx);
+  };
+  return is_small(j.dx[0]) && is_small(j.dx[1]);
+}
+
+/// A contact on one side of its patch, moved along that to where x . n has its maximum near by.
+Contact highest_along(const ContactGeometry& geometry, Contact c, const dvec3& n) {
+  const auto is_border = [](double t) { return t == 0 || t == 1; };
+  if (is_border(c.u) == is_border(c.v)) return c;
+  const bool of_v = is_border(c.u);
+  const ContactJet j = geometry.jet(c);
+  const double second = glm::dot(of_v ? j.dyy : j.dxx, n);
+  if (second >= -geometry.rounding()) return c;
+  double& t = of_v ? c.v : c.u;
+  t = std::clamp(t - glm::dot(j.dx[of_v ? 1 : 0], n) / second, 0.0, 1.0);
+  return c;
+}
+
 }  // namespace
 
 std::vector<ContactExit> exits(const ContactGeometry& geometry, const Contact& c) {
@@ -436,8 +495,8 @@ bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i
 bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& n) {
   const double value = along_v(side) ? c.u : c.v;
   if (value != (at_upper_end(side) ? 1 : 0)) return false;
-  const ContactJet j = geometry.jet(c);
-  return std::abs(glm::dot(along_v(side) ? j.dxx : j.dyy, n)) <= geometry.rounding();
+  const InwardCubic f(geometry, c, side, n);
+  return std::abs(f.second) <= f.noise;
 }
 
 bool leads_over_border(const ContactExit& exit) {
@@ -596,12 +655,22 @@ std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Co
                                        const dvec3& n, double slope) {
   const Contact border = moved_to_border(geometry, c, level_reach);
   if (border.u == c.u && border.v == c.v) return std::nullopt;
-  const ContactJet j = geometry.jet(border);
-  const double least = std::max(slope, geometry.tie());
-  const auto is_level = [&](const dvec3& dx) {
-    return std::abs(glm::dot(dx, n)) <= least * glm::length(dx);
-  };
-  return is_level(j.dx[0]) && is_level(j.dx[1]) ? std::optional(border) : std::nullopt;
+  const bool level = is_level(geometry, border, n, std::max(slope, geometry.tie()));
+  return level ? std::optional(border) : std::nullopt;
+}
+
+std::optional<Contact> on_level_edge(const ContactGeometry& geometry, const Contact& c, Side side,
+                                     const dvec3& n) {
+  if (c.kind != SourceKind::face) return std::nullopt;
+  Contact border = moved_to_border(geometry, c, level_reach);
+  if (border.u != c.u || border.v != c.v) {
+    border = highest_along(geometry, border, n);
+    if (!is_level(geometry, border, n, geometry.tie())) return std::nullopt;
+  }
+  if (!is_level_across(geometry, border, side, n)) return std::nullopt;
+  const std::optional<Contact> over =
+      beyond(geometry, border, {ContactExit::Kind::side, int(side)});
+  return over && over->kind == SourceKind::edge ? over : std::nullopt;
 }
 
 std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Contact& c,
@@ -624,15 +693,11 @@ std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Conta
 }
 
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n) {
-  const PatchJet3 j = geometry.patch_jet(c);
   for (const Side side : all_sides) {
     if (!is_level_across(geometry, c, side, n)) continue;
-    const double sense = at_upper_end(side) ? -1 : 1;
-    const double slope = sense * glm::dot(along_v(side) ? j.Su : j.Sv, n);
-    const double third = sense * glm::dot(along_v(side) ? j.Suuu : j.Svvv, n);
-    if (slope <= 0 || third >= 0) return std::nullopt;
-    (along_v(side) ? c.u : c.v) += sense * std::sqrt(-2 * slope / third);
-    return c;
+    const InwardCubic f(geometry, c, side, n);
+    if (f.slope <= 0 || f.third >= 0) return std::nullopt;
+    return f.inside(c, std::sqrt(-2 * f.slope / f.third));
   }
   return std::nullopt;
 }
@@ -640,27 +705,18 @@ std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, 
 std::optional<Contact> tied_inside(const ContactGeometry& geometry, const Contact& edge,
                                    const ContactExit& exit, const dvec3& n) {
   if (edge.kind != SourceKind::edge || exit.kind != ContactExit::Kind::face) return std::nullopt;
-  std::optional<Contact> c = beyond(geometry, edge, exit);
+  const std::optional<Contact> c = beyond(geometry, edge, exit);
   if (!c || c->kind != SourceKind::face) return std::nullopt;
-  const PatchJet3 j = geometry.patch_jet(*c);
   for (const Side side : all_sides) {
-    if (!is_level_across(geometry, *c, side, n)) continue;
-    const double sense = at_upper_end(side) ? -1 : 1;
-    const double third = sense * glm::dot(along_v(side) ? j.Suuu : j.Svvv, n);
-    const double mixed = sense * glm::dot(j.Suv, n);
-    const double along = glm::dot(along_v(side) ? j.Svv : j.Suu, n);
-    if (third >= 0 || along >= 0) return std::nullopt;
-    // x . n = third s^3 / 6 + mixed s t + along t^2 / 2 has a maximum there.
-    const double s = 2 * mixed * mixed / (third * along);
-    const double t = -mixed * s / along;
-    if (s >= 1) return std::nullopt;
-    (along_v(side) ? c->u : c->v) += sense * s;
-    (along_v(side) ? c->v : c->u) += t;
-    const std::optional<Contact> top = climbed(geometry, *c, n);
-    if (!top || top->kind != SourceKind::face) return std::nullopt;
+    if (!stands_at(*c, {ContactExit::Kind::side, int(side)})) continue;
+    const InwardCubic f(geometry, *c, side, n);
+    if (f.third >= 0 || f.second < -f.noise) continue;
+    const double way = std::max(0.0, -2 * f.second / f.third);
+    if (way >= 1) continue;
+    const std::optional<Contact> top = climbed(geometry, f.inside(*c, way), n);
+    if (!top || top->kind != SourceKind::face) continue;
     const double height = glm::dot(geometry.point(edge), n);
-    if (glm::dot(geometry.point(*top), n) < height - geometry.tie()) return std::nullopt;
-    return top;
+    if (glm::dot(geometry.point(*top), n) >= height - geometry.tie()) return top;
   }
   return std::nullopt;
 }

@@ -105,6 +105,12 @@ Contact snapped(const ContactGeometry& geometry, const Contact& c, double distan
 std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Contact& c,
                                        const dvec3& n, double slope = 0);
 
+/// The contact of a patch on the side, if that is an edge or a seam and the patch is level across
+/// it, or so near to it that the direction does not tell, as one on that: nothing else holds it
+/// there. None elsewhere.
+std::optional<Contact> on_level_edge(const ContactGeometry& geometry, const Contact& c, Side side,
+                                     const dvec3& n);
+
 /// A patch's contact on a side across which it is level, to within rounding: its curvature tells no
 /// place. Where the third derivative tells it, that place. None elsewhere.
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n);

@@ -97,18 +97,12 @@ bool CurvePoint::runs_along(std::size_t contact, const ContactExit& exit) const 
          std::abs(rate) * size <= std::max(slack, rounding_across(contact, side));
 }
 
-/// Contacts on sides that are edges or seams, across which their patches are level: nothing but
-/// the edge holds them.
 void CurvePoint::move_to_edges() {
   for (std::size_t i = 0; i < 2; ++i) {
-    const Contact c = at.contact[i];
-    if (c.kind != SourceKind::face) continue;
     for (const Side side : all_sides) {
-      if (!is_level_across(geometry_, c, side, at.n)) continue;
-      const std::optional<Contact> over =
-          beyond(geometry_, c, {ContactExit::Kind::side, int(side)});
-      if (!over || over->kind != SourceKind::edge) continue;
-      at.contact[i] = *over;
+      const std::optional<Contact> edge = on_level_edge(geometry_, at.contact[i], side, at.n);
+      if (!edge) continue;
+      at.contact[i] = *edge;
       break;
     }
   }

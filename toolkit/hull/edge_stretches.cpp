@@ -1,313 +1,126 @@
 #include "taut/hull/edge_stretches.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iterator>
+#include <map>
 #include <optional>
 #include <utility>
 
-#include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
-#include "taut/hull/parabolic_sides.h"
-#include "taut/hull/sign_changes.h"
 
 namespace taut {
 namespace {
 
-/// Intervals of each side whose ends are compared.
-constexpr int samples_along = 64;
-/// Normals along an edge that differ by less are one.
-constexpr double same_normal = 1e-10;
-/// Second derivatives across an edge below so many roundings vanish.
-constexpr double noise_factor = 64;
-/// Coefficients by which a face leaves the plane, in the scene's frame, that are less may be none.
-constexpr double least_fall = 1e-6;
-/// What is below a chord by less, as a share, is on it.
-constexpr double least_sag = 1e-7;
-/// Of central difference quotients.
-constexpr double difference = 1e-5;
-/// Stretches of a piece below this are none.
-constexpr double least_stretch = 1e-9;
-/// Parameters of a side in which its normals and curvatures are compared.
-constexpr std::array<double, 5> all_places = {0, 0.2, 0.4, 0.7, 1};
-
-/// A straight edge along which a face has one normal.
-class TouchedEdge {
- public:
-  TouchedEdge(const ContactGeometry& geometry, const std::array<Contact, 2>& ends, const dvec3& n)
-      : geometry_(geometry),
-        ends_(ends),
-        n_(n),
-        origin_(geometry.point(ends[0])),
-        along_(unit(geometry.point(ends[1]) - origin_)),
-        length_(glm::distance(geometry.point(ends[1]), origin_)) {}
-
-  bool is(const std::array<Contact, 2>& ends, const dvec3& n) const {
-    return same_element(ends_[0], ends[0]) && same_element(ends_[1], ends[1]) &&
-           glm::distance(n_, n) < same_normal;
-  }
-  /// A side of one of the face's patches.
-  void add(const Contact& patch, Side side, const Contact& piece);
-  std::optional<Landmark> landmark();
-
- private:
-  struct EdgeSide {
-    Contact patch;
-    Side side;
-    Contact piece;
-    Interval range = {};  ///< along the edge
-    bool forwards = true;
-
-    double begin() const { return forwards ? 0 : 1; }
-    double end() const { return forwards ? 1 : 0; }
-  };
-  struct Place {
-    std::size_t side;
-    double t;      ///< the side's parameter
-    double at;     ///< along the edge
-    double value;  ///< of f, up to a factor
-  };
-
-  double position(const EdgeSide& side, double t) const {
-    return glm::dot(geometry_.point(on_side_of(side.patch, side.side, t)) - origin_, along_);
-  }
-  dvec3 across(const EdgeSide& side, int order, double t) const;
-  bool is_covered();
-  bool bends() const;
-  double fall(const EdgeSide& side, double t) const;
-  Place place(std::size_t side, double t) const;
-  std::optional<std::vector<Place>> samples() const;
-  std::optional<Place> tangent_from(const Place& end, const Place& before,
-                                    const Place& after) const;
-  Contact on_piece(const Place& p) const;
-  bool is_to_the_right() const;
-  Landmark landmark_between(const Place& begin, const Place& end) const;
-
-  const ContactGeometry& geometry_;
-  std::array<Contact, 2> ends_;
-  dvec3 n_, origin_, along_;
-  double length_;
-  bool bends_ = false;
-  std::vector<EdgeSide> sides_;
-};
-
-void TouchedEdge::add(const Contact& patch, Side side, const Contact& piece) {
-  EdgeSide own{patch, side, piece};
-  const double from = position(own, 0);
-  const double to = position(own, 1);
-  own.range = {std::min(from, to), std::max(from, to)};
-  own.forwards = to > from;
-  sides_.push_back(own);
-}
-
-/// The derivative of this order across the side, into the patch.
-dvec3 TouchedEdge::across(const EdgeSide& side, int order, double t) const {
-  const PatchJet3 j = geometry_.patch_jet(on_side_of(side.patch, side.side, t));
-  const std::array<dvec3, 3> of_u = {j.Su, j.Suu, j.Suuu};
-  const std::array<dvec3, 3> of_v = {j.Sv, j.Svv, j.Svvv};
-  const dvec3& d = (along_v(side.side) ? of_u : of_v)[std::size_t(order - 1)];
-  return at_upper_end(side.side) && order % 2 == 1 ? -d : d;
-}
-
-/// The sides, put in their order, make up the edge.
-bool TouchedEdge::is_covered() {
-  std::sort(sides_.begin(), sides_.end(),
-            [](const EdgeSide& a, const EdgeSide& b) { return a.range.lower < b.range.lower; });
-  double at = 0;
-  for (const EdgeSide& side : sides_) {
-    if (std::abs(side.range.lower - at) > same_contact) return false;
-    at = side.range.upper;
-  }
-  return std::abs(at - length_) <= same_contact;
-}
-
-/// The face has curvature across the edge.
-bool TouchedEdge::bends() const {
-  return std::any_of(sides_.begin(), sides_.end(), [&](const EdgeSide& side) {
-    return std::any_of(all_places.begin(), all_places.end(), [&](double t) {
-      return std::abs(glm::dot(across(side, 2, t), n_)) > noise_factor * geometry_.rounding();
-    });
-  });
-}
-
-/// By the square or the cube of the distance from the edge.
-double TouchedEdge::fall(const EdgeSide& side, double t) const {
-  const dvec3 d = across(side, 1, t);
-  const double y = glm::length(d - glm::dot(d, along_) * along_);
-  return bends_ ? -glm::dot(across(side, 2, t), n_) / (2 * y * y)
-                : -glm::dot(across(side, 3, t), n_) / (6 * y * y * y);
-}
-
-/// The highest of d y - fall y^2, or of d y - fall y^3, over all distances y.
-TouchedEdge::Place TouchedEdge::place(std::size_t side, double t) const {
-  const double c = fall(sides_[side], t);
-  return {side, t, position(sides_[side], t), bends_ ? 1 / c : 1 / std::sqrt(c)};
-}
-
-/// In their order along the edge. None where the face does not leave the plane.
-std::optional<std::vector<TouchedEdge::Place>> TouchedEdge::samples() const {
-  std::vector<Place> result;
-  for (std::size_t s = 0; s < sides_.size(); ++s) {
-    for (int k = s == 0 ? 0 : 1; k <= samples_along; ++k) {
-      const double share = double(k) / samples_along;
-      const double t = sides_[s].forwards ? share : 1 - share;
-      if (!(fall(sides_[s], t) > least_fall)) return std::nullopt;
-      result.push_back(place(s, t));
-    }
-  }
-  return result;
-}
-
-/// Where the tangent goes through the chord's other end: between two places of one side, or of two
-/// consecutive ones.
-std::optional<TouchedEdge::Place> TouchedEdge::tangent_from(const Place& end, const Place& before,
-                                                            const Place& after) const {
-  const auto between = [&](std::size_t side, double from, double to) -> std::optional<Place> {
-    const auto miss = [&](double t) {
-      const Place p = place(side, t);
-      const Place a = place(side, t - difference);
-      const Place b = place(side, t + difference);
-      return (b.value - a.value) / (b.at - a.at) * (p.at - end.at) - (p.value - end.value);
-    };
-    if ((miss(from) < 0) == (miss(to) < 0)) return std::nullopt;
-    return place(side, bisected(miss, from, to));
-  };
-  if (before.side == after.side) return between(before.side, before.t, after.t);
-  const auto first = between(before.side, before.t, sides_[before.side].end());
-  return first ? first : between(after.side, sides_[after.side].begin(), after.t);
-}
-
-Contact TouchedEdge::on_piece(const Place& p) const {
-  const EdgeSide& side = sides_[p.side];
-  const bool reversed = geometry_.patch(side.patch).borders[std::size_t(side.side)].piece_reversed;
-  Contact c = side.piece;
-  c.u = reversed ? 1 - p.t : p.t;
-  return c;
-}
-
-/// The face lies there beside the edge, as it runs from its first end, seen from outside.
-bool TouchedEdge::is_to_the_right() const {
-  return glm::dot(across(sides_.front(), 1, 0.5), glm::cross(along_, n_)) > 0;
-}
-
-/// The face's contacts begin along the edge between these places.
-Landmark TouchedEdge::landmark_between(const Place& begin, const Place& end) const {
-  Landmark result;
-  result.n = n_;
-  FacetContacts& f = result.facet;
+/// The facet of no area between the edge and what leads along it; to the left of that.
+FacetContacts around(const ContactGeometry& geometry, const SideParts& parts) {
+  FacetContacts f;
   const auto add = [&](const Contact& c, const EdgeStretch& side) {
     f.contacts.push_back(c);
-    f.points.push_back(geometry_.point(c));
+    f.points.push_back(geometry.point(c));
     f.sides.push_back(side);
   };
-  if (begin.at > same_contact) add(ends_[0], {});
-  for (std::size_t s = begin.side; s <= end.side; ++s) {
-    const Contact a = on_piece(s == begin.side ? begin : place(s, sides_[s].begin()));
-    const Contact b = on_piece(s == end.side ? end : place(s, sides_[s].end()));
-    if (std::abs(a.u - b.u) < least_stretch) continue;
-    add(f.contacts.empty() ? ends_[0] : a, {a.instance, a.element, a.u, b.u});
+  for (const SidePart& part : parts.parts) add(part.begin, part.stretch);
+  add(parts.end, {});
+  return f;
+}
+
+bool has_area(const FacetContacts& f, const dvec3& n) {
+  dvec3 area(0.0);
+  for (std::size_t k = 1; k + 1 < f.points.size(); ++k) {
+    area += glm::cross(f.points[k] - f.points[0], f.points[k + 1] - f.points[0]);
   }
-  if (end.at < length_ - same_contact) add(on_piece(end), {});
-  add(ends_[1], {});
-  // The facet is to the left of its sides.
-  if (is_to_the_right()) return result;
-  std::reverse(f.contacts.begin(), f.contacts.end());
-  std::reverse(f.points.begin(), f.points.end());
-  // The last side leads all the way back.
-  std::reverse(f.sides.begin(), std::prev(f.sides.end()));
-  for (EdgeStretch& side : f.sides) std::swap(side.from, side.to);
+  return glm::dot(area, n) > same_contact;
+}
+
+/// A facet's outline, corner by corner.
+class Outline {
+ public:
+  explicit Outline(const ContactGeometry& geometry) : geometry_(geometry) {}
+
+  /// A corner and the side that begins there; instead of the last one if that is in its place.
+  void add(const Contact& c, const EdgeStretch& side) {
+    const dvec3 x = geometry_.point(c);
+    if (!facet_.points.empty() && glm::distance(facet_.points.back(), x) < same_contact) {
+      facet_.sides.back() = side;
+      return;
+    }
+    facet_.contacts.push_back(c);
+    facet_.points.push_back(x);
+    facet_.sides.push_back(side);
+  }
+  FacetContacts facet() && { return std::move(facet_); }
+
+ private:
+  const ContactGeometry& geometry_;
+  FacetContacts facet_;
+};
+
+/// What leads along the segment, in this order.
+std::map<double, const SideParts*> parts_along(const ContactGeometry& geometry, const dvec3& from,
+                                               const dvec3& to,
+                                               const std::vector<const SideParts*>& all) {
+  std::map<double, const SideParts*> result;
+  const dvec3 along = unit(to - from);
+  for (const SideParts* own : all) {
+    const dvec3 a = geometry.point(own->parts.front().begin) - from;
+    const dvec3 b = geometry.point(own->end) - from;
+    if (glm::length(glm::cross(along, a)) > same_contact ||
+        glm::length(glm::cross(along, b)) > same_contact) {
+      continue;
+    }
+    const double begin = glm::dot(along, a);
+    const double end = glm::dot(along, b);
+    const bool within =
+        begin > -same_contact && end > begin && end < glm::distance(from, to) + same_contact;
+    if (within) result[begin] = own;
+  }
   return result;
 }
 
-std::optional<Landmark> TouchedEdge::landmark() {
-  if (!is_covered()) return std::nullopt;
-  bends_ = bends();
-  const std::optional<std::vector<Place>> places = samples();
-  if (!places) return std::nullopt;
-  const std::vector<Place>& p = *places;
-  // The concave hull, by the samples on it.
-  std::vector<std::size_t> chain;
-  const auto is_below = [&](std::size_t k, std::size_t a, std::size_t b) {
-    const double share = (p[k].at - p[a].at) / (p[b].at - p[a].at);
-    const double chord = (1 - share) * p[a].value + share * p[b].value;
-    return p[k].value < (1 - least_sag) * chord;
-  };
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    while (chain.size() > 1 && is_below(chain.back(), chain[chain.size() - 2], k)) chain.pop_back();
-    chain.push_back(k);
-  }
-  const std::size_t last = chain.size() - 2;
-  const auto is_chord = [&](std::size_t k) { return chain[k + 1] > chain[k] + 1; };
-  for (std::size_t k = 1; k < last; ++k) {
-    if (is_chord(k)) return std::nullopt;
-  }
-  if (last == 0 || (!is_chord(0) && !is_chord(last))) return std::nullopt;
-  std::optional<Place> begin = p.front();
-  std::optional<Place> end = p.back();
-  if (is_chord(0)) begin = tangent_from(p.front(), p[chain[1] - 1], p[chain[1] + 1]);
-  if (is_chord(last)) end = tangent_from(p.back(), p[chain[last] - 1], p[chain[last] + 1]);
-  if (!begin || !end) return std::nullopt;
-  return landmark_between(*begin, *end);
-}
-
-class StretchSearch {
- public:
-  StretchSearch(const ContactGeometry& geometry, SupportQuery& query)
-      : geometry_(geometry), query_(query) {}
-
-  void search_side(const Contact& patch, Side side);
-  std::vector<Landmark> landmarks();
-
- private:
-  TouchedEdge& edge(const std::array<Contact, 2>& ends, const dvec3& n);
-
-  const ContactGeometry& geometry_;
-  SupportQuery& query_;
-  std::vector<TouchedEdge> edges_;
-};
-
-TouchedEdge& StretchSearch::edge(const std::array<Contact, 2>& ends, const dvec3& n) {
-  const auto known = std::find_if(edges_.begin(), edges_.end(),
-                                  [&](const TouchedEdge& e) { return e.is(ends, n); });
-  return known == edges_.end() ? edges_.emplace_back(geometry_, ends, n) : *known;
-}
-
-void StretchSearch::search_side(const Contact& patch, Side side) {
-  const std::optional<Contact> piece = straight_piece(geometry_, patch, side);
-  if (!piece) return;
-  const auto normal = [&](double t) { return unit_normal(geometry_, on_side_of(patch, side, t)); };
-  const Contact c = on_side_of(patch, side, 0.5);
-  const dvec3 middle = normal(0.5);
-  const bool turns = std::any_of(all_places.begin(), all_places.end(), [&](double t) {
-    return glm::distance(normal(t), middle) > same_normal;
-  });
-  if (turns || middle == dvec3(0.0)) return;
-  for (const dvec3& n : {middle, -middle}) {
-    if (query_(n, c).h > glm::dot(geometry_.point(c), n) + geometry_.tie()) continue;
-    edge(segment_ends(geometry_, *piece), n).add(patch, side, *piece);
-  }
-}
-
-std::vector<Landmark> StretchSearch::landmarks() {
-  std::vector<Landmark> result;
-  for (TouchedEdge& edge : edges_) {
-    if (std::optional<Landmark> landmark = edge.landmark()) result.push_back(std::move(*landmark));
+std::vector<const SideParts*> in_plane(const dvec3& n, const std::vector<TouchedStretch>& all) {
+  std::vector<const SideParts*> result;
+  for (const TouchedStretch& own : all) {
+    if (glm::distance(own.n, n) <= same_plane) result.push_back(&own.side);
   }
   return result;
 }
 
 }  // namespace
 
-std::vector<Landmark> edge_stretches(const ContactGeometry& geometry, SupportQuery& query,
-                                     const std::vector<CulledCell>& cells) {
-  StretchSearch search(geometry, query);
-  for (const auto& [instance, patch] : mixed_patches(cells)) {
-    const Contact c{instance, SourceKind::face, patch, 0, 0};
-    if (geometry.is_repeated(c) || geometry.is_ruled(c)) continue;
-    for (const Side side : all_sides) search.search_side(c, side);
+FacetContacts with_stretches(const ContactGeometry& geometry, const dvec3& n,
+                             const FacetContacts& f, const std::vector<TouchedStretch>& stretches) {
+  const std::vector<const SideParts*> all = in_plane(n, stretches);
+  if (all.empty()) return f;
+  Outline result(geometry);
+  for (std::size_t k = 0; k < f.points.size(); ++k) {
+    result.add(f.contacts[k], f.sides.empty() ? EdgeStretch() : f.sides[k]);
+    if (f.is_curved(k)) continue;
+    const dvec3& to = f.points[(k + 1) % f.points.size()];
+    for (const auto& [at, own] : parts_along(geometry, f.points[k], to, all)) {
+      for (const SidePart& part : own->parts) result.add(part.begin, part.stretch);
+      if (glm::distance(geometry.point(own->end), to) > same_contact) result.add(own->end, {});
+    }
   }
-  return search.landmarks();
+  return std::move(result).facet();
+}
+
+std::vector<Landmark> edge_stretches(const ContactGeometry& geometry, SupportQuery& query,
+                                     const std::vector<TouchedStretch>& stretches) {
+  std::vector<Landmark> result;
+  std::vector<dvec3> done;
+  for (const TouchedStretch& own : stretches) {
+    const auto is_known = [&](const dvec3& n) { return glm::distance(n, own.n) <= same_plane; };
+    if (std::any_of(done.begin(), done.end(), is_known)) continue;
+    const SideParts& side = own.side;
+    const std::optional<FacetContacts> facet =
+        facet_contacts(geometry, query, own.n, {side.parts.front().begin, side.end});
+    if (facet && has_area(*facet, own.n)) {
+      done.push_back(own.n);
+      Landmark landmark{own.n, with_stretches(geometry, own.n, *facet, stretches)};
+      if (landmark.facet.is_curved()) result.push_back(std::move(landmark));
+    } else if (own.is_whole && side.has_chords() && side.parts.size() > 1) {
+      result.push_back({own.n, around(geometry, side)});
+    }
+  }
+  return result;
 }
 
 }  // namespace taut

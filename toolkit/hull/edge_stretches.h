@@ -4,23 +4,20 @@
 
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact_geometry.h"
-#include "taut/hull/culling.h"
 #include "taut/hull/supporting_poles.h"
+#include "taut/hull/touched_edges.h"
 
 namespace taut {
 
-/// Planes that touch a face all along a straight edge of it, where the face has one normal: as
-/// cages have beside creases next to which their points are in one plane. Turned on about the edge
-/// by d, such a plane is surpassed by the face beside a place p of the edge by f(p) d^2, or by f(p)
-/// d^(3/2) where the face has no curvature there. Where f is its own concave hull the face's
-/// contacts begin along the edge itself; where it is below a chord of the hull, a separating curve
-/// begins, of the contacts that do so in the chord's ends.
-///
-/// The facets have no area. Their corners, in line, are the edge's ends and the ends of chords;
-/// along the rest of the edge they have it for sides. None where there are no chords, which the
-/// ends of edges tell, nor where a chord leads from the one end to the other, or has none of them
-/// for an end. Each supports the model to within tie(), by a support query.
+/// The facet of the plane, with corners where stretches that lie on its straight sides begin, and
+/// where chords of these end; along the rest of the edges it has them for sides.
+FacetContacts with_stretches(const ContactGeometry& geometry, const dvec3& n,
+                             const FacetContacts& f, const std::vector<TouchedStretch>& stretches);
+
+/// The facets, with stretches, in the planes of these. Where there is none those of no area: their
+/// corners, in line, are the edge's ends and the ends of chords; none for edges without chords,
+/// which the ends of edges tell, nor where a chord leads from the one end to the other.
 std::vector<Landmark> edge_stretches(const ContactGeometry& geometry, SupportQuery& query,
-                                     const std::vector<CulledCell>& cells);
+                                     const std::vector<TouchedStretch>& stretches);
 
 }  // namespace taut

@@ -236,8 +236,15 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
 std::optional<Contact> ContactSet::found(const dvec3& towards) {
   const Contact& hint = contacts_.empty() ? pieces_.front() : contacts_.front();
   const Support s = query_(glm::normalize(n_ + side_turn * towards), hint);
-  const std::optional<Contact> c = climbed(geometry_, at_rest(geometry_, s.contact, n_), n_);
-  if (!c || glm::dot(geometry_.point(*c), n_) < least_height()) return std::nullopt;
+  const Contact start = at_rest(geometry_, s.contact, n_);
+  std::optional<Contact> c = climbed(geometry_, start, n_);
+  if (!c) {
+    // Towards a corner in which its element is flat.
+    c = start;
+    c->u = std::round(start.u);
+    c->v = std::round(start.v);
+  }
+  if (glm::dot(geometry_.point(*c), n_) < least_height()) return std::nullopt;
   return settled(*c);
 }
 

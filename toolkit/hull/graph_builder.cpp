@@ -390,6 +390,53 @@ bool GraphBuilder::ties_with_facet(const CommonSupport& seed) const {
   });
 }
 
+/// All of the points are in line with the ruling of an arc in nearly this direction, in its plane.
+bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const {
+  const auto has_points = [&](const Ruling& r) {
+    if (glm::distance(r.n, n) >= same_plane) return false;
+    const dvec3 along = unit(r.point[1] - r.point[0]);
+    return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
+      const dvec3 off = x - r.point[0];
+      return glm::length(glm::cross(along, off)) < std::sqrt(same_plane) &&
+             glm::dot(off, r.n) >= -geometry_.tie();
+    });
+  };
+  return std::any_of(graph_.arcs.begin(), graph_.arcs.end(), [&](const SeparatingArc& arc) {
+    return std::any_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
+      return std::any_of(piece.rulings.begin(), piece.rulings.end(), has_points);
+    });
+  });
+}
+
+bool GraphBuilder::lies_in_ruling(const CommonSupport& seed) const {
+  return lies_in_ruling(seed.n, {seed.jet[0].x, seed.jet[1].x});
+}
+
+bool GraphBuilder::is_ruling(int index) const {
+  const FacetNode& node = graph_.nodes[std::size_t(index)];
+  const bool has_arcs = std::any_of(node.slots.begin(), node.slots.end(),
+                                    [](const FacetNode::Slot& slot) { return slot.arc >= 0; });
+  return !has_arcs && node.sides.empty() && !node.is_crossing() &&
+         lies_in_ruling(node.n, node.points);
+}
+
+SeparatingGraph GraphBuilder::take() {
+  std::vector<int> number(graph_.nodes.size(), -1);
+  std::vector<FacetNode> kept;
+  for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
+    if (is_ruling(int(k))) continue;
+    number[k] = int(kept.size());
+    kept.push_back(std::move(graph_.nodes[k]));
+  }
+  graph_.nodes = std::move(kept);
+  for (SeparatingArc& arc : graph_.arcs) {
+    for (int& node : arc.facet) {
+      if (node >= 0) node = number[std::size_t(node)];
+    }
+  }
+  return std::move(graph_);
+}
+
 /// Whether the seed, in a direction that is hardly off the node's, is on a curve that leaves it:
 /// its contacts are two of the node's own that have moved by as little.
 bool GraphBuilder::is_beside(const FacetNode& node, const CommonSupport& seed, double off) {

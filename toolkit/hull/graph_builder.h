@@ -28,8 +28,8 @@ class GraphBuilder {
 
   const SeparatingGraph& graph() const { return graph_; }
   const FacetNode& node(int k) const { return graph_.nodes[std::size_t(k)]; }
-  /// What was built. This is of no use then.
-  SeparatingGraph take() { return std::move(graph_); }
+  /// What was built, without nodes that are rulings (is_ruling()). This is of no use then.
+  SeparatingGraph take();
 
   /// Adds an arc; its number.
   int add(SeparatingArc arc);
@@ -58,6 +58,11 @@ class GraphBuilder {
   bool lies_in_facet(const CommonSupport& seed) const;
   /// The same of any facet, as far as heights tell.
   bool ties_with_facet(const CommonSupport& seed) const;
+  /// Whether the seed's contacts are in line with the ruling of a traced curve, in its plane, where
+  /// this is flat to both sides.
+  bool lies_in_ruling(const CommonSupport& seed) const;
+  /// The same of the corners of a node that no arc has reached.
+  bool is_ruling(int node) const;
   /// Whether the seed is, to within what poles leave open, two contacts of a facet: the curve
   /// through it leaves the facet.
   bool is_at_facet(const CommonSupport& seed) const;
@@ -69,6 +74,7 @@ class GraphBuilder {
   std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells, double margin) const;
 
  private:
+  bool lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const;
   struct PieceContact {
     int arc, piece, contact;
   };

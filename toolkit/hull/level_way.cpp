@@ -10,7 +10,7 @@ namespace taut {
 namespace {
 
 /// Contacts that are farther apart are told by other means than their heights.
-constexpr double longest_way = 1e-3;
+constexpr double longest_way = 2e-3;
 /// Contacts nearer to each other than this are one.
 constexpr double shortest_way = 1e-7;
 /// Elements in a row.

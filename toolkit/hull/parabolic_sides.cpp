@@ -99,12 +99,20 @@ Contact on_side_of(Contact patch, Side side, double t) {
   return patch;
 }
 
-std::optional<Contact> straight_piece(const ContactGeometry& geometry, const Contact& patch,
-                                      Side side) {
+std::optional<Contact> straight_piece_or_seam(const ContactGeometry& geometry, const Contact& patch,
+                                              Side side) {
   const int piece = geometry.patch(patch).borders[std::size_t(side)].piece;
-  if (piece < 0 || geometry.part(patch).pieces()[std::size_t(piece)].edge < 0) return std::nullopt;
+  if (piece < 0) return std::nullopt;
   const Contact edge{patch.instance, SourceKind::edge, piece, 0, 0};
   return geometry.is_straight(edge) ? std::optional(edge) : std::nullopt;
+}
+
+std::optional<Contact> straight_piece(const ContactGeometry& geometry, const Contact& patch,
+                                      Side side) {
+  const std::optional<Contact> piece = straight_piece_or_seam(geometry, patch, side);
+  const bool is_edge =
+      piece && geometry.part(patch).pieces()[std::size_t(piece->element)].edge >= 0;
+  return is_edge ? piece : std::nullopt;
 }
 
 std::array<Contact, 2> segment_ends(const ContactGeometry& geometry, const Contact& piece) {

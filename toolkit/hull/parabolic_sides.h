@@ -14,6 +14,9 @@ Contact on_side_of(Contact patch, Side side, double t);
 /// The piece of a straight edge that is the patch's side; none if it is no straight edge.
 std::optional<Contact> straight_piece(const ContactGeometry& geometry, const Contact& patch,
                                       Side side);
+/// The same of the straight edge or seam.
+std::optional<Contact> straight_piece_or_seam(const ContactGeometry& geometry, const Contact& patch,
+                                              Side side);
 
 /// The two vertices that a straight edge is between, for all its pieces in one order.
 /// @pre a piece of it

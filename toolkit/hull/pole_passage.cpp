@@ -17,8 +17,39 @@ namespace {
 constexpr double largest_turn = 1e-3;
 constexpr double turn_factor = 0.6;
 constexpr int turn_count = 30;
+/// Lengths that are tried as the first step beyond ends that both contacts reach together: the
+/// longest, and so many in all, each shorter by the factor.
+constexpr double longest_way = 0.05;
+constexpr int way_count = 12;
+/// The way to one side is so much of that to another, at most, that the contact goes to the corner.
+constexpr double corner_share = 1.1;
+/// Ends of elements that a contact passes in a corner, at most.
+constexpr int most_ends = 3;
 /// Share of such a turn by which contacts are told apart.
 constexpr double share_inward = 0.1;
+
+dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
+
+bool is_corner(const Contact& c) { return (c.u == 0 || c.u == 1) && (c.v == 0 || c.v == 1); }
+
+bool is_inside(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v <= 1; }
+
+/// The change of parameters by which the contact moves by dx along its element.
+dvec2 parameters_of(const ContactJet& j, SourceKind kind, const dvec3& dx) {
+  if (kind == SourceKind::vertex) return dvec2(0.0);
+  const double uu = glm::dot(j.dx[0], j.dx[0]);
+  if (kind == SourceKind::edge) return {glm::dot(j.dx[0], dx) / uu, 0};
+  const double uv = glm::dot(j.dx[0], j.dx[1]);
+  const double vv = glm::dot(j.dx[1], j.dx[1]);
+  const dvec2 along(glm::dot(j.dx[0], dx), glm::dot(j.dx[1], dx));
+  return dvec2(vv * along.x - uv * along.y, uu * along.y - uv * along.x) / (uu * vv - uv * uv);
+}
+
+/// The cubic with these values and slopes at 0 and 1, at s.
+double cubic(double value0, double slope0, double value1, double slope1, double s) {
+  const double r = 1 - s;
+  return r * r * ((1 + 2 * s) * value0 + s * slope0) + s * s * ((1 + 2 * r) * value1 - r * slope1);
+}
 
 }  // namespace
 
@@ -210,33 +241,177 @@ std::optional<Ruling> PolePassage::arrival(const Landmark& landmark, double leng
   return end.ruling();
 }
 
+/// The contact where the tangent leads it, within a step of this length, to the end of an edge or
+/// to a side of its patch.
+std::optional<Contact> PolePassage::end_ahead(int i, double length) const {
+  Contact c = point_.at.contact[std::size_t(i)];
+  const dvec2 rate = point_.tangent.parameter[std::size_t(i)];
+  if (c.kind == SourceKind::edge) {
+    // The tangent near such an end tells no more than that it is near by.
+    const double end = rate.x > 0 ? 1 : 0;
+    if (c.u == end) return std::nullopt;
+    c.u = end;
+    return c;
+  }
+  if (c.kind == SourceKind::vertex) return c;
+  const dvec2 border(rate.x > 0 ? 1 : 0, rate.y > 0 ? 1 : 0);
+  const dvec2 way = (border - parameters(c)) / rate;
+  const int across = way.x < way.y ? 0 : 1;
+  if (!(way[across] > 0 && way[across] <= length)) return std::nullopt;
+  if (way[1 - across] < corner_share * way[across]) {
+    c.u = border.x;
+    c.v = border.y;
+    return c;
+  }
+  const dvec2 there = parameters(c) + way[across] * rate;
+  c.u = std::clamp(across == 0 ? border.x : there.x, 0.0, 1.0);
+  c.v = std::clamp(across == 1 ? border.y : there.y, 0.0, 1.0);
+  return c;
+}
+
+/// The place on the side on which the curve crosses it, were the patch to go on beyond as it is:
+/// there is a solution there with the direction turning back.
+bool PolePassage::cross_side(int i, Contact& c, double length) const {
+  if (is_corner(c)) return true;
+  const auto k = std::size_t(i);
+  const CommonSupport& from = point_.at;
+  const std::optional<CommonSupport> to = point_.stepped(length);
+  const std::optional<CurveTangent> back = to ? system_.tangent(*to, nullptr) : std::nullopt;
+  if (!back) return false;
+  const int across = c.u == 0 || c.u == 1 ? 0 : 1;
+  const dvec2 p0 = parameters(from.contact[k]);
+  const dvec2 p1 = parameters(to->contact[k]);
+  const double border = parameters(c)[across];
+  const double chord = p1[across] - p0[across];
+  const double s = (border - p0[across]) / chord;
+  if (!(s > 0 && s < 1)) return false;
+  const auto slope = [&](const CurveTangent& t) {
+    return chord * t.parameter[k][1 - across] / t.parameter[k][across];
+  };
+  const double along =
+      cubic(p0[1 - across], slope(point_.tangent), p1[1 - across], slope(*back), s);
+  if (!(along >= 0 && along <= 1)) return false;
+  (across == 0 ? c.v : c.u) = along;
+  return true;
+}
+
+/// In the direction the contact's element is flat at the end or across the side on which it lies.
+bool PolePassage::is_flat_end(const Contact& c, const ContactJet& jet, const dvec3& n) const {
+  if (c.kind == SourceKind::edge) {
+    return ends_straight(geometry_, c) &&
+           std::abs(glm::dot(unit(jet.dx[0]), n)) <= geometry_.rounding();
+  }
+  if (c.kind == SourceKind::vertex) return true;
+  return std::any_of(all_sides.begin(), all_sides.end(),
+                     [&](Side side) { return is_level_across(geometry_, c, side, n); });
+}
+
+/// The direction in which both may support: a patch's normal, or across two edges of which one may
+/// leave its end along the ruling.
+dvec3 PolePassage::common_normal(const CommonSupport& end) const {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (end.contact[i].kind != SourceKind::face) continue;
+    return unit_normal(geometry_, end.contact[i]);
+  }
+  const dvec3 first = glm::cross(unit(end.jet[0].dx[0]), end.d());
+  const dvec3 second = glm::cross(unit(end.jet[1].dx[0]), end.d());
+  return unit(glm::length(first) > glm::length(second) ? first : second);
+}
+
 std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
   CommonSupport end = point_.at;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (end.contact[i].kind != SourceKind::edge) return std::nullopt;
-    const double rate = point_.tangent.parameter[i].x;
-    end.contact[i].u = rate > 0 ? 1 : 0;
-    // The tangent there tells no more than that it is near by.
-    if (end.contact[i].u == point_.at.contact[i].u) return std::nullopt;
-    if (!ends_straight(geometry_, end.contact[i])) return std::nullopt;
+  for (int i = 0; i < 2; ++i) {
+    const std::optional<Contact> there = end_ahead(i, length);
+    if (!there) return std::nullopt;
+    end.contact[std::size_t(i)] = *there;
   }
   end.evaluate(geometry_);
   if (glm::length(end.d()) < join_distance) return std::nullopt;
-  // One of the edges may leave its end along the ruling.
-  const dvec3 first = glm::cross(unit(end.jet[0].dx[0]), end.d());
-  const dvec3 second = glm::cross(unit(end.jet[1].dx[0]), end.d());
-  end.n = unit(glm::length(first) > glm::length(second) ? first : second);
-  if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
   const double ahead = point_.length_to(end);
   if (ahead <= margin_slack || ahead > length) return std::nullopt;
-  for (const ContactJet& j : {end.jet[0], end.jet[1]}) {
-    const double slope = std::abs(glm::dot(unit(j.dx[0]), end.n));
-    if (slope > geometry_.rounding()) return std::nullopt;
+  end.n = common_normal(end);
+  if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!is_flat_end(end.contact[i], end.jet[i], end.n)) return std::nullopt;
   }
-  if (!point_.supports(end) || !point_.is_followed(point_.at.ruling(), end.ruling())) {
+  for (int i = 0; i < 2; ++i) {
+    Contact& c = end.contact[std::size_t(i)];
+    if (c.kind == SourceKind::face && !cross_side(i, c, 2 * ahead)) return std::nullopt;
+  }
+  end.evaluate(geometry_);
+  if (std::abs(glm::dot(end.d(), end.n)) > geometry_.tie() || !point_.supports(end) ||
+      !point_.is_followed(point_.at.ruling(), end.ruling())) {
     return std::nullopt;
   }
   return end;
+}
+
+/// The point of a contact at ends of its element beyond those for which it heads; a vertex itself.
+std::optional<Contact> PolePassage::over_ends(int i) const {
+  const auto k = std::size_t(i);
+  CommonSupport s = point_.at;
+  if (s.contact[k].kind == SourceKind::vertex) return s.contact[k];
+  bool is_over = false;
+  for (int step = 0; step < most_ends; ++step) {
+    const Contact c = s.contact[k];
+    const dvec2 rate = parameters_of(s.jet[k], c.kind, point_.tangent.x[k]);
+    const std::vector<ContactExit> all = exits(geometry_, c);
+    const auto exit = std::find_if(all.begin(), all.end(), [&](const ContactExit& e) {
+      return leads_over_border(e) && stands_at(c, e) &&
+             glm::dot(exit_margin(geometry_, s, i, e).parameter[k], rate) < 0;
+    });
+    if (exit == all.end()) return is_over ? std::optional(c) : std::nullopt;
+    const std::optional<Contact> over = beyond(geometry_, c, *exit);
+    if (!over || over->kind != c.kind) return std::nullopt;
+    s.contact[k] = *over;
+    s.evaluate(geometry_);
+    is_over = true;
+  }
+  return std::nullopt;
+}
+
+std::optional<Ruling> PolePassage::go_on() {
+  const CommonSupport end = point_.at;
+  const CurveTangent came = point_.tangent;
+  for (int i = 0; i < 2; ++i) {
+    const std::optional<Contact> over = over_ends(i);
+    if (!over) {
+      point_.at = end;
+      return std::nullopt;
+    }
+    point_.at.contact[std::size_t(i)] = *over;
+  }
+  point_.at.evaluate(geometry_);
+  const CommonSupport start = point_.at;
+  // In the elements, and n stands still.
+  CurveTangent ahead;
+  double square = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ContactJet& j = start.jet[i];
+    const dvec2 p = parameters_of(j, start.contact[i].kind, came.x[i]);
+    ahead.parameter[i] = p;
+    ahead.x[i] = p.x * j.dx[0] + p.y * j.dx[1];
+    square += glm::dot(ahead.x[i], ahead.x[i]);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    ahead.parameter[i] /= std::sqrt(square);
+    ahead.x[i] /= std::sqrt(square);
+  }
+  double length = longest_way;
+  for (int k = 0; k < way_count; ++k, length *= turn_factor) {
+    point_.at = start;
+    point_.tangent = ahead;
+    const std::optional<CommonSupport> next = point_.stepped(length);
+    if (!next || !is_inside(next->contact[0]) || !is_inside(next->contact[1]) ||
+        !point_.supports(*next) || point_.distance_to(*next) > (1 + correction_limit) * length) {
+      continue;
+    }
+    point_.at = *next;
+    if (point_.settle()) return start.ruling();
+  }
+  point_.at = end;
+  point_.tangent = came;
+  return std::nullopt;
 }
 
 }  // namespace taut

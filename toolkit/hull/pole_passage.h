@@ -39,15 +39,25 @@ class PolePassage {
   bool reach(int contact, Side side, double length);
   /// The ruling with which the curve arrives in a landmark that lies within a step of this length.
   std::optional<Ruling> arrival(const Landmark& landmark, double length) const;
-  /// The support in which both contacts come to the ends of edges that have no bend there, if these
-  /// lie within a step of this length. Either moves with the square of what turns the direction, so
-  /// that next to the ends rounding moves it by the root of itself.
+  /// The support in which both contacts come to ends of edges that have no bend there or to sides
+  /// across which their patches are level, if these lie within a step of this length. Either moves
+  /// with the square of what turns the direction, so that next to the ends rounding moves it by the
+  /// root of itself.
   std::optional<CommonSupport> at_flat_ends(double length) const;
+  /// Takes the first step beyond the ends that both contacts have reached so, the way that they
+  /// came. The support as a ruling of the elements that the point is in then, or none: the point
+  /// stays.
+  std::optional<Ruling> go_on();
 
  private:
+  std::optional<Contact> over_ends(int i) const;
   std::optional<Ruling> leave(double step, bool tilted);
   std::optional<CommonSupport> stepped_aside(double step, bool tilted) const;
   std::optional<Contact> aside(int i, double step, const dvec3& n, bool tilted) const;
+  std::optional<Contact> end_ahead(int i, double length) const;
+  bool cross_side(int i, Contact& c, double length) const;
+  bool is_flat_end(const Contact& c, const ContactJet& jet, const dvec3& n) const;
+  dvec3 common_normal(const CommonSupport& end) const;
   std::optional<std::size_t> nearest_side(const FacetContacts& facet) const;
 
   const ContactGeometry& geometry_;

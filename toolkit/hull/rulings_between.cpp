@@ -24,6 +24,8 @@ constexpr double merging_share = 0.25;
 /// Rates per share of the length, relative to the chord, below which the length falls with the
 /// square of the way: one half, where others are one.
 constexpr double touching_share = 0.6;
+/// Chords from where both contacts' elements are flat are no longer.
+constexpr double longest_flat = 0.05;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
@@ -56,13 +58,35 @@ bool begins_on_segment(const ContactGeometry& geometry, const Ruling& r) {
                      [&](const Contact& c) { return segment_side(geometry, c).has_value(); });
 }
 
-/// From one of the contacts n turns with the square of its way: at the end of an edge that does not
-/// bend there, and on a straight edge across which the patch is level.
-bool ends_straight(const ContactGeometry& geometry, const Ruling& r) {
-  return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
-    const std::optional<Side> side = segment_side(geometry, c);
-    return ends_straight(geometry, c) || (side && is_level_across(geometry, c, *side, r.n));
+/// n turns with the square of the contact's way: at the end of an edge that does not bend there,
+/// and off a side across which the patch is level.
+bool leaves_flat(const ContactGeometry& geometry, const Ruling& r, const Ruling& other,
+                 std::size_t i) {
+  const Contact& c = r.contact[i];
+  if (c.kind != SourceKind::face) return ends_straight(geometry, c);
+  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    const double value = at_upper_end(side) ? 1 : 0;
+    const double from = along_v(side) ? c.u : c.v;
+    const double to = along_v(side) ? other.contact[i].u : other.contact[i].v;
+    return from == value && to != value && is_level_across(geometry, c, side, r.n);
   });
+}
+
+/// How n begins at one of the rulings: as ever, with the square of a contact's way while the other
+/// one moves as n does, or with that of all that moves.
+enum class Start { plain, straight, stands };
+Start start_at(const ContactGeometry& geometry, const Ruling& r, const Ruling& other) {
+  int flat = 0;
+  int resting = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (r.contact[i].kind == SourceKind::vertex) {
+      ++resting;
+    } else if (leaves_flat(geometry, r, other, i)) {
+      ++flat;
+    }
+  }
+  if (flat == 0) return Start::plain;
+  return flat + resting == 2 ? Start::stands : Start::straight;
 }
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.
@@ -175,7 +199,12 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     refine();
   } else if (merged(from) == merged(to)) {
     nearly_merges_ = nearly_merge();
-    straight_ = {ends_straight(system.geometry(), from), ends_straight(system.geometry(), to)};
+    const std::array<Start, 2> start = {start_at(system.geometry(), from, to),
+                                        start_at(system.geometry(), to, from)};
+    for (std::size_t i = 0; i < 2; ++i) {
+      straight_[i] = start[i] == Start::straight;
+      stands_[i] = start[i] == Start::stands;
+    }
     const auto is_flat_far_off = [&](const Ruling& r) {
       return system.geometry().tie() > support_tie &&
              is_flat(CommonSupport(system.geometry(), r), system.geometry());
@@ -183,7 +212,7 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     const auto lies_flat = [&](const Ruling& r) {
       return begins_on_segment(system.geometry(), r) || is_flat_far_off(r);
     };
-    lies_flat_ = is_straight() || lies_flat(from) || lies_flat(to);
+    lies_flat_ = is_straight() || stands_[0] || stands_[1] || lies_flat(from) || lies_flat(to);
     fit();
   } else {
     free_end_ = merged(from) ? 0 : 1;
@@ -235,7 +264,8 @@ void RulingsBetween::fit() {
     if (straight_[end == &from_ ? 0 : 1]) {
       // All are smooth in powers of the share, which begins level.
       polynomial_.add(s, place(m), State{});
-    } else if (!merged(*end) && !is_noise(m.at) && find_speed(m) && !bends(from_, to_, m)) {
+    } else if (!merged(*end) && !stands_[end == &from_ ? 0 : 1] && !is_noise(m.at) &&
+               find_speed(m) && !bends(from_, to_, m)) {
       m.speed_up(share_slope(s));
       polynomial_.add(s, place(m), rate(m));
     } else {
@@ -407,6 +437,19 @@ std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling&
   if (between.empty()) return from;
   const std::optional<MovingRuling> m = between(between.at_share(share));
   return m ? std::optional(m->at.ruling()) : std::nullopt;
+}
+
+void divide_flat_ends(const ContactSystem& system, std::vector<Ruling>& rulings) {
+  for (std::size_t k = 1; k < rulings.size();) {
+    const RulingsBetween between(system, rulings[k - 1], rulings[k]);
+    const bool is_long = !between.empty() && between.stands() && between.length() > longest_flat;
+    const std::optional<MovingRuling> middle = is_long ? between(0.5) : std::nullopt;
+    if (middle) {
+      rulings.insert(rulings.begin() + std::ptrdiff_t(k), middle->at.ruling());
+    } else {
+      ++k;
+    }
+  }
 }
 
 }  // namespace taut

@@ -49,6 +49,9 @@ class RulingsBetween {
   bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
   /// At one end a contact is at that of an edge that does not bend there.
   bool is_straight() const { return straight_[0] || straight_[1]; }
+  /// At one end both contacts are where their elements are flat: n stands still there.
+  bool stands() const { return stands_[0] || stands_[1]; }
+  double length() const { return std::sqrt(square_); }
   /// The s at which the chord is divided in this ratio, unless the two merge.
   double at_share(double share) const;
   /// The ruling at s, which may leave [0, 1] by a little, but not beyond a free end. None if
@@ -105,6 +108,7 @@ class RulingsBetween {
   bool nearly_merges_ = false;
   bool lies_flat_ = false;
   std::array<bool, 2> straight_ = {false, false};  // at either end
+  std::array<bool, 2> stands_ = {false, false};    // n, at either end
   int free_end_ = -1;                              // at which the contacts merge
   double length_ = 0;                              // of the ruling at the other one
   bool touches_ = false;   // ... and their distance falls with the square of the way there
@@ -118,5 +122,9 @@ std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& 
 /// The one that divides the chord in this ratio, or, next to a free end, that ruling_between() has.
 std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling& from,
                                       const Ruling& to, double share);
+
+/// Adds rulings where a curve begins or ends in elements that are flat there, until the first ones
+/// are so near that the interpolation, which stands for exact rulings there, is as good.
+void divide_flat_ends(const ContactSystem& system, std::vector<Ruling>& rulings);
 
 }  // namespace taut

@@ -133,6 +133,7 @@ class GraphTracer {
   bool stopped_ = false;
   long cells_searched_ = 0;
   std::set<std::pair<int, int>> settled_;  // instances and patches
+  std::vector<TouchedStretch> stretches_;
   std::vector<Landmark> landmarks_;
   std::vector<SupportingPole> poles_;
   std::vector<int> waiting_;             // nodes whose slots may be open
@@ -159,6 +160,7 @@ void GraphTracer::find_planes() {
       built_.fail(plane.n, "the outline of a facet with curved sides is not found");
       continue;
     }
+    *f = with_stretches(geometry_, plane.n, *f, stretches_);
     // All of the curves touches the plane, its outline or not.
     for (const Contact& c : plane.pieces) {
       built_.add_contact({c.instance, c.element, 0, 1});
@@ -187,7 +189,7 @@ void GraphTracer::find_poles() {
 /// Where planes that turn about straight edges touch the faces beside them.
 void GraphTracer::find_touches(const std::vector<CulledCell>& cells) {
   for (const auto& touches :
-       {edge_touches(geometry_, query_, cells), edge_stretches(geometry_, query_, cells)}) {
+       {edge_touches(geometry_, query_, cells), edge_stretches(geometry_, query_, stretches_)}) {
     for (const Landmark& touch : touches) {
       if (!is_landmark(touch.n)) add_landmark(touch);
     }
@@ -543,6 +545,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   first_cells_ = query_.cells();
   cell_limit_ = least_cells + cells_a_sample * long(samples.size());
   find_settled(cells);
+  stretches_ = touched_stretches(geometry_, query_, cells);
   find_planes();
   find_poles();
   find_touches(cells);
@@ -562,9 +565,12 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
 /// no curve leaves across.
 void GraphTracer::tell_failures() {
   for (const auto& [start, reason] : failed_) {
-    if (!built_.ties_with_facet(start) && !built_.is_traced(start)) built_.fail(start.n, reason);
+    const bool known =
+        built_.ties_with_facet(start) || built_.lies_in_ruling(start) || built_.is_traced(start);
+    if (!known) built_.fail(start.n, reason);
   }
   for (const auto& [node, reason] : not_left_) {
+    if (built_.is_ruling(node)) continue;
     const FacetNode& own = built_.node(node);
     for (std::size_t k = 0; k < own.slots.size(); ++k) {
       if (own.slots[k].arc < 0 && !own.is_curved(k)) built_.fail(own.n, reason);

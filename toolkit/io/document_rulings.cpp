@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/hull/contact_exits.h"
 #include "taut/hull/rulings_between.h"
 
 namespace taut {
@@ -41,6 +42,23 @@ std::optional<std::array<SourcePlace, 2>> common_places(const DocumentGeometry& 
     }
   }
   return std::nullopt;
+}
+
+/// The contacts k of two rulings between which it runs along an edge or a seam, from which nothing
+/// else keeps it, as contacts of that.
+void put_on_common_edge(const ContactGeometry& geometry, std::array<Ruling, 2>& ends,
+                        std::size_t k) {
+  for (const Side side : all_sides) {
+    const auto on_edge = [&](const Ruling& r) {
+      return on_level_edge(geometry, r.contact[k], side, r.n);
+    };
+    const std::optional<Contact> first = on_edge(ends[0]);
+    const std::optional<Contact> last = first ? on_edge(ends[1]) : std::nullopt;
+    if (!last || !same_element(*first, *last)) continue;
+    ends[0].contact[k] = *first;
+    ends[1].contact[k] = *last;
+    return;
+  }
 }
 
 }  // namespace
@@ -99,6 +117,8 @@ bool DocumentRulings::solve_between(const HullDocument::Ruling& from,
       ends[e].point[k] = frame.to_frame(contact_of(r, k).p);
     }
   }
+  const std::array<Contact, 2> in_patches = ends[0].contact;
+  for (std::size_t k = 0; k < 2; ++k) put_on_common_edge(system_.geometry(), ends, k);
   const RulingsBetween between(system_, ends[0], ends[1]);
   if (between.empty()) return false;
   bool solved = true;
@@ -113,9 +133,14 @@ bool DocumentRulings::solve_between(const HullDocument::Ruling& from,
       for (const dvec3& d : support.jet[k].dx) residual += std::abs(glm::dot(d, r.n));
     }
     solved = solved && residual <= solved_residual;
-    interval.add(
-        node[i],
-        {r.n, {dvec2(r.contact[0].u, r.contact[0].v), dvec2(r.contact[1].u, r.contact[1].v)}});
+    RulingState state{r.n, {}};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::optional<Contact> c =
+          expressed_in(system_.geometry(), r.contact[k], in_patches[k]);
+      if (!c) return false;
+      state.t[k] = {c->u, c->v};
+    }
+    interval.add(node[i], state);
   }
   return solved;
 }
@@ -177,7 +202,9 @@ void DocumentRulings::extrapolate(const RulingInterval& neighbor, bool ends,
     least_miss = miss;
     best = std::move(next);
   }
-  interval = std::move(*best);
+  // Rulings that do not lead to the merged one tell nothing about the way there.
+  const double way = distance(interval.states()[0], interval.states()[1]);
+  if (least_miss < way) interval = std::move(*best);
 }
 
 std::vector<RulingInterval> DocumentRulings::intervals(const HullDocument::Face& scroll) const {
