@@ -253,7 +253,11 @@ std::optional<Contact> PolePassage::end_ahead(int i, double length) const {
     c.u = end;
     return c;
   }
-  if (c.kind == SourceKind::vertex) return c;
+  if (c.kind == SourceKind::vertex) {
+    // Edges' ends are reached from vertices step by step.
+    if (point_.at.contact[std::size_t(1 - i)].kind != SourceKind::face) return std::nullopt;
+    return c;
+  }
   const dvec2 border(rate.x > 0 ? 1 : 0, rate.y > 0 ? 1 : 0);
   const dvec2 way = (border - parameters(c)) / rate;
   const int across = way.x < way.y ? 0 : 1;

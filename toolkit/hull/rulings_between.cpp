@@ -73,20 +73,13 @@ bool leaves_flat(const ContactGeometry& geometry, const Ruling& r, const Ruling&
 }
 
 /// How n begins at one of the rulings: as ever, with the square of a contact's way while the other
-/// one moves as n does, or with that of all that moves.
+/// one moves as n does, or with that of both.
 enum class Start { plain, straight, stands };
 Start start_at(const ContactGeometry& geometry, const Ruling& r, const Ruling& other) {
-  int flat = 0;
-  int resting = 0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (r.contact[i].kind == SourceKind::vertex) {
-      ++resting;
-    } else if (leaves_flat(geometry, r, other, i)) {
-      ++flat;
-    }
-  }
-  if (flat == 0) return Start::plain;
-  return flat + resting == 2 ? Start::stands : Start::straight;
+  const std::array<bool, 2> flat = {leaves_flat(geometry, r, other, 0),
+                                    leaves_flat(geometry, r, other, 1)};
+  if (!flat[0] && !flat[1]) return Start::plain;
+  return flat[0] && flat[1] ? Start::stands : Start::straight;
 }
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.
