@@ -14,6 +14,8 @@
 #include "taut/bounds/scene.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/boundary_measures.h"
+#include "taut/hull/contact_geometry.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/io/hull_document.h"
 #include "taut/io/verify_hull.h"
@@ -271,6 +273,38 @@ TEST(CageHull, OfASemiSharpCube) {
   expect_verified(model, hull, "semi-sharp cube");
 }
 
+/// The area in the closed uniform cubic B-spline of these control points.
+double area_in_spline(const std::vector<dvec2>& p) {
+  double twice = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto at = [&](std::size_t k) { return p[(i + k) % p.size()]; };
+    // Three Gauss nodes are exact for the fifth degree of x dy - y dx.
+    for (const auto& [t, weight] : {std::pair{0.5 - std::sqrt(0.15), 5.0 / 18},
+                                    {0.5, 8.0 / 18},
+                                    {0.5 + std::sqrt(0.15), 5.0 / 18}}) {
+      const double r = 1 - t;
+      const dvec2 c = (r * r * r * at(0) + (3 * t * t * t - 6 * t * t + 4) * at(1) +
+                       (3 * r * r * r - 6 * r * r + 4) * at(2) + t * t * t * at(3)) /
+                      6.0;
+      const dvec2 d = 0.5 * (-r * r * at(0) + (3 * t * t - 4 * t) * at(1) +
+                             (4 * r - 3 * r * r) * at(2) + t * t * at(3));
+      twice += weight * (c.x * d.y - c.y * d.x);
+    }
+  }
+  return 0.5 * std::abs(twice);
+}
+
+/// A box without lids is a cone's frustum over such a spline.
+double volume_of_tube(int k, double taper) {
+  std::vector<dvec2> square;
+  for (const dvec2& from : {dvec2(-1, -1), dvec2(1, -1), dvec2(1, 1), dvec2(-1, 1)}) {
+    for (int i = 0; i < k; ++i)
+      square.push_back(from + double(i) / k * (dvec2(-from.y, from.x) - from));
+  }
+  const double top = 1 - 2 * taper;
+  return area_in_spline(square) * 2 * (1 + top + top * top) / 3;
+}
+
 /// In 2 x 2 quads a side, surfaces have no curvature across the sides' middles, where contacts and
 /// ends of edges are level; in 3 x 3 the middles are plane, and facets' sides run along seams.
 TEST(CageHull, OfBoxesWithoutLids) {
@@ -282,6 +316,10 @@ TEST(CageHull, OfBoxesWithoutLids) {
         const Hull hull = whole_hull(model, name);
         ASSERT_TRUE(hull.boundary);
         expect_verified(model, hull, name);
+        if (!open_bottom) continue;
+        const Scene scene(model);
+        const double volume = measure(scene, ContactGeometry(scene), *hull.boundary).volume;
+        EXPECT_NEAR(volume, volume_of_tube(k, taper), 1e-11) << name;
       }
     }
   }

@@ -24,6 +24,8 @@ inline bool same_element(const Contact& a, const Contact& b) {
   return a.instance == b.instance && a.kind == b.kind && a.element == b.element;
 }
 
+inline dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
+
 /// A contact in the terms of the model: its source and the source's own parameters.
 struct SourceContact {
   int source = -1;

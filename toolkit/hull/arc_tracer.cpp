@@ -165,10 +165,7 @@ bool Trace::arrives(const Landmark& landmark) {
 
 /// Ends the arc where its contacts' elements are flat, if that is in a facet and in no landmark.
 bool Trace::ends_in_flat_facet(const CommonSupport& end) {
-  const bool is_landmark =
-      std::any_of(landmarks_.begin(), landmarks_.end(),
-                  [&](const Landmark& l) { return glm::distance(l.n, end.n) < same_plane; });
-  if (is_landmark) return false;
+  if (is_landmark(landmarks_, end.n)) return false;
   std::optional<FacetContacts> f =
       facet_contacts(geometry_, point_.query(), end.n, {end.contact[0], end.contact[1]});
   if (!f || !f->is_facet()) return false;

@@ -20,6 +20,10 @@ struct ContactJet {
   dvec3 dxx = dvec3(0.0), dxy = dvec3(0.0), dyy = dvec3(0.0);
 };
 
+/// The change of parameters by which the contact moves along its element as dx does, to first
+/// order; of those that it has not, zero. @pre the derivatives are independent
+dvec2 parameter_change(const ContactJet& j, const dvec3& dx);
+
 /// None of the numbers is infinite or no number.
 inline bool is_finite(const dvec3& x) {
   return glm::length(x) < std::numeric_limits<double>::infinity();

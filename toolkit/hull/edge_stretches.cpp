@@ -1,5 +1,6 @@
 #include "taut/hull/edge_stretches.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -8,19 +9,6 @@
 
 namespace taut {
 namespace {
-
-/// The facet of no area between the edge and what leads along it; to the left of that.
-FacetContacts around(const ContactGeometry& geometry, const SideParts& parts) {
-  FacetContacts f;
-  const auto add = [&](const Contact& c, const EdgeStretch& side) {
-    f.contacts.push_back(c);
-    f.points.push_back(geometry.point(c));
-    f.sides.push_back(side);
-  };
-  for (const SidePart& part : parts.parts) add(part.begin, part.stretch);
-  add(parts.end, {});
-  return f;
-}
 
 bool has_area(const FacetContacts& f, const dvec3& n) {
   dvec3 area(0.0);
@@ -52,6 +40,14 @@ class Outline {
   const ContactGeometry& geometry_;
   FacetContacts facet_;
 };
+
+/// The facet of no area between the edge and what leads along it; to the left of that.
+FacetContacts around(const ContactGeometry& geometry, const SideParts& parts) {
+  Outline result(geometry);
+  for (const SidePart& part : parts.parts) result.add(part.begin, part.stretch);
+  result.add(parts.end, {});
+  return std::move(result).facet();
+}
 
 /// What leads along the segment, in this order.
 std::map<double, const SideParts*> parts_along(const ContactGeometry& geometry, const dvec3& from,

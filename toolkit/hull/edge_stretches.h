@@ -5,7 +5,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact_geometry.h"
 #include "taut/hull/supporting_poles.h"
-#include "taut/hull/touched_edges.h"
+#include "taut/hull/touched_stretches.h"
 
 namespace taut {
 

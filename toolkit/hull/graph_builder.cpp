@@ -391,14 +391,16 @@ bool GraphBuilder::ties_with_facet(const CommonSupport& seed) const {
 }
 
 /// All of the points are in line with the ruling of an arc in nearly this direction, in its plane.
+/// On flat elements contacts move with the root of the direction's turn.
 bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const {
   const auto has_points = [&](const Ruling& r) {
-    if (glm::distance(r.n, n) >= same_plane) return false;
+    const double turn = glm::distance(r.n, n);
+    if (turn >= same_plane) return false;
+    const double reach = same_branch + std::sqrt(moved_contact * turn);
     const dvec3 along = unit(r.point[1] - r.point[0]);
     return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
       const dvec3 off = x - r.point[0];
-      return glm::length(glm::cross(along, off)) < std::sqrt(same_plane) &&
-             glm::dot(off, r.n) >= -geometry_.tie();
+      return glm::length(glm::cross(along, off)) < reach && glm::dot(off, r.n) >= -geometry_.tie();
     });
   };
   return std::any_of(graph_.arcs.begin(), graph_.arcs.end(), [&](const SeparatingArc& arc) {

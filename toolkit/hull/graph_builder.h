@@ -58,8 +58,8 @@ class GraphBuilder {
   bool lies_in_facet(const CommonSupport& seed) const;
   /// The same of any facet, as far as heights tell.
   bool ties_with_facet(const CommonSupport& seed) const;
-  /// Whether the seed's contacts are in line with the ruling of a traced curve, in its plane, where
-  /// this is flat to both sides.
+  /// Whether the seed's contacts are in line with the ruling of a traced curve, and in its plane:
+  /// as where what touches the plane is a segment, of which the ruling is part.
   bool lies_in_ruling(const CommonSupport& seed) const;
   /// The same of the corners of a node that no arc has reached.
   bool is_ruling(int node) const;

@@ -29,15 +29,7 @@ Contact between(const Contact& a, const Contact& b, double share) {
 /// Where the parameters would have to be for the contact to be at x, to first order.
 dvec2 parameters_at(const ContactGeometry& geometry, const Contact& c, const dvec3& x) {
   const ContactJet j = geometry.jet(c);
-  const dvec3 way = x - j.x;
-  const double uu = glm::dot(j.dx[0], j.dx[0]);
-  const double u = glm::dot(j.dx[0], way);
-  if (j.dimension == 1) return dvec2(c.u + u / uu, c.v);
-  const double uv = glm::dot(j.dx[0], j.dx[1]);
-  const double vv = glm::dot(j.dx[1], j.dx[1]);
-  const double v = glm::dot(j.dx[1], way);
-  const double det = uu * vv - uv * uv;
-  return dvec2(c.u + (vv * u - uv * v) / det, c.v + (uu * v - uv * u) / det);
+  return parameters(c) + parameter_change(j, x - j.x);
 }
 
 /// The exit, to where the parameters would have to be, that is met first, and the contact there.

@@ -39,8 +39,6 @@ constexpr double about_pole = 8;
 /// Rulings no longer than this may be such that rounding leaves nothing of the distance of heights.
 constexpr double tied_length = 1e-6;
 
-dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
 /// What kind of free end two contacts that merge make, and in which element it is told; none where
 /// it is of no generic kind.
 std::optional<FreeEnd> kind_of_end(const ContactGeometry& geometry, const Ruling& ruling) {

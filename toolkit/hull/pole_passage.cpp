@@ -28,22 +28,9 @@ constexpr int most_ends = 3;
 /// Share of such a turn by which contacts are told apart.
 constexpr double share_inward = 0.1;
 
-dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
 bool is_corner(const Contact& c) { return (c.u == 0 || c.u == 1) && (c.v == 0 || c.v == 1); }
 
 bool is_inside(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v <= 1; }
-
-/// The change of parameters by which the contact moves by dx along its element.
-dvec2 parameters_of(const ContactJet& j, SourceKind kind, const dvec3& dx) {
-  if (kind == SourceKind::vertex) return dvec2(0.0);
-  const double uu = glm::dot(j.dx[0], j.dx[0]);
-  if (kind == SourceKind::edge) return {glm::dot(j.dx[0], dx) / uu, 0};
-  const double uv = glm::dot(j.dx[0], j.dx[1]);
-  const double vv = glm::dot(j.dx[1], j.dx[1]);
-  const dvec2 along(glm::dot(j.dx[0], dx), glm::dot(j.dx[1], dx));
-  return dvec2(vv * along.x - uv * along.y, uu * along.y - uv * along.x) / (uu * vv - uv * uv);
-}
 
 /// The cubic with these values and slopes at 0 and 1, at s.
 double cubic(double value0, double slope0, double value1, double slope1, double s) {
@@ -358,7 +345,7 @@ std::optional<Contact> PolePassage::over_ends(int i) const {
   bool is_over = false;
   for (int step = 0; step < most_ends; ++step) {
     const Contact c = s.contact[k];
-    const dvec2 rate = parameters_of(s.jet[k], c.kind, point_.tangent.x[k]);
+    const dvec2 rate = parameter_change(s.jet[k], point_.tangent.x[k]);
     const std::vector<ContactExit> all = exits(geometry_, c);
     const auto exit = std::find_if(all.begin(), all.end(), [&](const ContactExit& e) {
       return leads_over_border(e) && stands_at(c, e) &&
@@ -392,7 +379,7 @@ std::optional<Ruling> PolePassage::go_on() {
   double square = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     const ContactJet& j = start.jet[i];
-    const dvec2 p = parameters_of(j, start.contact[i].kind, came.x[i]);
+    const dvec2 p = parameter_change(j, came.x[i]);
     ahead.parameter[i] = p;
     ahead.x[i] = p.x * j.dx[0] + p.y * j.dx[1];
     square += glm::dot(ahead.x[i], ahead.x[i]);

@@ -40,9 +40,9 @@ class PolePassage {
   /// The ruling with which the curve arrives in a landmark that lies within a step of this length.
   std::optional<Ruling> arrival(const Landmark& landmark, double length) const;
   /// The support in which both contacts come to ends of edges that have no bend there or to sides
-  /// across which their patches are level, if these lie within a step of this length. Either moves
-  /// with the square of what turns the direction, so that next to the ends rounding moves it by the
-  /// root of itself.
+  /// across which their patches are level, if these lie within a step of this length; beside a
+  /// face's contact the other one may rest at a vertex. The direction turns with the square of
+  /// their ways, so that next to the ends rounding moves them by the root of itself.
   std::optional<CommonSupport> at_flat_ends(double length) const;
   /// Takes the first step beyond the ends that both contacts have reached so, the way that they
   /// came. The support as a ruling of the elements that the point is in then, or none: the point

@@ -29,8 +29,6 @@ constexpr double longest_flat = 0.05;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
-dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
 double square(const dvec3& x) { return glm::dot(x, x); }
 
 /// A free end: its two points are one, though they may come from two elements.

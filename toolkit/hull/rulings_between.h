@@ -30,11 +30,11 @@ struct MovingRuling {
 /// one end (a ruling of length zero) it is the one whose length is s or 1 - s times the longer
 /// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
 /// A3 end, m +- rho e; a B3 end, linear). Where a parabolic curve touches an edge their distance
-/// falls with the square of the way, and it is the chord's share there as well. Where a contact
-/// leaves the end of an edge that does not bend there, as the borders of cages end in corners, n
-/// turns with the square of its way, and another contact that does so too may move with the power
-/// 3/2: there the root of the chord's share is s. Newton's method starts from Hermite's
-/// interpolation.
+/// falls with the square of the way, and it is the chord's share there as well. Where one contact
+/// leaves the end of an edge that does not bend there, as the borders of cages end in corners, or a
+/// side across which its patch is level, n and the other contact move with the square of its way:
+/// there the root of the chord's share is s. Where both do so, n alone moves with the square of
+/// their ways, and s is the share. Newton's method starts from Hermite's interpolation.
 class RulingsBetween {
  public:
   /// @pre the two have the same elements; all outlive it
@@ -45,12 +45,14 @@ class RulingsBetween {
   bool merges() const { return free_end_ >= 0; }
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
-  /// to, or one of them is where an edge ends without a bend, or far from the origin lies flat.
+  /// to, or one of them is at an end or a side where its element is flat, or far from the origin
+  /// lies flat.
   bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
-  /// At one end a contact is at that of an edge that does not bend there.
+  /// At one end one contact, not both, leaves where its element is flat.
   bool is_straight() const { return straight_[0] || straight_[1]; }
-  /// At one end both contacts are where their elements are flat: n stands still there.
+  /// At one end both contacts do so: n stands still there.
   bool stands() const { return stands_[0] || stands_[1]; }
+  /// Of the chord.
   double length() const { return std::sqrt(square_); }
   /// The s at which the chord is divided in this ratio, unless the two merge.
   double at_share(double share) const;

@@ -100,7 +100,6 @@ class GraphTracer {
   void find_poles();
   void find_touches(const std::vector<CulledCell>& cells);
   void add_landmark(const Landmark& landmark);
-  bool is_landmark(const dvec3& n) const;
   void add_pole(const SupportingPole& pole);
   bool is_in_plane(const dvec3& n) const;
   void find_settled(const std::vector<CulledCell>& cells);
@@ -180,7 +179,7 @@ bool GraphTracer::is_in_plane(const dvec3& n) const {
 void GraphTracer::find_poles() {
   for (const SupportingPole& pole : supporting_poles(geometry_, query_)) {
     add_pole(pole);
-    if (is_landmark(pole.n)) continue;
+    if (is_landmark(landmarks_, pole.n)) continue;
     const std::optional<Landmark> facet = facet_at_pole(geometry_, query_, pole);
     if (facet) add_landmark(*facet);
   }
@@ -191,7 +190,7 @@ void GraphTracer::find_touches(const std::vector<CulledCell>& cells) {
   for (const auto& touches :
        {edge_touches(geometry_, query_, cells), edge_stretches(geometry_, query_, stretches_)}) {
     for (const Landmark& touch : touches) {
-      if (!is_landmark(touch.n)) add_landmark(touch);
+      if (!is_landmark(landmarks_, touch.n)) add_landmark(touch);
     }
   }
 }
@@ -199,11 +198,6 @@ void GraphTracer::find_touches(const std::vector<CulledCell>& cells) {
 void GraphTracer::add_landmark(const Landmark& landmark) {
   landmarks_.push_back(landmark);
   add_node(landmark.n, landmark.facet);
-}
-
-bool GraphTracer::is_landmark(const dvec3& n) const {
-  return std::any_of(landmarks_.begin(), landmarks_.end(),
-                     [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
 }
 
 /// Once for all patches that meet in it.

@@ -40,6 +40,11 @@ std::vector<SupportingPole> supporting_poles(const ContactGeometry& geometry, Su
   return result;
 }
 
+bool is_landmark(std::span<const Landmark> landmarks, const dvec3& n) {
+  return std::any_of(landmarks.begin(), landmarks.end(),
+                     [&](const Landmark& l) { return glm::distance(l.n, n) < same_plane; });
+}
+
 std::optional<Landmark> facet_at_pole(const ContactGeometry& geometry, SupportQuery& query,
                                       const SupportingPole& pole) {
   const auto facet = [&](const dvec3& normal, double slack) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "taut/bounds/support_query.h"
@@ -25,6 +26,9 @@ struct Landmark {
   dvec3 n = dvec3(0.0);
   FacetContacts facet;
 };
+
+/// Whether it is the direction of one of them.
+bool is_landmark(std::span<const Landmark> landmarks, const dvec3& n);
 
 /// The facet at whose corner the pole lies, with two other contacts or more: Newton's method does
 /// not find it. Where the pole's normal is not known to within rounding, its plane is that of the

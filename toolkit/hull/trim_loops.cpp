@@ -40,8 +40,6 @@ struct Sheet {
   std::vector<Meeting> meetings;
 };
 
-dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
 /// Position around the unit square, counter-clockwise from (0, 0), in [0, 4); that of a corner if
 /// it is there to within same_parameter.
 double position(const dvec2& p) {

@@ -1,4 +1,4 @@
-#include "taut/hull/touched_edges.h"
+#include "taut/hull/touched_stretches.h"
 
 #include <algorithm>
 #include <array>
@@ -67,7 +67,8 @@ class TouchedEdge {
   bool is_whole() const;
   /// The face lies beside the edge to the right as the parts run, seen from outside.
   bool is_to_the_right() const;
-  /// None where chords are known not to be all.
+  /// None where a chord has none of the stretch's ends for an end, and where the face does not
+  /// leave the plane.
   std::optional<SideParts> parts();
 
  private:
@@ -263,9 +264,9 @@ std::optional<SideParts> TouchedEdge::parts() {
   return result;
 }
 
-class TouchSearch {
+class StretchSearch {
  public:
-  TouchSearch(const ContactGeometry& geometry, SupportQuery& query)
+  StretchSearch(const ContactGeometry& geometry, SupportQuery& query)
       : geometry_(geometry), query_(query) {}
 
   void search_side(const Contact& patch, Side side);
@@ -279,13 +280,13 @@ class TouchSearch {
   std::vector<TouchedEdge> edges_;
 };
 
-TouchedEdge& TouchSearch::edge(const std::array<Contact, 2>& ends, const dvec3& n) {
+TouchedEdge& StretchSearch::edge(const std::array<Contact, 2>& ends, const dvec3& n) {
   const auto known = std::find_if(edges_.begin(), edges_.end(),
                                   [&](const TouchedEdge& e) { return e.is(ends, n); });
   return known == edges_.end() ? edges_.emplace_back(geometry_, ends, n) : *known;
 }
 
-void TouchSearch::search_side(const Contact& patch, Side side) {
+void StretchSearch::search_side(const Contact& patch, Side side) {
   const std::optional<Contact> piece = straight_piece_or_seam(geometry_, patch, side);
   if (!piece) return;
   const auto normal = [&](double t) { return unit_normal(geometry_, on_side_of(patch, side, t)); };
@@ -301,7 +302,7 @@ void TouchSearch::search_side(const Contact& patch, Side side) {
   }
 }
 
-std::vector<TouchedStretch> TouchSearch::found() {
+std::vector<TouchedStretch> StretchSearch::found() {
   std::vector<TouchedStretch> result;
   for (TouchedEdge& edge : edges_) {
     for (TouchedEdge& stretch : edge.stretches()) {
@@ -318,7 +319,7 @@ std::vector<TouchedStretch> TouchSearch::found() {
 
 std::vector<TouchedStretch> touched_stretches(const ContactGeometry& geometry, SupportQuery& query,
                                               const std::vector<CulledCell>& cells) {
-  TouchSearch search(geometry, query);
+  StretchSearch search(geometry, query);
   for (const auto& [instance, patch] : mixed_patches(cells)) {
     const Contact c{instance, SourceKind::face, patch, 0, 0};
     if (geometry.is_repeated(c) || geometry.is_ruled(c)) continue;
