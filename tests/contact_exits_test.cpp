@@ -11,6 +11,7 @@
 #include "models.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/joined_elements.h"
+#include "taut/hull/level_sides.h"
 
 namespace taut {
 namespace {

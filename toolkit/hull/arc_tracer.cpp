@@ -11,6 +11,7 @@
 #include "taut/hull/element_changes.h"
 #include "taut/hull/facet_contacts.h"
 #include "taut/hull/in_line_contacts.h"
+#include "taut/hull/level_sides.h"
 #include "taut/hull/level_way.h"
 #include "taut/hull/merging.h"
 #include "taut/hull/rulings_between.h"
@@ -48,6 +49,10 @@ constexpr double level_hop_step = 1e-6;
 /// Contacts nearer to borders than this run along them, or come to them by themselves.
 constexpr double told_distance = 1e-9;
 
+/// The largest turn in which curves leave flat ends: the nearer they are, the less do contacts tell
+/// the direction.
+constexpr double flat_end_turn = 0.05;
+
 class Trace {
  public:
   Trace(const ContactSystem& system, SupportQuery& query, const CommonSupport& start,
@@ -74,6 +79,8 @@ class Trace {
   bool arrives(const Landmark& landmark);
   bool ends_in_flat_facet(const CommonSupport& end);
   std::optional<Pace> reaches_flat_ends();
+  bool go_onto_edges();
+  bool goes_off_edges(const CommonSupport& next);
   bool is_closing(const CommonSupport& next, double length) const;
   void close();
   bool ends_in(std::optional<MergedEnd> end);
@@ -181,14 +188,20 @@ std::optional<Trace::Pace> Trace::reaches_flat_ends() {
   if (!end) return std::nullopt;
   const CommonSupport before = point_.at;
   point_.at = *end;
-  if (const std::optional<Ruling> first = passage_.go_on()) {
+  if (go_onto_edges()) return Pace::on;
+  const auto is_on_edge = [&](const Contact& c) { return c.kind == SourceKind::edge; };
+  const bool on_edges = is_on_edge(end->contact[0]) && is_on_edge(end->contact[1]);
+  std::optional<Ruling> first = passage_.go_on();
+  // On faces both contacts may go on another way than they came.
+  if (!first && !on_edges) first = passage_.leave(flat_end_turn);
+  if (first) {
     push(end->ruling());
     has_moved_ = true;
     begin_piece(*first);
     push(point_.at.ruling());
     return Pace::on;
   }
-  if (end->contact[0].kind != SourceKind::edge || end->contact[1].kind != SourceKind::edge) {
+  if (!on_edges) {
     point_.at = before;
     return ends_in_flat_facet(*end) ? std::optional(ended(TracedArc::End::plane)) : std::nullopt;
   }
@@ -199,6 +212,69 @@ std::optional<Trace::Pace> Trace::reaches_flat_ends() {
   event.exit = {ContactExit::Kind::end, int(end->contact[0].u)};
   event.support = *end;
   return exchange(event);
+}
+
+/// Both contacts stand on sides, no corners, beyond which they are on edges or seams: goes on
+/// there.
+bool Trace::go_onto_edges() {
+  const CommonSupport end = point_.at;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& c = point_.at.contact[i];
+    int on_sides = 0;
+    std::optional<Contact> edge;
+    for (const ContactExit& exit : exits(geometry_, c)) {
+      if (exit.kind != ContactExit::Kind::side || !stands_at(c, exit)) continue;
+      ++on_sides;
+      edge = beyond(geometry_, c, exit);
+    }
+    if (on_sides != 1 || !edge || edge->kind != SourceKind::edge) {
+      point_.at = end;
+      return false;
+    }
+    c = *edge;
+  }
+  point_.at.evaluate(geometry_);
+  if (!point_.settle()) {
+    point_.at = end;
+    return false;
+  }
+  push(end.ruling());
+  has_moved_ = true;
+  begin_piece(point_.at.ruling());
+  return true;
+}
+
+/// Contacts on edges or seams have patches beside them that are level across, and rise within the
+/// step (swells_beside): goes to where that begins, and on into the patches.
+bool Trace::goes_off_edges(const CommonSupport& next) {
+  const auto swells = [&](const CommonSupport& s) {
+    return swells_beside(geometry_, s.contact[0], s.n) ||
+           swells_beside(geometry_, s.contact[1], s.n);
+  };
+  if (swells(point_.at) || !swells(next)) return false;
+  const CommonSupport before = point_.at;
+  CommonSupport last = point_.at;
+  double low = 0;
+  double high = step_;
+  for (int k = 0; k < bisection_limit && high - low > margin_slack; ++k) {
+    const double middle = 0.5 * (low + high);
+    const std::optional<CommonSupport> s = point_.stepped(middle);
+    if (!s) return false;
+    if (!swells(*s)) last = *s;
+    (swells(*s) ? high : low) = middle;
+  }
+  if (!point_.supports(last)) return false;
+  point_.at = last;
+  const std::optional<Ruling> first = passage_.leave(flat_end_turn);
+  if (!first) {
+    point_.at = before;
+    return false;
+  }
+  if (low > plane_slack) push(last.ruling());
+  has_moved_ = true;
+  begin_piece(*first);
+  push(point_.at.ruling());
+  return true;
 }
 
 /// Ends the arc as told, if it is.
@@ -625,6 +701,7 @@ Trace::Pace Trace::advance() {
     close();
     return ended(TracedArc::End::closed);
   }
+  if (!event && goes_off_edges(*next)) return Pace::on;
   const Support top = point_.query()(next->n, next->contact[0]);
   if (top.h > glm::dot(next->jet[0].x, next->n) + geometry_.tie()) {
     return surpassed(*next, top.contact);

@@ -38,9 +38,6 @@ double exit_length(const ContactGeometry& geometry, const Contact& c, const Cont
 bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
                   const ContactExit& exit);
 
-/// A patch's contact lies on the side, and x . n has no second derivative across it but rounding.
-bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& n);
-
 /// To the same point in another element, not into what an edge or a vertex bounds.
 bool leads_over_border(const ContactExit& exit);
 
@@ -98,39 +95,6 @@ Contact moved_to_border(const ContactGeometry& geometry, Contact c, double dista
 /// The contact in its canonical form where it lies within rounding of a border, an end or a pole:
 /// no farther than `distance`.
 Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance);
-
-/// The contact on a side or at an end of its element near by, if the slope of x . n there is less
-/// than tie(), or than `slope`: the direction does not tell the two places apart. None if there is
-/// none.
-std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Contact& c,
-                                       const dvec3& n, double slope = 0);
-
-/// The contact of a patch on the side, if that is an edge or a seam and the patch is level across
-/// it, or so near to it that the direction does not tell, as one on that: nothing else holds it
-/// there. None elsewhere.
-std::optional<Contact> on_level_edge(const ContactGeometry& geometry, const Contact& c, Side side,
-                                     const dvec3& n);
-
-/// A patch's contact on a side across which it is level, to within rounding: its curvature tells no
-/// place. Where the third derivative tells it, that place. None elsewhere.
-std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n);
-
-/// A contact on an edge of a patch, beyond one of the patch's sides.
-struct EdgeBeside {
-  ContactExit exit;
-  Contact edge;
-};
-
-/// The contact on an edge of the patch of a face's contact, another local maximum of x . n than
-/// this one, that is as high as it to within tie(): beside edges across which the patch is level.
-/// None elsewhere.
-std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Contact& c,
-                                    const dvec3& n);
-
-/// Where a contact slides from an edge over the exit into a face that is level across it: the local
-/// maximum of x . n inside that is as high as it to within tie(). None elsewhere.
-std::optional<Contact> tied_inside(const ContactGeometry& geometry, const Contact& edge,
-                                   const ContactExit& exit, const dvec3& n);
 
 /// The normal form of a contact on a collapsed side, where the parameter along the side is any: at
 /// that of a contact of the same element beside it, from which a curve comes. Others are as they

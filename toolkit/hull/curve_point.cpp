@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "taut/hull/level_sides.h"
 #include "taut/hull/rulings_between.h"
 
 namespace taut {

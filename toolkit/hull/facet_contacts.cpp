@@ -7,6 +7,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/in_line_contacts.h"
+#include "taut/hull/level_sides.h"
 #include "taut/hull/outline.h"
 #include "taut/hull/planar_hull.h"
 

@@ -6,6 +6,7 @@
 
 #include "taut/hull/arc_tracer.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/level_sides.h"
 #include "taut/hull/level_way.h"
 #include "taut/hull/partings.h"
 #include "taut/hull/rulings_between.h"

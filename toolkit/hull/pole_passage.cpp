@@ -1,32 +1,38 @@
 #include "taut/hull/pole_passage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/level_sides.h"
 
 namespace taut {
 namespace {
 
-/// Turns of n that are tried as the first step away from where contacts are singular: the largest,
-/// and so many more, each less than the one before by the factor. In one of them both contacts are
+/// Turns of n that are tried as the first step away from where contacts are singular: so many, each
+/// less than the one before by the factor. In one of them both contacts are
 /// in the elements next to theirs, be these as small as cages' patches about extraordinary
 /// vertices.
-constexpr double largest_turn = 1e-3;
 constexpr double turn_factor = 0.6;
 constexpr int turn_count = 30;
 /// Lengths that are tried as the first step beyond ends that both contacts reach together: the
 /// longest, and so many in all, each shorter by the factor.
 constexpr double longest_way = 0.05;
 constexpr int way_count = 12;
-/// The way to one side is so much of that to another, at most, that the contact goes to the corner.
+/// The way to one side is so much of that to another, at most, that the contact goes to the corner;
+/// and where the patch is flat in the corner, which curves may reach along a side.
 constexpr double corner_share = 1.1;
+constexpr double flat_corner_share = 3;
+/// Newton steps of a contact along a side, on which it has its place but for their square.
+constexpr int most_slides = 6;
 /// Ends of elements that a contact passes in a corner, at most.
 constexpr int most_ends = 3;
-/// Share of such a turn by which contacts are told apart.
-constexpr double share_inward = 0.1;
+/// Shares of such a turn by which n is tilted towards a contact, to tell it from others: with the
+/// first of them contacts are then climbed to, with all they are tried as they are.
+constexpr std::array<double, 4> tilts = {0.1, 1e-3, 1e-5, 1e-7};
 
 bool is_corner(const Contact& c) { return (c.u == 0 || c.u == 1) && (c.v == 0 || c.v == 1); }
 
@@ -94,22 +100,27 @@ bool PolePassage::is_singular(int contact) const {
          is_flat(point_.at.jet[i], point_.at.n, least_curvature);
 }
 
-std::optional<Ruling> PolePassage::leave() {
+std::optional<Ruling> PolePassage::leave(double largest) {
   const CommonSupport start = point_.at;
-  double step = largest_turn;
+  const CurveTangent came = point_.tangent;
+  double step = largest;
   for (int k = 0; k < turn_count; ++k, step *= turn_factor) {
-    for (const bool tilted : {false, true}) {
+    point_.at = start;
+    std::optional<Ruling> first = leave(step, tilts.front(), true);
+    for (std::size_t t = 0; !first && t < tilts.size(); ++t) {
       point_.at = start;
-      if (const std::optional<Ruling> first = leave(step, tilted)) return first;
+      first = leave(step, tilts[t], false);
     }
+    if (first) return first;
   }
   point_.at = start;
+  point_.tangent = came;
   return std::nullopt;
 }
 
-std::optional<Ruling> PolePassage::leave(double step, bool tilted) {
+std::optional<Ruling> PolePassage::leave(double step, double tilt, bool climbs) {
   const CommonSupport start = point_.at;
-  const std::optional<CommonSupport> beside = stepped_aside(step, tilted);
+  const std::optional<CommonSupport> beside = stepped_aside(step, tilt, climbs);
   if (!beside) return std::nullopt;
   point_.at = *beside;
   point_.tangent = CurveTangent();
@@ -128,29 +139,30 @@ std::optional<Ruling> PolePassage::leave(double step, bool tilted) {
 }
 
 /// The contact of the branch that contact i moves on in a direction beside: what supports where the
-/// direction turns a little into its region, if that is near; else where a climb leads. `tilted`:
-/// as it is in the direction turned so, off the place where the element is flat.
-std::optional<Contact> PolePassage::aside(int i, double step, const dvec3& n, bool tilted) const {
+/// direction is tilted into its region, if that is near; else where a climb leads. If it does not
+/// climb to n, as it is in the direction tilted so, off the place where the element is flat.
+std::optional<Contact> PolePassage::aside(int i, double tilt, const dvec3& n, bool climbs) const {
   const Contact& own = point_.at.contact[std::size_t(i)];
   const dvec3 inward = (i == 0 ? 1.0 : -1.0) * unit(point_.at.d());
-  const dvec3 turned = glm::normalize(n + share_inward * step * inward);
+  const dvec3 turned = glm::normalize(n + tilt * inward);
   const Support top = point_.query()(turned, own);
   if (glm::distance(top.point, point_.at.jet[std::size_t(i)].x) <
       0.25 * glm::length(point_.at.d())) {
     const Contact rest = at_rest(geometry_, top.contact, turned);
-    if (tilted) return rest;
+    if (!climbs) return rest;
     if (const std::optional<Contact> c = climbed(geometry_, rest, n)) return c;
   }
   return pole_side(geometry_, own) ? beside_pole(geometry_, own, n) : climbed(geometry_, own, n);
 }
 
 /// The common support of the two contacts' branches where n has turned by a step along the curve.
-std::optional<CommonSupport> PolePassage::stepped_aside(double step, bool tilted) const {
+std::optional<CommonSupport> PolePassage::stepped_aside(double step, double tilt,
+                                                        bool climbs) const {
   const dvec3 along = unit(glm::cross(point_.at.n, point_.at.d()));
   CommonSupport next = point_.at;
   next.n = glm::normalize(point_.at.n + step * along);
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<Contact> c = aside(int(i), step, next.n, tilted);
+    const std::optional<Contact> c = aside(int(i), tilt * step, next.n, climbs);
     if (!c) return std::nullopt;
     next.contact[i] = *c;
   }
@@ -228,6 +240,14 @@ std::optional<Ruling> PolePassage::arrival(const Landmark& landmark, double leng
   return end.ruling();
 }
 
+/// In one direction the patch has no curvature at its corner.
+bool PolePassage::is_flat_corner(const Contact& c) const {
+  const dvec3 n = unit_normal(geometry_, c);
+  if (n == dvec3(0.0)) return false;
+  const ContactJet j = geometry_.jet(c);
+  return is_flat(j, n, least_curvature) && !is_flat(j, n, -least_curvature);
+}
+
 /// The contact where the tangent leads it, within a step of this length, to the end of an edge or
 /// to a side of its patch.
 std::optional<Contact> PolePassage::end_ahead(int i, double length) const {
@@ -249,11 +269,9 @@ std::optional<Contact> PolePassage::end_ahead(int i, double length) const {
   const dvec2 way = (border - parameters(c)) / rate;
   const int across = way.x < way.y ? 0 : 1;
   if (!(way[across] > 0 && way[across] <= length)) return std::nullopt;
-  if (way[1 - across] < corner_share * way[across]) {
-    c.u = border.x;
-    c.v = border.y;
-    return c;
-  }
+  const Contact corner{c.instance, c.kind, c.element, border.x, border.y};
+  const double share = is_flat_corner(corner) ? flat_corner_share : corner_share;
+  if (way[1 - across] < share * way[across]) return corner;
   const dvec2 there = parameters(c) + way[across] * rate;
   c.u = std::clamp(across == 0 ? border.x : there.x, 0.0, 1.0);
   c.v = std::clamp(across == 1 ? border.y : there.y, 0.0, 1.0);
@@ -286,13 +304,14 @@ bool PolePassage::cross_side(int i, Contact& c, double length) const {
   return true;
 }
 
-/// In the direction the contact's element is flat at the end or across the side on which it lies.
+/// In the direction the contact's element is flat at the end, in the corner or across the side on
+/// which it lies.
 bool PolePassage::is_flat_end(const Contact& c, const ContactJet& jet, const dvec3& n) const {
   if (c.kind == SourceKind::edge) {
     return ends_straight(geometry_, c) &&
            std::abs(glm::dot(unit(jet.dx[0]), n)) <= geometry_.rounding();
   }
-  if (c.kind == SourceKind::vertex) return true;
+  if (c.kind == SourceKind::vertex || (is_corner(c) && is_flat_corner(c))) return true;
   return std::any_of(all_sides.begin(), all_sides.end(),
                      [&](Side side) { return is_level_across(geometry_, c, side, n); });
 }
@@ -309,6 +328,39 @@ dvec3 PolePassage::common_normal(const CommonSupport& end) const {
   return unit(glm::length(first) > glm::length(second) ? first : second);
 }
 
+/// The side on which the contact of a face lies, no corner, if the patch is level across it.
+std::optional<Side> PolePassage::level_side(const Contact& c) const {
+  if (c.kind != SourceKind::face || is_corner(c)) return std::nullopt;
+  const dvec3 n = unit_normal(geometry_, c);
+  const auto side = std::find_if(all_sides.begin(), all_sides.end(),
+                                 [&](Side own) { return is_level_across(geometry_, c, own, n); });
+  return side == all_sides.end() ? std::nullopt : std::optional(*side);
+}
+
+/// The support of two contacts on sides, `end` near by, of which the one stops to be inside of its
+/// patch (swell_end): the other one is highest on its side in the same direction.
+std::optional<CommonSupport> PolePassage::at_swell_end(const CommonSupport& end,
+                                                       double length) const {
+  std::optional<CommonSupport> nearest;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<Side> side = level_side(end.contact[i]);
+    if (!side || !level_side(end.contact[1 - i])) return std::nullopt;
+    const std::optional<Contact> last = swell_end(geometry_, end.contact[i], *side, point_.at.n);
+    if (!last) continue;
+    CommonSupport s = end;
+    s.contact[i] = *last;
+    s.n = unit_normal(geometry_, *last);
+    if (glm::dot(s.n, point_.at.n) < 0) s.n = -s.n;
+    Contact& other = s.contact[1 - i];
+    for (int k = 0; k < most_slides; ++k) other = highest_along(geometry_, other, s.n);
+    s.evaluate(geometry_);
+    const double ahead = point_.length_to(s);
+    if (!(ahead > margin_slack && ahead <= length)) continue;
+    if (!nearest || ahead < point_.length_to(*nearest)) nearest = s;
+  }
+  return nearest;
+}
+
 std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
   CommonSupport end = point_.at;
   for (int i = 0; i < 2; ++i) {
@@ -318,6 +370,9 @@ std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
   }
   end.evaluate(geometry_);
   if (glm::length(end.d()) < join_distance) return std::nullopt;
+  if (const std::optional<CommonSupport> last = at_swell_end(end, length)) {
+    return is_tangent(*last) ? last : std::nullopt;
+  }
   const double ahead = point_.length_to(end);
   if (ahead <= margin_slack || ahead > length) return std::nullopt;
   end.n = common_normal(end);
@@ -330,11 +385,13 @@ std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
     if (c.kind == SourceKind::face && !cross_side(i, c, 2 * ahead)) return std::nullopt;
   }
   end.evaluate(geometry_);
-  if (std::abs(glm::dot(end.d(), end.n)) > geometry_.tie() || !point_.supports(end) ||
-      !point_.is_followed(point_.at.ruling(), end.ruling())) {
-    return std::nullopt;
-  }
-  return end;
+  return is_tangent(end) ? std::optional(end) : std::nullopt;
+}
+
+/// The plane holds both contacts, supports, and the rulings that lead there are found.
+bool PolePassage::is_tangent(const CommonSupport& end) const {
+  return std::abs(glm::dot(end.d(), end.n)) <= geometry_.tie() && point_.supports(end) &&
+         point_.is_followed(point_.at.ruling(), end.ruling());
 }
 
 /// The point of a contact at ends of its element beyond those for which it heads; a vertex itself.

@@ -32,8 +32,9 @@ class PolePassage {
   /// its element is flat along some direction.
   bool is_singular(int contact) const;
   /// Takes the first step away from a common support of which contacts are singular. The support as
-  /// a ruling of the elements that the point is in then, or none: the point stays.
-  std::optional<Ruling> leave();
+  /// a ruling of the elements that the point is in then, or none: the point stays. `largest`: the
+  /// most by which n is turned.
+  std::optional<Ruling> leave(double largest = 1e-3);
   /// Goes to a pole, where the patch's parameters fail, if the curve does so to within
   /// geometry.tie(), in a step of this length.
   bool reach(int contact, Side side, double length);
@@ -42,7 +43,8 @@ class PolePassage {
   /// The support in which both contacts come to ends of edges that have no bend there or to sides
   /// across which their patches are level, if these lie within a step of this length; beside a
   /// face's contact the other one may rest at a vertex. The direction turns with the square of
-  /// their ways, so that next to the ends rounding moves them by the root of itself.
+  /// their ways, so that next to the ends rounding moves them by the root of itself. Also where
+  /// contacts stop to be inside of such patches (swell_end).
   std::optional<CommonSupport> at_flat_ends(double length) const;
   /// Takes the first step beyond the ends that both contacts have reached so, the way that they
   /// came. The support as a ruling of the elements that the point is in then, or none: the point
@@ -51,10 +53,14 @@ class PolePassage {
 
  private:
   std::optional<Contact> over_ends(int i) const;
-  std::optional<Ruling> leave(double step, bool tilted);
-  std::optional<CommonSupport> stepped_aside(double step, bool tilted) const;
-  std::optional<Contact> aside(int i, double step, const dvec3& n, bool tilted) const;
+  std::optional<Ruling> leave(double step, double tilt, bool climbs);
+  std::optional<CommonSupport> stepped_aside(double step, double tilt, bool climbs) const;
+  std::optional<Contact> aside(int i, double tilt, const dvec3& n, bool climbs) const;
   std::optional<Contact> end_ahead(int i, double length) const;
+  bool is_flat_corner(const Contact& c) const;
+  std::optional<Side> level_side(const Contact& c) const;
+  std::optional<CommonSupport> at_swell_end(const CommonSupport& end, double length) const;
+  bool is_tangent(const CommonSupport& end) const;
   bool cross_side(int i, Contact& c, double length) const;
   bool is_flat_end(const Contact& c, const ContactJet& jet, const dvec3& n) const;
   dvec3 common_normal(const CommonSupport& end) const;

@@ -7,6 +7,7 @@
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/joined_elements.h"
+#include "taut/hull/level_sides.h"
 #include "taut/hull/parabolic_sides.h"
 
 namespace taut {

@@ -19,6 +19,7 @@
 #include "taut/hull/free_ends.h"
 #include "taut/hull/graph_builder.h"
 #include "taut/hull/in_line_contacts.h"
+#include "taut/hull/level_sides.h"
 #include "taut/hull/level_way.h"
 #include "taut/hull/partings.h"
 #include "taut/hull/point_hull.h"

@@ -24,6 +24,10 @@ constexpr double noise_factor = 64;
 constexpr double least_fall = 1e-6;
 /// What is below a chord by less, as a share, is on it.
 constexpr double least_sag = 1e-7;
+/// Radians by which a plane is turned about an edge to tell chords from stretches, and steps to the
+/// highest point beside the edge.
+constexpr double turn_beside = 0.01;
+constexpr int most_climbs = 20;
 /// Of central difference quotients.
 constexpr double difference = 1e-5;
 /// Stretches of a piece below this are none.
@@ -69,7 +73,7 @@ class TouchedEdge {
   bool is_to_the_right() const;
   /// None where a chord has none of the stretch's ends for an end, and where the face does not
   /// leave the plane.
-  std::optional<SideParts> parts();
+  std::optional<SideParts> parts(SupportQuery& query);
 
  private:
   struct EdgeSide {
@@ -97,6 +101,8 @@ class TouchedEdge {
   double fall(const EdgeSide& side, double t) const;
   Place place(std::size_t side, double t) const;
   std::optional<std::vector<Place>> samples() const;
+  std::optional<Contact> highest_beside(const Place& p, double turn) const;
+  bool is_left(const std::vector<Place>& places, SupportQuery& query) const;
   std::optional<Place> tangent_from(const Place& end, const Place& before,
                                     const Place& after) const;
   Contact on_piece(const Place& p) const;
@@ -183,6 +189,49 @@ std::optional<std::vector<TouchedEdge::Place>> TouchedEdge::samples() const {
   return result;
 }
 
+/// The highest point of the curve across the edge at the place, where the plane has turned about
+/// the edge.
+std::optional<Contact> TouchedEdge::highest_beside(const Place& p, double turn) const {
+  const EdgeSide& side = sides_[p.side];
+  const bool is_u = along_v(side.side);
+  const double sense = at_upper_end(side.side) ? -1 : 1;
+  const dvec3 d = across(side, 1, p.t);
+  const dvec3 outward = d - glm::dot(d, along_) * along_;
+  const dvec3 n = glm::normalize(n_ + turn * unit(outward));
+  const double c = fall(side, p.t);
+  double way = (bends_ ? turn / (2 * c) : std::sqrt(turn / (3 * c))) / glm::length(outward);
+  Contact at = on_side_of(side.patch, side.side, p.t);
+  double& w = is_u ? at.u : at.v;
+  const double border = w;
+  for (int k = 0; k < most_climbs; ++k) {
+    if (!(way > 0 && way < 1)) return std::nullopt;
+    w = border + sense * way;
+    const ContactJet j = geometry_.jet(at);
+    const double slope = sense * glm::dot(j.dx[is_u ? 0 : 1], n);
+    const double second = glm::dot(is_u ? j.dxx : j.dyy, n);
+    if (!(second < 0)) return std::nullopt;
+    way -= slope / second;
+  }
+  return at;
+}
+
+/// Where the places are all on one line, so far as the lowest power of the distance tells: whether
+/// in planes that have turned about the edge others than those between the ends support.
+bool TouchedEdge::is_left(const std::vector<Place>& places, SupportQuery& query) const {
+  const Place& first = places.front();
+  const Place& last = places.back();
+  return std::all_of(places.begin() + 1, places.end() - 1, [&](const Place& p) {
+    const double share = (p.at - first.at) / (last.at - first.at);
+    const double line = (1 - share) * first.value + share * last.value;
+    if (std::abs(p.value - line) > least_sag * line) return false;
+    const std::optional<Contact> c = highest_beside(p, turn_beside);
+    if (!c) return false;
+    const dvec3 normal = unit_normal(geometry_, *c);
+    const dvec3 n = glm::dot(normal, n_) < 0 ? -normal : normal;
+    return query(n, *c).h > glm::dot(geometry_.point(*c), n) + geometry_.tie();
+  });
+}
+
 /// Where the tangent goes through the chord's other end: between two places of one side, or of two
 /// consecutive ones.
 std::optional<TouchedEdge::Place> TouchedEdge::tangent_from(const Place& end, const Place& before,
@@ -225,21 +274,34 @@ void TouchedEdge::add_stretches(const Place& begin, const Place& end,
   }
 }
 
-std::optional<SideParts> TouchedEdge::parts() {
+std::optional<SideParts> TouchedEdge::parts(SupportQuery& query) {
   bends_ = bends();
   const std::optional<std::vector<Place>> places = samples();
   if (!places) return std::nullopt;
   const std::vector<Place>& p = *places;
   // The concave hull, by the samples on it.
-  std::vector<std::size_t> chain;
-  const auto is_below = [&](std::size_t k, std::size_t a, std::size_t b) {
+  std::vector<std::size_t> corners;
+  const auto chord = [&](std::size_t k, std::size_t a, std::size_t b) {
     const double share = (p[k].at - p[a].at) / (p[b].at - p[a].at);
-    const double chord = (1 - share) * p[a].value + share * p[b].value;
-    return p[k].value < (1 - least_sag) * chord;
+    return (1 - share) * p[a].value + share * p[b].value;
   };
   for (std::size_t k = 0; k < p.size(); ++k) {
-    while (chain.size() > 1 && is_below(chain.back(), chain[chain.size() - 2], k)) chain.pop_back();
-    chain.push_back(k);
+    const auto is_below = [&](std::size_t b) {
+      return p[b].value < chord(b, corners[corners.size() - 2], k);
+    };
+    while (corners.size() > 1 && is_below(corners.back())) corners.pop_back();
+    corners.push_back(k);
+  }
+  std::vector<std::size_t> chain = {0};
+  for (std::size_t c = 1; c < corners.size(); ++c) {
+    const std::size_t a = corners[c - 1];
+    const std::size_t b = corners[c];
+    bool sags = false;
+    for (std::size_t k = a + 1; k < b; ++k) {
+      sags = sags || p[k].value < (1 - least_sag) * chord(k, a, b);
+    }
+    for (std::size_t k = a + 1; !sags && k < b; ++k) chain.push_back(k);
+    chain.push_back(b);
   }
   const std::size_t last = chain.size() - 2;
   const auto is_chord = [&](std::size_t k) { return chain[k + 1] > chain[k] + 1; };
@@ -249,7 +311,7 @@ std::optional<SideParts> TouchedEdge::parts() {
   SideParts result;
   const Contact first = geometry_.canonical(on_piece(p.front()));
   result.end = geometry_.canonical(on_piece(p.back()));
-  if (last == 0 && is_chord(0)) {
+  if ((last == 0 && is_chord(0)) || is_left(p, query)) {
     result.parts.push_back({first});
     return result;
   }
@@ -306,7 +368,7 @@ std::vector<TouchedStretch> StretchSearch::found() {
   std::vector<TouchedStretch> result;
   for (TouchedEdge& edge : edges_) {
     for (TouchedEdge& stretch : edge.stretches()) {
-      std::optional<SideParts> parts = stretch.parts();
+      std::optional<SideParts> parts = stretch.parts(query_);
       if (!parts) continue;
       if (!stretch.is_to_the_right()) *parts = reversed(*parts);
       result.push_back({stretch.n(), std::move(*parts), stretch.is_whole()});

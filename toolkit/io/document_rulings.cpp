@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "taut/hull/contact_exits.h"
+#include "taut/hull/level_sides.h"
 #include "taut/hull/rulings_between.h"
 
 namespace taut {
