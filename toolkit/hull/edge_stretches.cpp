@@ -111,7 +111,7 @@ std::vector<Landmark> edge_stretches(const ContactGeometry& geometry, SupportQue
     if (facet && has_area(*facet, own.n)) {
       done.push_back(own.n);
       Landmark landmark{own.n, with_stretches(geometry, own.n, *facet, stretches)};
-      if (landmark.facet.is_curved()) result.push_back(std::move(landmark));
+      if (landmark.facet.is_curved() || side.has_chords()) result.push_back(std::move(landmark));
     } else if (own.is_whole && side.has_chords() && side.parts.size() > 1) {
       result.push_back({own.n, around(geometry, side)});
     }
