@@ -325,6 +325,19 @@ TEST(CageHull, OfBoxesWithoutLids) {
   }
 }
 
+/// In 3 x 3 squares a side, each of two triangles, the edges' middles are cylinders, and beyond
+/// their ends Loop's surface swells by a millionth: scrolls lead from the one swelling to the
+/// other, over the cylinder's steepest ruling and up to where it stops to swell; from there on the
+/// cylinder itself is on the hull.
+TEST(CageHull, OfATriangulatedBox) {
+  const Model model = cage_model(triangulated(box_cage({3})));
+  const Hull hull = whole_hull(model, "box");
+  ASSERT_TRUE(hull.boundary);
+  expect_verified(model, hull, "box");
+  EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 12);
+  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6);
+}
+
 /// Separating curves of a sharp edge and of the faces beside it, through or to where both are
 /// level: in 3 x 3 quads a side they begin at chords of the facets' sides.
 TEST(CageHull, OfBoxesWithASharpEdge) {

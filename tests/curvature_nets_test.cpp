@@ -81,6 +81,7 @@ TEST(CurvatureNets, HoldForRandomPatches) {
 TEST(CurvatureNets, HalvesHoldInTheirParts) {
   Random random(8);
   int told = 0;
+  int saddles = 0;
   const Model model = make_model(blob(2));
   const std::vector<Patch>& patches = model.parts()[0].patches();
   for (int k = 0; k < 100; ++k) {
@@ -97,7 +98,9 @@ TEST(CurvatureNets, HalvesHoldInTheirParts) {
       nets = std::move(halves[std::size_t(half)]);
       const int sign = nets.definite_sign();
       const std::optional<NormalPyramid> pyramid = nets.normals();
-      told += sign != 0 ? 1 : 0;
+      const bool saddle = nets.over().surely_saddle();
+      told += sign != 0 || saddle ? 1 : 0;
+      saddles += saddle ? 1 : 0;
       for (int i = 0; i < 10; ++i) {
         const double x = u.at(uniform(random, 0, 1));
         const double y = v.at(uniform(random, 0, 1));
@@ -106,6 +109,9 @@ TEST(CurvatureNets, HalvesHoldInTheirParts) {
           EXPECT_GT(there.determinant(), 0) << k;
           EXPECT_EQ(there.uu < 0, sign < 0) << k;
         }
+        if (saddle) {
+          EXPECT_LT(there.determinant(), 0) << k;
+        }
         if (pyramid) {
           EXPECT_TRUE(pyramid->may_contain(dvec3(reference_jet(patch, x, y).normal()))) << k;
         }
@@ -113,6 +119,7 @@ TEST(CurvatureNets, HalvesHoldInTheirParts) {
     }
   }
   EXPECT_GE(told, 100);
+  EXPECT_GE(saddles, 10);
 }
 
 /// A quadric is curved one way everywhere, and the nets tell so at once, up to the poles.

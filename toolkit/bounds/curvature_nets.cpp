@@ -146,15 +146,24 @@ CurvatureNets::Net<Entry> CurvatureNets::Net<Entry>::raised(NetShape to) const {
   return {to, unscaled(product), error + roundings * rounding_unit * size, size};
 }
 
+Interval CurvatureNets::range(const std::vector<double>& entries, double error) {
+  const auto [least, most] = std::minmax_element(entries.begin(), entries.end());
+  return {*least - error, *most + error};
+}
+
 Interval CurvatureNets::range(const Net<double>& net, const Interval& u, const Interval& v) {
   std::vector<double> entries = net.entries;
   restrict_net(net.shape, entries.data(), u, v);
-  const auto [least, most] = std::minmax_element(entries.begin(), entries.end());
-  return {*least - net.error, *most + net.error};
+  return range(entries, net.error);
 }
 
 SecondForm CurvatureNets::over(const Interval& u, const Interval& v) const {
   return {range(uu_, u, v), range(uv_, u, v), range(vv_, u, v)};
+}
+
+SecondForm CurvatureNets::over() const {
+  return {range(uu_.entries, uu_.error), range(uv_.entries, uv_.error),
+          range(vv_.entries, vv_.error)};
 }
 
 /// At a point the form is a convex combination of those of the nets' entries, and what is between

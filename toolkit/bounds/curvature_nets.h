@@ -26,6 +26,8 @@ class CurvatureNets {
   /// Bounds over a rectangle, in parameters stretched by distances from the poles: definite where
   /// the form is.
   SecondForm over(const Interval& u, const Interval& v) const;
+  /// Over all of the square.
+  SecondForm over() const;
   /// Which of the two it surely is over all of the square: -1 negative, 1 positive definite; 0 if
   /// neither.
   int definite_sign() const;
@@ -52,6 +54,7 @@ class CurvatureNets {
     Net<Entry> upper_half(Direction direction, Net<Entry>& lower) const;
   };
   CurvatureNets() = default;
+  static Interval range(const std::vector<double>& entries, double error);
   static Interval range(const Net<double>& net, const Interval& u, const Interval& v);
 
   Net<dvec3> normals_;

@@ -28,6 +28,7 @@ class ConcavePatch {
 
   const BezierPatch& bezier() const { return bezier_; }
   bool stand_in() const { return stand_in_; }
+  const CurvatureNets& curvature_nets() const { return curvature_; }
   NetShape shape() const { return {bezier_.degree_u, bezier_.degree_v}; }
 
   /// Gaussian curvature at a point, zero where it is negligible; infinity at a pole and where it

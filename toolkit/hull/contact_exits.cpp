@@ -596,15 +596,15 @@ std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Conta
       if (const auto next = found(expressed_in(geometry, at, other))) return next;
     }
     if (other.kind != SourceKind::face) return std::nullopt;
+    for (const Side side : all_sides) {
+      if (geometry.patch(other).borders[std::size_t(side)].vertex != c.element) continue;
+      return on_side(c.instance, other.element, side, along_v(side) ? other.v : other.u);
+    }
     const std::array<int, 4>& corners = geometry.patch(other).corner_vertex;
     for (std::size_t k = 0; k < corners.size(); ++k) {
       if (corners[k] != c.element) continue;
       return Contact{c.instance, other.kind, other.element, k < 2 ? 0.0 : 1.0,
                      k % 2 == 0 ? 0.0 : 1.0};
-    }
-    for (const Side side : all_sides) {
-      if (geometry.patch(other).borders[std::size_t(side)].vertex != c.element) continue;
-      return on_side(c.instance, other.element, side, along_v(side) ? other.v : other.u);
     }
     return std::nullopt;
   }

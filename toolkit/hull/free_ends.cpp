@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "taut/bounds/patch_nets.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/concave_patch.h"
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/facet_contacts.h"
@@ -429,6 +429,15 @@ void each_corner_end(const ContactGeometry& geometry, const Contact& vertex, con
 
 /// @}
 
+/// Those over the cell, of a patch's.
+CurvatureNets nets_over(CurvatureNets nets, const PatchCell& cell) {
+  for (int k = cell.level - 1; k >= 0; --k) {
+    nets = nets.halves(Direction::u)[(cell.i >> k) & 1];
+    nets = nets.halves(Direction::v)[(cell.j >> k) & 1];
+  }
+  return nets;
+}
+
 /// Gathers what supports the model.
 class FreeEndSearch {
  public:
@@ -442,7 +451,7 @@ class FreeEndSearch {
   std::vector<FreeEnd> result() { return std::move(ends_); }
 
  private:
-  void search_cell(const PatchNets& nets, const CellNets& cell, const Contact& c, PatchCell at);
+  void search_cell(const CurvatureNets& nets, const Contact& c, PatchCell at);
   void search_piece(const Contact& c);
   void offer(const std::optional<FreeEnd>& end);
 
@@ -463,15 +472,15 @@ void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
   ends_.push_back(*end);
 }
 
-void FreeEndSearch::search_cell(const PatchNets& nets, const CellNets& cell, const Contact& c,
-                                PatchCell at) {
-  const NormalBounds bounds = nets.bounds(cell, at.level);
-  if (bounds.definite || !bounds.signs.any()) return;
+/// The nets are those over the cell.
+void FreeEndSearch::search_cell(const CurvatureNets& nets, const Contact& c, PatchCell at) {
+  if (nets.definite_sign() != 0 || nets.over().surely_saddle()) return;
   if (at.level < finest_level) {
-    std::array<CellNets, 4> quarters;
-    nets.quarter_points(cell.points, quarters);
-    nets.quarter_normals(cell.normals, quarters);
-    for (std::uint32_t k = 0; k < 4; ++k) search_cell(nets, quarters[k], c, at.child(k));
+    const std::array<CurvatureNets, 2> halves = nets.halves(Direction::u);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      const std::array<CurvatureNets, 2> quarters = halves[i].halves(Direction::v);
+      for (std::uint32_t j = 0; j < 2; ++j) search_cell(quarters[j], c, at.child(2 * i + j));
+    }
     return;
   }
   const double size = at.u().upper - at.u().lower;
@@ -486,7 +495,7 @@ void FreeEndSearch::search_cell(const PatchNets& nets, const CellNets& cell, con
 
 void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
   const Scene::Content& content = geometry_.scene().content();
-  std::optional<PatchNets> nets;  // of the last cell's element
+  std::optional<CurvatureNets> nets;  // of the last cell's patch
   const SceneElement* element = nullptr;
   for (const CulledCell& cell : cells) {
     if (cell.state != CellState::mixed) continue;
@@ -496,11 +505,9 @@ void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
     if (index < 0) continue;
     if (element != &part.elements[std::size_t(index)]) {
       element = &part.elements[std::size_t(index)];
-      nets.emplace(*element);
+      nets = ConcavePatch(*element, geometry_.patch(c)).curvature_nets();
     }
-    const CellNets own{nets->points(cell.cell.u(), cell.cell.v()),
-                       nets->normals(cell.cell.u(), cell.cell.v())};
-    search_cell(*nets, own, c, cell.cell);
+    search_cell(nets_over(*nets, cell.cell), c, cell.cell);
   }
 }
 

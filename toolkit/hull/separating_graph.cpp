@@ -57,7 +57,11 @@ constexpr int circle_halvings = 10;
 constexpr int least_refinements = 3;
 constexpr int most_refinements = 8;
 /// Not more than so many cells at a time.
-constexpr std::size_t refined_cells = 16384;
+constexpr std::size_t refined_cells = 32768;
+/// More than so many are not refined again that a level has made this many times more: nothing
+/// decides cells along lines, of which there are twice as many a level.
+constexpr std::size_t few_cells = 2048;
+constexpr double line_growth = 1.5;
 /// Part of its size within which a curve beside a refined cell accounts for it.
 constexpr double refined_margin = 1;
 
@@ -79,6 +83,17 @@ CommonSupport settled_at_vertices(const ContactGeometry& geometry, CommonSupport
     if (!end) continue;
     const Contact vertex = geometry.canonical(*end);
     if (vertex.kind == SourceKind::vertex) c = vertex;
+  }
+  s.evaluate(geometry);
+  return s;
+}
+
+/// The support with contacts of faces on the edges and seams beside them that are as high: where
+/// faces are level across these, support values do not tell the two places apart.
+CommonSupport on_tied_edges(const ContactGeometry& geometry, CommonSupport s) {
+  for (int i = 0; i < s.count; ++i) {
+    Contact& c = s.contact[std::size_t(i)];
+    if (const std::optional<EdgeBeside> beside = tied_edge(geometry, c, s.n)) c = beside->edge;
   }
   s.evaluate(geometry);
   return s;
@@ -381,6 +396,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
     part_cells(left);
     left = built_.uncrossed(left, refined_margin);
     fewer = left.size() < count;
+    if (left.size() > few_cells && double(left.size()) > line_growth * double(count)) break;
   }
   for (const FreeEnd& end : free_ends(geometry_, query_, not_definite(left))) {
     if (!given_up() && !built_.is_reached(end)) part_beside(end);
@@ -560,8 +576,8 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
 /// no curve leaves across.
 void GraphTracer::tell_failures() {
   for (const auto& [start, reason] : failed_) {
-    const bool known =
-        built_.ties_with_facet(start) || built_.lies_in_ruling(start) || built_.is_traced(start);
+    const bool known = built_.ties_with_facet(start) || built_.lies_in_ruling(start) ||
+                       built_.is_traced(start) || built_.is_traced(on_tied_edges(geometry_, start));
     if (!known) built_.fail(start.n, reason);
   }
   for (const auto& [node, reason] : not_left_) {
