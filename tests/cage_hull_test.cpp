@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <random>
 #include <set>
@@ -325,6 +326,19 @@ TEST(CageHull, OfBoxesWithoutLids) {
   }
 }
 
+/// Makes the edges with both ends there sharp.
+void make_sharp(ControlCage& cage, const std::function<bool(const dvec3&)>& is_there) {
+  for (const std::vector<int>& face : cage.faces) {
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const int a = face[i];
+      const int b = face[(i + 1) % face.size()];
+      const bool both =
+          is_there(cage.points[std::size_t(a)]) && is_there(cage.points[std::size_t(b)]);
+      if (a < b && both) cage.creases.push_back({{a, b}, infinite_sharpness});
+    }
+  }
+}
+
 /// In 3 x 3 squares a side, each of two triangles, the edges' middles are cylinders, and beyond
 /// their ends Loop's surface swells by a millionth: scrolls lead from the one swelling to the
 /// other, over the cylinder's steepest ruling and up to where it stops to swell; from there on the
@@ -343,17 +357,7 @@ TEST(CageHull, OfATriangulatedBox) {
 TEST(CageHull, OfBoxesWithASharpEdge) {
   for (const int k : {2, 3}) {
     ControlCage cage = box_cage({k});
-    const auto is_on = [&](int v) {
-      const dvec3& x = cage.points[std::size_t(v)];
-      return x.x == 1 && x.z == 1;
-    };
-    for (const std::vector<int>& face : cage.faces) {
-      for (std::size_t i = 0; i < face.size(); ++i) {
-        const int a = face[i];
-        const int b = face[(i + 1) % face.size()];
-        if (a < b && is_on(a) && is_on(b)) cage.creases.push_back({{a, b}, infinite_sharpness});
-      }
-    }
+    make_sharp(cage, [](const dvec3& x) { return x.x == 1 && x.z == 1; });
     ASSERT_EQ(int(cage.creases.size()), k);
     const std::string name = std::to_string(k) + " edges";
     const Model model = cage_model(cage);
@@ -362,6 +366,22 @@ TEST(CageHull, OfBoxesWithASharpEdge) {
     expect_verified(model, hull, name);
     EXPECT_EQ(hull.boundary->count(FaceKind::facet), k == 2 ? 0 : 6) << name;
   }
+}
+
+/// The sharp edges go on smoothly into each other about the box's corner, above parts of cylinders.
+/// Where these end the plane touches a segment: on its other side the face, up to the end of a
+/// chord, across which a scroll leaves.
+TEST(CageHull, OfABoxWithTwoSharpEdges) {
+  ControlCage cage = box_cage({2});
+  make_sharp(cage, [](const dvec3& x) { return x.x == 1 && x.z == 1; });
+  make_sharp(cage, [](const dvec3& x) { return x.y == -1 && x.z == 1; });
+  ASSERT_EQ(int(cage.creases.size()), 4);
+  const Model model = cage_model(cage);
+  const Hull hull = whole_hull(model, "box");
+  ASSERT_TRUE(hull.boundary);
+  expect_verified(model, hull, "box");
+  EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 3);
+  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 3);
 }
 
 /// The curve of an apex and the sides around runs through the flat middles of the sides; of four

@@ -74,9 +74,10 @@ class Trace {
     ContactExit exit;
   };
 
-  bool leave();
+  bool leave(bool chord = false);
   bool pass_pole(int contact, Side side);
   bool arrives(const Landmark& landmark);
+  bool ends_in_landmark(const CommonSupport& end);
   bool ends_in_flat_facet(const CommonSupport& end);
   std::optional<Pace> reaches_flat_ends();
   bool go_onto_edges();
@@ -144,8 +145,8 @@ class Trace {
 };
 
 /// The first step away from where contacts are singular, in a piece of its own.
-bool Trace::leave() {
-  const std::optional<Ruling> first = passage_.leave();
+bool Trace::leave(bool chord) {
+  const std::optional<Ruling> first = chord ? passage_.leave_chord() : passage_.leave();
   if (!first) return false;
   begin_piece(*first);
   push(point_.at.ruling());
@@ -170,6 +171,34 @@ bool Trace::arrives(const Landmark& landmark) {
   return false;
 }
 
+/// Ends the arc where its contacts' elements are flat, if that is across a side of a landmark.
+bool Trace::ends_in_landmark(const CommonSupport& end) {
+  for (const Landmark& landmark : landmarks_) {
+    const FacetContacts& facet = landmark.facet;
+    if (glm::distance(landmark.n, end.n) > same_contact) continue;
+    for (std::size_t k = 0; k < facet.points.size(); ++k) {
+      const dvec3& next = facet.points[(k + 1) % facet.points.size()];
+      if (facet.is_curved(k) || glm::distance(facet.points[k], end.jet[1].x) > same_contact ||
+          glm::distance(next, end.jet[0].x) > same_contact) {
+        continue;
+      }
+      const std::array<Contact, 2> corner = {facet.contacts[(k + 1) % facet.points.size()],
+                                             facet.contacts[k]};
+      CommonSupport last = end;
+      last.n = landmark.n;
+      for (std::size_t i = 0; i < 2; ++i) {
+        last.contact[i] = expressed_in(geometry_, corner[i], end.contact[i]).value_or(corner[i]);
+      }
+      last.evaluate(geometry_);
+      push(last.ruling());
+      arc_.n = landmark.n;
+      arc_.contacts = facet.contacts;
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Ends the arc where its contacts' elements are flat, if that is in a facet and in no landmark.
 bool Trace::ends_in_flat_facet(const CommonSupport& end) {
   if (is_landmark(landmarks_, end.n)) return false;
@@ -186,6 +215,7 @@ bool Trace::ends_in_flat_facet(const CommonSupport& end) {
 std::optional<Trace::Pace> Trace::reaches_flat_ends() {
   const std::optional<CommonSupport> end = passage_.at_flat_ends(2 * step_);
   if (!end) return std::nullopt;
+  if (ends_in_landmark(*end)) return ended(TracedArc::End::plane);
   const CommonSupport before = point_.at;
   point_.at = *end;
   if (go_onto_edges()) return Pace::on;
@@ -729,7 +759,9 @@ Trace::Pace Trace::advance() {
 
 TracedArc Trace::run(const Progress& progress, bool aside) {
   if (aside || passage_.is_singular(0) || passage_.is_singular(1)) {
-    if (!leave()) lost("a separating curve cannot be followed from a pole or a flat point");
+    if (!leave() && !leave(true)) {
+      lost("a separating curve cannot be followed from a pole or a flat point");
+    }
   } else if (point_.settle()) {
     begin_piece(point_.at.ruling());
   } else {

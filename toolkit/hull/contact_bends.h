@@ -49,6 +49,10 @@ struct CurveBend {
 /// None where the curve stands still. @pre kind edge
 std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Contact& c);
 
+/// What the rounding of control points may make of the twist of an edge's piece, which the third
+/// power of its length divides. @pre kind edge, the bend is there
+double twist_rounding(const ContactGeometry& geometry, const Contact& c, const CurveBend& bend);
+
 /// It is on an edge, at the end of a piece that has no curvature there but for rounding.
 bool ends_straight(const ContactGeometry& geometry, const Contact& c);
 

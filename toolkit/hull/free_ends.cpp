@@ -48,6 +48,9 @@ constexpr double at_end = 1e-9;
 constexpr double along_side = 1e-9;
 /// What is nearer to a collapsed side is at it.
 constexpr double pole_distance = 1e-6;
+/// Parameters of a piece at which it is tried whether it is a plane curve: more than a cubic's or a
+/// quartic's torsion has zeros.
+constexpr std::array<double, 9> plane_places = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
 /// Elements over a border that is no farther are searched too.
 constexpr double beside_border = 0.1;
 
@@ -335,6 +338,15 @@ double twist_at(const ContactGeometry& geometry, Contact c, double t) {
   return b ? b->twist : 0;
 }
 
+/// As far as rounding lets tell, the piece of an edge is a plane curve.
+bool is_planar(const ContactGeometry& geometry, Contact c) {
+  return std::all_of(plane_places.begin(), plane_places.end(), [&](double t) {
+    c.u = t;
+    const std::optional<CurveBend> b = curve_bend(geometry, c);
+    return b && std::abs(b->twist) <= twist_rounding(geometry, c, *b);
+  });
+}
+
 /// From where the torsion was found to vanish; n is the binormal times the sign.
 std::optional<FreeEnd> edge_end(const ContactGeometry& geometry, Contact c, double t, double sign) {
   if (!is_within(t)) return std::nullopt;
@@ -533,7 +545,7 @@ void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
 
 void FreeEndSearch::search_piece(const Contact& c) {
   const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
-  if (vanishes(twist)) return;  // planar
+  if (vanishes(twist) || is_planar(geometry_, c)) return;
   const std::vector<double> zeros = sign_changes(twist);
   for (const double sign : {1.0, -1.0}) {
     for (const double t : zeros) offer(edge_end(geometry_, c, t, sign));

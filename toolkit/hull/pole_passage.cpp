@@ -33,6 +33,13 @@ constexpr int most_ends = 3;
 /// Shares of such a turn by which n is tilted towards a contact, to tell it from others: with the
 /// first of them contacts are then climbed to, with all they are tried as they are.
 constexpr std::array<double, 4> tilts = {0.1, 1e-3, 1e-5, 1e-7};
+/// Share of such a turn by which n is tilted either way to find where the support jumps from the
+/// one contact to the other, and halvings of what is between.
+constexpr double jump_tilt = 0.5;
+constexpr int jump_halvings = 40;
+/// Contacts no farther from where they were than this share of the distance between the two have
+/// come from there.
+constexpr double near_share = 0.25;
 
 bool is_corner(const Contact& c) { return (c.u == 0 || c.u == 1) && (c.v == 0 || c.v == 1); }
 
@@ -101,41 +108,55 @@ bool PolePassage::is_singular(int contact) const {
 }
 
 std::optional<Ruling> PolePassage::leave(double largest) {
-  const CommonSupport start = point_.at;
+  return leave(largest, [&](double step) {
+    std::optional<Ruling> first = leave(step, tilts.front(), true);
+    for (std::size_t t = 0; !first && t < tilts.size(); ++t) first = leave(step, tilts[t], false);
+    return first;
+  });
+}
+
+std::optional<Ruling> PolePassage::leave_chord() {
+  return leave(longest_turn, [&](double step) { return leave_to(at_jump(step), step); });
+}
+
+/// The first that succeeds of turns of several sizes, the largest first.
+std::optional<Ruling> PolePassage::leave(
+    double largest, const std::function<std::optional<Ruling>(double)>& by_step) {
   const CurveTangent came = point_.tangent;
   double step = largest;
   for (int k = 0; k < turn_count; ++k, step *= turn_factor) {
-    point_.at = start;
-    std::optional<Ruling> first = leave(step, tilts.front(), true);
-    for (std::size_t t = 0; !first && t < tilts.size(); ++t) {
-      point_.at = start;
-      first = leave(step, tilts[t], false);
-    }
-    if (first) return first;
+    if (const std::optional<Ruling> first = by_step(step)) return first;
   }
-  point_.at = start;
   point_.tangent = came;
   return std::nullopt;
 }
 
 std::optional<Ruling> PolePassage::leave(double step, double tilt, bool climbs) {
+  return leave_to(stepped_aside(step, tilt, climbs), step);
+}
+
+/// To a support of contacts about these, in a direction turned by the step along the curve. Where
+/// there is none the point stays, without a tangent.
+std::optional<Ruling> PolePassage::leave_to(const std::optional<CommonSupport>& about,
+                                            double step) {
   const CommonSupport start = point_.at;
-  const std::optional<CommonSupport> beside = stepped_aside(step, tilt, climbs);
+  const std::optional<CommonSupport> beside = about ? corrected_aside(*about, step) : std::nullopt;
   if (!beside) return std::nullopt;
   point_.at = *beside;
   point_.tangent = CurveTangent();
-  if (!point_.settle()) return std::nullopt;
-  const CommonSupport next = point_.at;
-  point_.at = start;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<Contact> c = in_element(geometry_, start.contact[i], next.contact[i]);
-    if (!c) return std::nullopt;
-    point_.at.contact[i] = *c;
+  CommonSupport first = start;
+  bool leads = point_.settle();
+  for (std::size_t i = 0; i < 2 && leads; ++i) {
+    const std::optional<Contact> c = in_element(geometry_, start.contact[i], point_.at.contact[i]);
+    leads = c.has_value();
+    if (c) first.contact[i] = *c;
   }
-  point_.at.evaluate(geometry_);
-  const Ruling first = point_.at.ruling();
-  point_.at = next;
-  return first;
+  if (!leads) {
+    point_.at = start;
+    return std::nullopt;
+  }
+  first.evaluate(geometry_);
+  return first.ruling();
 }
 
 /// The contact of the branch that contact i moves on in a direction beside: what supports where the
@@ -147,7 +168,7 @@ std::optional<Contact> PolePassage::aside(int i, double tilt, const dvec3& n, bo
   const dvec3 turned = glm::normalize(n + tilt * inward);
   const Support top = point_.query()(turned, own);
   if (glm::distance(top.point, point_.at.jet[std::size_t(i)].x) <
-      0.25 * glm::length(point_.at.d())) {
+      near_share * glm::length(point_.at.d())) {
     const Contact rest = at_rest(geometry_, top.contact, turned);
     if (!climbs) return rest;
     if (const std::optional<Contact> c = climbed(geometry_, rest, n)) return c;
@@ -155,18 +176,53 @@ std::optional<Contact> PolePassage::aside(int i, double tilt, const dvec3& n, bo
   return pole_side(geometry_, own) ? beside_pole(geometry_, own, n) : climbed(geometry_, own, n);
 }
 
-/// The common support of the two contacts' branches where n has turned by a step along the curve.
+/// The direction in which curves leave.
+dvec3 PolePassage::turn_ahead() const { return unit(glm::cross(point_.at.n, point_.at.d())); }
+
+/// The two contacts' branches where n has turned by a step along the curve.
 std::optional<CommonSupport> PolePassage::stepped_aside(double step, double tilt,
                                                         bool climbs) const {
-  const dvec3 along = unit(glm::cross(point_.at.n, point_.at.d()));
   CommonSupport next = point_.at;
-  next.n = glm::normalize(point_.at.n + step * along);
+  next.n = glm::normalize(point_.at.n + step * turn_ahead());
   for (std::size_t i = 0; i < 2; ++i) {
     const std::optional<Contact> c = aside(int(i), tilt * step, next.n, climbs);
     if (!c) return std::nullopt;
     next.contact[i] = *c;
   }
   next.evaluate(geometry_);
+  return next;
+}
+
+/// What supports on either side of where, n having turned by a step along the curve and tilting
+/// from the one contact to the other, the support jumps; if that is from the one to the other.
+std::optional<CommonSupport> PolePassage::at_jump(double step) const {
+  const dvec3 d = point_.at.d();
+  const dvec3 ahead = point_.at.n + step * turn_ahead();
+  double low = -jump_tilt * step;
+  double high = -low;
+  CommonSupport next = point_.at;
+  std::array<dvec3, 2> x = {point_.at.jet[0].x, point_.at.jet[1].x};
+  for (int k = 0; k < jump_halvings; ++k) {
+    const double tilt = 0.5 * (low + high);
+    next.n = glm::normalize(ahead + tilt * unit(d));
+    const Support top = point_.query()(next.n, next.contact[0]);
+    const bool is_first =
+        glm::dot(2.0 * top.point - point_.at.jet[0].x - point_.at.jet[1].x, d) > 0;
+    const std::size_t i = is_first ? 0 : 1;
+    (is_first ? high : low) = tilt;
+    next.contact[i] = at_rest(geometry_, top.contact, next.n);
+    x[i] = geometry_.point(next.contact[i]);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (glm::distance(x[i], point_.at.jet[i].x) > near_share * glm::length(d)) return std::nullopt;
+  }
+  next.evaluate(geometry_);
+  return next;
+}
+
+/// The common support of two contacts' branches, where n has turned by a step along the curve.
+std::optional<CommonSupport> PolePassage::corrected_aside(CommonSupport next, double step) const {
+  const dvec3 along = turn_ahead();
   const auto corrected = [&] {
     return system_.solve(next, [&](const CommonSupport& now) {
       LinearEquation e;

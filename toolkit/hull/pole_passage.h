@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "taut/hull/curve_point.h"
@@ -34,7 +35,10 @@ class PolePassage {
   /// Takes the first step away from a common support of which contacts are singular. The support as
   /// a ruling of the elements that the point is in then, or none: the point stays. `largest`: the
   /// most by which n is turned.
-  std::optional<Ruling> leave(double largest = 1e-3);
+  std::optional<Ruling> leave(double largest = longest_turn);
+  /// The same where the two are the ends of a chord of a segment that touches faces: what supports
+  /// beside it jumps from the one to the other.
+  std::optional<Ruling> leave_chord();
   /// Goes to a pole, where the patch's parameters fail, if the curve does so to within
   /// geometry.tie(), in a step of this length.
   bool reach(int contact, Side side, double length);
@@ -52,9 +56,17 @@ class PolePassage {
   std::optional<Ruling> go_on();
 
  private:
+  static constexpr double longest_turn = 1e-3;
+
   std::optional<Contact> over_ends(int i) const;
+  std::optional<Ruling> leave(double largest,
+                              const std::function<std::optional<Ruling>(double)>& by_step);
   std::optional<Ruling> leave(double step, double tilt, bool climbs);
+  std::optional<Ruling> leave_to(const std::optional<CommonSupport>& about, double step);
+  dvec3 turn_ahead() const;
   std::optional<CommonSupport> stepped_aside(double step, double tilt, bool climbs) const;
+  std::optional<CommonSupport> at_jump(double step) const;
+  std::optional<CommonSupport> corrected_aside(CommonSupport next, double step) const;
   std::optional<Contact> aside(int i, double tilt, const dvec3& n, bool climbs) const;
   std::optional<Contact> end_ahead(int i, double length) const;
   bool is_flat_corner(const Contact& c) const;

@@ -79,6 +79,7 @@ std::vector<CulledCell> not_definite(const std::vector<CulledCell>& cells) {
 CommonSupport settled_at_vertices(const ContactGeometry& geometry, CommonSupport s) {
   for (int i = 0; i < s.count; ++i) {
     Contact& c = s.contact[std::size_t(i)];
+    c = geometry.canonical(c);
     const std::optional<Contact> end = at_level_border(geometry, c, s.n, vertex_slope);
     if (!end) continue;
     const Contact vertex = geometry.canonical(*end);
