@@ -584,6 +584,27 @@ TEST(AddCage, RefusesWhatIsNoCage) {
   EXPECT_TRUE(part.faces().empty());
 }
 
+/// What is asked for is either reached or said not to be.
+TEST(AddCage, WarnsWhereTheAccuracyIsNotReached) {
+  for (const double accuracy : {1e-6, 1e-13}) {
+    const ControlCage cage = dome_cage(CageScheme::catmark, 5);
+    std::vector<std::string> codes;
+    CageOptions options;
+    options.accuracy = accuracy;
+    options.progress.warn = [&](std::string_view code, std::string_view) {
+      codes.emplace_back(code);
+    };
+    Part part;
+    add_cage(part, cage, "c", options);
+    const LimitSurface surface = limit_patches(cage, {.accuracy = accuracy, .progress = {}});
+    EXPECT_NEAR(surface.accuracy / size_of(cage), accuracy, 1e-12 * accuracy);
+    const bool missed = surface.deviation_bound > surface.accuracy;
+    EXPECT_EQ(missed, accuracy == 1e-13);
+    EXPECT_EQ(codes == std::vector<std::string>{"cage-accuracy"}, missed);
+    EXPECT_EQ(codes.empty(), !missed);
+  }
+}
+
 /// Three sheets along one edge, and a face with a vertex twice.
 TEST(AddCage, WarnsOfNonManifoldCages) {
   ControlCage cage;

@@ -1,7 +1,10 @@
 #include "taut/subdivision/add_cage.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "taut/subdivision/limit_patches.h"
@@ -16,6 +19,13 @@ long faces_with_repeated_vertices(const ControlCage& cage) {
   });
 }
 
+std::string two_digits(double x) {
+  std::array<char, 32> text;
+  const std::to_chars_result result =
+      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 2);
+  return {text.data(), result.ptr};
+}
+
 void warn(const ControlCage& cage, const LimitSurface& surface, const std::string& name,
           const Progress& progress) {
   if (surface.non_manifold_edges + surface.non_manifold_vertices > 0) {
@@ -28,6 +38,12 @@ void warn(const ControlCage& cage, const LimitSurface& surface, const std::strin
   if (const long count = faces_with_repeated_vertices(cage); count > 0) {
     progress.warning("degenerate-cage", name + ": " + std::to_string(count) +
                                             " faces of the cage have a vertex more than once");
+  }
+  if (surface.deviation_bound > surface.accuracy) {
+    progress.warning("cage-accuracy", name + ": the cage's limit surface is known to within " +
+                                          two_digits(surface.deviation_bound) +
+                                          " only, not to the accuracy asked for, " +
+                                          two_digits(surface.accuracy));
   }
 }
 

@@ -184,6 +184,7 @@ class Refinement {
     Box box;
     for (const dvec3& p : cage.points) box.include(p);
     tolerance_ = options.accuracy * diagonal(box);
+    result_.accuracy = tolerance_;
     point_side_ = join_distance * diagonal(box);
     least_side_ = shortest_side * point_side_;
     result_.non_manifold_edges = level_.non_manifold_edges();

@@ -21,6 +21,8 @@ struct LimitSurface {
   std::vector<SurfacePatch> patches;
   /// Proven bound of what the stand-ins change the support function by.
   double deviation_bound = 0;
+  /// The accuracy asked for, as a length. The bound is more where cells would become too small.
+  double accuracy = 0;
   /// Faces of the cage whose surface is no single polynomial, and those of them that were refined.
   long irregular_faces = 0;
   long refined_faces = 0;
