@@ -384,6 +384,24 @@ TEST(CageHull, OfABoxWithTwoSharpEdges) {
   EXPECT_EQ(hull.boundary->count(FaceKind::facet), 3);
 }
 
+/// Beside the sharp edges the sides are cylinders, all along rulings of which planes touch; beyond
+/// these they swell by less than directions tell, and what is found there lies in rulings known.
+TEST(CageHull, OfABoxWithSharpUprights) {
+  ControlCage cage = box_cage({3});
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      make_sharp(cage, [&](const dvec3& p) { return p.x == x && p.y == y; });
+    }
+  }
+  ASSERT_EQ(int(cage.creases.size()), 12);
+  const Model model = cage_model(cage);
+  const Hull hull = whole_hull(model, "box");
+  ASSERT_TRUE(hull.boundary);
+  expect_verified(model, hull, "box");
+  EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 16);
+  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6);
+}
+
 /// The curve of an apex and the sides around runs through the flat middles of the sides; of four
 /// apexes, ends there, where two of them are in one plane with a middle.
 TEST(CageHull, OfBoxesWithApexes) {

@@ -32,6 +32,10 @@ constexpr double rounded_contact = 1e-9;
 constexpr double at_facet = 1e-8;
 /// Or, far from the origin, below so many times the root of what coordinates are rounded to.
 constexpr double root_turn = 10;
+/// Directions of seeds are found to within this.
+constexpr double seed_turn = 1e-9;
+/// Halvings of what is between two rulings to find the one that a direction lies in.
+constexpr int share_halvings = 40;
 /// Directions of consecutive rulings are no farther apart.
 constexpr double longest_chord = 0.2;
 
@@ -391,6 +395,30 @@ bool GraphBuilder::ties_with_facet(const CommonSupport& seed) const {
   });
 }
 
+/// The ruling between two of a piece in which n lies, as far as it lies between theirs.
+std::optional<Ruling> GraphBuilder::ruling_towards(const Ruling& from, const Ruling& to,
+                                                   const dvec3& n) const {
+  const dvec3 turn = to.n - from.n;
+  const double square = glm::dot(turn, turn);
+  // How much of the turn lies ahead of a ruling. Next to flat ends n turns with the square of the
+  // chord's share.
+  const auto ahead = [&](const Ruling& r) { return glm::dot(n - r.n, turn) / square; };
+  const double s = ahead(from);
+  if (!(s > 0 && s < 1) || glm::distance(n, from.n + s * turn) > overlap * std::sqrt(square)) {
+    return std::nullopt;
+  }
+  std::optional<Ruling> there;
+  double low = 0;
+  double high = 1;
+  for (int k = 0; k < share_halvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    there = ruling_at_share(system_, from, to, middle);
+    if (!there || glm::distance(there->n, n) < same_plane) break;
+    (ahead(*there) > 0 ? low : high) = middle;
+  }
+  return there;
+}
+
 /// All of the points are in line with the ruling of an arc in nearly this direction, in its plane.
 /// On flat elements contacts move with the root of the direction's turn.
 bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const {
@@ -401,12 +429,18 @@ bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& poin
     const dvec3 along = unit(r.point[1] - r.point[0]);
     return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
       const dvec3 off = x - r.point[0];
-      return glm::length(glm::cross(along, off)) < reach && glm::dot(off, r.n) >= -geometry_.tie();
+      const double slack = geometry_.tie() + seed_turn * glm::length(off);
+      return glm::length(glm::cross(along, off)) < reach && glm::dot(off, r.n) >= -slack;
     });
   };
   return std::any_of(graph_.arcs.begin(), graph_.arcs.end(), [&](const SeparatingArc& arc) {
     return std::any_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
-      return std::any_of(piece.rulings.begin(), piece.rulings.end(), has_points);
+      const std::vector<Ruling>& all = piece.rulings;
+      for (std::size_t k = 0; k + 1 < all.size(); ++k) {
+        const std::optional<Ruling> between = ruling_towards(all[k], all[k + 1], n);
+        if (between && has_points(*between)) return true;
+      }
+      return std::any_of(all.begin(), all.end(), has_points);
     });
   });
 }

@@ -75,6 +75,7 @@ class GraphBuilder {
 
  private:
   bool lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const;
+  std::optional<Ruling> ruling_towards(const Ruling& from, const Ruling& to, const dvec3& n) const;
   struct PieceContact {
     int arc, piece, contact;
   };
