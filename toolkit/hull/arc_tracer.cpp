@@ -759,7 +759,7 @@ Trace::Pace Trace::advance() {
 
 TracedArc Trace::run(const Progress& progress, bool aside) {
   if (aside || passage_.is_singular(0) || passage_.is_singular(1)) {
-    if (!leave() && !leave(true)) {
+    if (!leave() && !(aside && leave(true))) {
       lost("a separating curve cannot be followed from a pole or a flat point");
     }
   } else if (point_.settle()) {
