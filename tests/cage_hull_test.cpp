@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -382,6 +383,18 @@ TEST(CageHull, OfABoxWithTwoSharpEdges) {
   expect_verified(model, hull, "box");
   EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 3);
   EXPECT_EQ(hull.boundary->count(FaceKind::facet), 3);
+  // What the mesh calls facets is level with them: two of these have no area.
+  const HullMesh& mesh = hull.mesh;
+  std::map<int, dvec3> normals;
+  for (const auto f : mesh.faces()) {
+    if (mesh.data(f).kind != FaceKind::facet) continue;
+    std::vector<dvec3> corners;
+    for (const auto v : mesh.fv_range(f)) corners.push_back(position(mesh, v));
+    const dvec3 n = unit(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    const dvec3& first = normals.emplace(mesh.data(f).hull_face, n).first->second;
+    EXPECT_LT(glm::distance(n, first), 1e-9);
+  }
+  EXPECT_EQ(normals.size(), 1U);
 }
 
 /// Beside the sharp edges the sides are cylinders, all along rulings of which planes touch; beyond

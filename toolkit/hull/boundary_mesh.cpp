@@ -55,12 +55,13 @@ class BoundaryLabels {
   };
 
   /// Corners all along one side of a scroll lie in the patch beside it; if one of several corners
-  /// is farther inside the patch beyond, they span the scroll.
+  /// is farther inside the patch beyond, they span the scroll. What has a corner off the plane of a
+  /// facet is no part of it.
   std::tuple<int, int, int> rank(const Candidate& c, int count) const {
     constexpr unsigned both_sides = 3;
     const FaceKind kind = boundary_.faces[std::size_t(c.face)].kind;
     int preference = 1;
-    if (kind == FaceKind::facet) preference = 3;
+    if (kind == FaceKind::facet) preference = c.corners < count ? 0 : 3;
     if (kind == FaceKind::scroll) {
       preference = c.sides == both_sides || c.corners < count ? 2 : 0;
     }

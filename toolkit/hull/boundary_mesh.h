@@ -14,9 +14,9 @@ namespace taut {
 ///
 /// Rulings are edges of the mesh. Its faces are labelled by the boundary: one belongs to the hull
 /// face in whose closure all its corners lie, among several to a facet, else to a scroll that it
-/// crosses, else to a patch; where there is none, to that in which most corners lie. Where the
-/// boundary is not complete, a face without any is labelled as by sampled_hull(), its hull face
-/// numbered after those of the boundary.
+/// crosses, else to a patch; where there is none, to that in which most corners lie, among several
+/// to a scroll, else to a patch. Where the boundary is not complete, a face without any is labelled
+/// as by sampled_hull(), its hull face numbered after those of the boundary.
 ///
 /// Support points that lie on no face of the boundary are added to `strays`: what it lacks.
 /// @pre the boundary is the scene's, in its frame @throws as sampled_hull()
