@@ -184,6 +184,7 @@ std::vector<dvec3> points_of(const Hull& hull) {
 void expect_supporting_hull(const char* file, Scheme scheme, int levels, double accuracy) {
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
   if (!model) GTEST_SKIP() << file << " is not there";
+  EXPECT_LE(model->deviation_bound(), accuracy * size_of(cage_of(*model)));
   const Hull hull = convex_hull(*model, {.relative = 1e-2, .progress = {}});
   ASSERT_TRUE(hull.boundary);
   ASSERT_TRUE(hull.boundary->unresolved.empty());

@@ -205,7 +205,7 @@ class Refinement {
   std::optional<int> apex(const std::vector<std::size_t>& region) const;
   bool fit_caps(const std::vector<std::size_t>& region);
   void emit_caps(const std::vector<std::size_t>& region);
-  double bound_of(const std::vector<std::size_t>& region, bool least) const;
+  double bound_of(const std::vector<std::size_t>& region, bool fit, bool least) const;
   Surroundings near(const std::vector<std::size_t>& region, const Surroundings& surroundings) const;
   void emit(std::size_t cell, bool may_touch = true);
   void count_irregular();
@@ -365,8 +365,9 @@ void Refinement::emit_rest() {
 }
 
 /// What stands for a region changes the support function by no more than this; more than the
-/// accuracy if it is too much, the least that can be said of it if asked for.
-double Refinement::bound_of(const std::vector<std::size_t>& region, bool least) const {
+/// accuracy if it is too much, the least that can be said of it if asked for. `fit`: its caps have
+/// the surface's vertex that they are about.
+double Refinement::bound_of(const std::vector<std::size_t>& region, bool fit, bool least) const {
   std::vector<dvec3> known;
   const int number = level_.cells()[region.front()].region;
   if (number >= 0) {
@@ -375,6 +376,9 @@ double Refinement::bound_of(const std::vector<std::size_t>& region, bool least) 
     }
   }
   if (const std::optional<int> apex = this->apex(region)) known.push_back(level_.point(*apex));
+  if (const std::optional<CellFan> fan = fit ? this->fan(region) : std::nullopt) {
+    known.push_back(corners(patches_[fan->cells.front()])[fan->corners.front()]);
+  }
   if (!known.empty()) {
     return region_bound(level_, region, patches_, std::move(known), tolerance_, least);
   }
@@ -563,9 +567,9 @@ void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
         depth_ >= level_limit || std::any_of(region.begin(), region.end(), [&](std::size_t c) {
           return least_width(patches_[c], point_side_) < least_side_;
         });
-    const bool fit = fit_caps(region) || !apex(region);
-    const double bound = bound_of(region, small);
-    if ((fit && bound <= tolerance_) || small) {
+    const bool fit = fit_caps(region);
+    const double bound = bound_of(region, fit, small);
+    if (((fit || !apex(region)) && bound <= tolerance_) || small) {
       result_.deviation_bound = std::max(result_.deviation_bound, bound);
       emit_caps(region);
       return;

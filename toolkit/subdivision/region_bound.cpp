@@ -72,19 +72,24 @@ void know_creases(const CageLevel& level, std::span<const std::size_t> cells, Bo
   }
 }
 
-/// The cells have sharp sides, and all of these are creases: so are then those of the levels below,
-/// and parts of them.
-bool has_creases(const CageLevel& level, std::span<const std::size_t> cells,
-                 const std::vector<CellPatch>& patches) {
-  bool any = false;
+/// Sharp sides of the cells, and those of them that are creases: so are then those of the levels
+/// below, and parts of them.
+struct SharpSides {
+  int count = 0;
+  int creases = 0;
+};
+
+SharpSides sharp_sides(const CageLevel& level, std::span<const std::size_t> cells,
+                       const std::vector<CellPatch>& patches) {
+  SharpSides sharp;
   for (const std::size_t c : cells) {
     for (std::size_t side = 0; side < level.vertices(c).size(); ++side) {
       if (patches[c].smooth[side]) continue;
-      if (!level.crease(c, side)) return false;
-      any = true;
+      ++sharp.count;
+      if (level.crease(c, side)) ++sharp.creases;
     }
   }
-  return any;
+  return sharp;
 }
 
 /// How far the caps' sides may be from the cells' creases.
@@ -173,7 +178,10 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
   for (const std::size_t c : region) {
     for (const dvec3& p : patches[c].points) plain.meet(p);
   }
-  if (plain.value() <= enough || !has_creases(level, region, patches)) return plain.value();
+  // Where there are no creases, levels below are as good as the region's own.
+  const SharpSides sharp = sharp_sides(level, region, patches);
+  const bool may_gain = sharp.count > 0 || least;
+  if (plain.value() <= enough || sharp.creases < sharp.count || !may_gain) return plain.value();
   Bound bound(std::move(known), limit);
   know_creases(level, region, bound);
   for (const std::size_t c : region) {

@@ -16,7 +16,8 @@ namespace taut {
 /// Both are within the convex hulls of their control points. Those on a crease, farther out than it
 /// by its own curvature, do not count: a patch is within the convex hull of its side along the
 /// crease and its other control points. Of the limit surface this is asked of the patches of the
-/// levels below, down to where what is left of the region is small.
+/// levels below, down to where what is left of the region is small; so is it for the least that can
+/// be said of regions without sharp sides.
 /// @pre no cell has more than four sides
 double region_bound(const CageLevel& level, std::span<const std::size_t> region,
                     const std::vector<CellPatch>& patches, std::vector<dvec3> known, double enough,
