@@ -262,6 +262,7 @@ std::vector<NamedCage> tagged_cages() {
   ControlCage eight = cube_cage();
   eight.creases = {{{0, 1}, 8.0}};
   all.push_back({"cube with an edge of sharpness 8", eight});
+  all.push_back({"cube with an edge of sharpness 8, loop", triangulated(eight)});
   ControlCage box = cube_cage();
   for (const auto& f : box.faces) {
     for (std::size_t k = 0; k < 4; ++k) box.creases.push_back({{f[k], f[(k + 1) % 4]}, 10});
