@@ -420,8 +420,10 @@ std::optional<Ruling> GraphBuilder::ruling_towards(const Ruling& from, const Rul
 }
 
 /// All of the points are in line with the ruling of an arc in nearly this direction, in its plane.
-/// On flat elements contacts move with the root of the direction's turn.
-bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const {
+/// On flat elements contacts move with the root of the direction's turn. `turn_slack`: n is known
+/// to within this.
+bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points,
+                                  double turn_slack) const {
   const auto has_points = [&](const Ruling& r) {
     const double turn = glm::distance(r.n, n);
     if (turn >= same_plane) return false;
@@ -429,7 +431,7 @@ bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& poin
     const dvec3 along = unit(r.point[1] - r.point[0]);
     return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
       const dvec3 off = x - r.point[0];
-      const double slack = geometry_.tie() + seed_turn * glm::length(off);
+      const double slack = geometry_.tie() + turn_slack * glm::length(off);
       return glm::length(glm::cross(along, off)) < reach && glm::dot(off, r.n) >= -slack;
     });
   };
@@ -446,7 +448,7 @@ bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& poin
 }
 
 bool GraphBuilder::lies_in_ruling(const CommonSupport& seed) const {
-  return lies_in_ruling(seed.n, {seed.jet[0].x, seed.jet[1].x});
+  return lies_in_ruling(seed.n, {seed.jet[0].x, seed.jet[1].x}, seed_turn);
 }
 
 bool GraphBuilder::is_ruling(int index) const {
@@ -454,7 +456,7 @@ bool GraphBuilder::is_ruling(int index) const {
   const bool has_arcs = std::any_of(node.slots.begin(), node.slots.end(),
                                     [](const FacetNode::Slot& slot) { return slot.arc >= 0; });
   return !has_arcs && node.sides.empty() && !node.is_crossing() &&
-         lies_in_ruling(node.n, node.points);
+         lies_in_ruling(node.n, node.points, 0);
 }
 
 SeparatingGraph GraphBuilder::take() {

@@ -74,7 +74,7 @@ class GraphBuilder {
   std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells, double margin) const;
 
  private:
-  bool lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points) const;
+  bool lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points, double turn_slack) const;
   std::optional<Ruling> ruling_towards(const Ruling& from, const Ruling& to, const dvec3& n) const;
   struct PieceContact {
     int arc, piece, contact;

@@ -75,7 +75,8 @@ std::vector<CulledCell> not_definite(const std::vector<CulledCell>& cells) {
   return result;
 }
 
-/// The support with contacts at vertices that its direction does not tell from where they are.
+/// The support with contacts in their canonical form, on edges and seams where they are exactly,
+/// and at vertices that its direction does not tell from where they are.
 CommonSupport settled_at_vertices(const ContactGeometry& geometry, CommonSupport s) {
   for (int i = 0; i < s.count; ++i) {
     Contact& c = s.contact[std::size_t(i)];
