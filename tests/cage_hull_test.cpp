@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 #include <random>
@@ -323,19 +322,6 @@ TEST(CageHull, OfBoxesWithoutLids) {
         const double volume = measure(scene, ContactGeometry(scene), *hull.boundary).volume;
         EXPECT_NEAR(volume, volume_of_tube(k, taper), 1e-11) << name;
       }
-    }
-  }
-}
-
-/// Makes the edges with both ends there sharp.
-void make_sharp(ControlCage& cage, const std::function<bool(const dvec3&)>& is_there) {
-  for (const std::vector<int>& face : cage.faces) {
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const int a = face[i];
-      const int b = face[(i + 1) % face.size()];
-      const bool both =
-          is_there(cage.points[std::size_t(a)]) && is_there(cage.points[std::size_t(b)]);
-      if (a < b && both) cage.creases.push_back({{a, b}, infinite_sharpness});
     }
   }
 }

@@ -190,6 +190,19 @@ std::vector<NamedCage> smooth_cages() {
   return all;
 }
 
+void make_sharp(ControlCage& cage, const std::function<bool(const dvec3&)>& is_there,
+                double sharpness) {
+  for (const std::vector<int>& face : cage.faces) {
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const int a = face[i];
+      const int b = face[(i + 1) % face.size()];
+      const bool both =
+          is_there(cage.points[std::size_t(a)]) && is_there(cage.points[std::size_t(b)]);
+      if (a < b && both) cage.creases.push_back({{a, b}, sharpness});
+    }
+  }
+}
+
 ControlCage triangulated(ControlCage cage) {
   std::vector<std::vector<int>> triangles;
   for (const std::vector<int>& f : cage.faces) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,9 @@ ControlCage sheet_cage(int m, int n);
 ControlCage two_sided_fin_cage();
 /// The cage of quads cut along a diagonal each, for Loop's scheme.
 ControlCage triangulated(ControlCage cage);
+/// Makes the edges with both ends there sharp.
+void make_sharp(ControlCage& cage, const std::function<bool(const dvec3&)>& is_there,
+                double sharpness = taut::infinite_sharpness);
 /// @}
 
 /// The edges of a dome's rim about its top.

@@ -153,6 +153,26 @@ TEST(LimitPatches, KeepTheirAccuracy) {
   }
 }
 
+/// Where three triangles meet, the curvature of Loop's surfaces has no bound: caps are much farther
+/// from their corners' plane than from the surface.
+TEST(LimitPatches, KeepTheirAccuracyAtSharpTips) {
+  for (const int k : {1, 2, 3}) {
+    ControlCage rim = triangulated(box_cage({k}));
+    for (const double side : {-1.0, 1.0}) {
+      make_sharp(
+          rim, [&](const dvec3& p) { return p.z == 1 && p.x == side; }, 1.5);
+      make_sharp(
+          rim, [&](const dvec3& p) { return p.z == 1 && p.y == side; }, 1.5);
+    }
+    ControlCage upright = triangulated(box_cage({k}));
+    make_sharp(upright, [](const dvec3& p) { return p.x == 1 && p.y == 1; });
+    for (const ControlCage& cage : {rim, upright}) {
+      EXPECT_LE(limit_patches(cage, {}).deviation_bound, LimitOptions().accuracy * size_of(cage))
+          << k << " " << cage.creases.size();
+    }
+  }
+}
+
 /// The largest angle between the normals on both sides of smooth joins, and the number of joins
 /// between two caps of this degree. All joins, or those of exact patches and such caps alone:
 /// others stand where nothing touches the hull, and may have kinks.
@@ -672,6 +692,7 @@ TEST(SubTriangle, IsTheSamePatch) {
                 1e-14);
       EXPECT_LE(glm::distance(triangle_at(elevated, degree + 1, at), triangle_at(net, degree, at)),
                 1e-14);
+      EXPECT_LE(glm::distance(value_of_triangle(net, at), triangle_at(net, degree, at)), 1e-14);
     }
   }
 }
@@ -699,6 +720,11 @@ TEST(HullDistance, OfSimplePolytopes) {
     }
     EXPECT_GE(bound, lower - 1e-14);
     EXPECT_LE(bound, lower * 1.05 + 5e-2);
+    for (const double enough : {0.01, 0.1, 1.0}) {
+      const double perhaps = distance_from_hull_bound(p, points, enough);
+      EXPECT_GE(perhaps, lower - 1e-14);
+      EXPECT_LE(perhaps, std::max(bound, enough));
+    }
   }
 }
 

@@ -56,7 +56,7 @@ struct Corral {
 
 }  // namespace
 
-double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points) {
+double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points, double enough) {
   constexpr int step_limit = 64;
   const auto nearest =
       std::min_element(points.begin(), points.end(), [&](const dvec3& a, const dvec3& b) {
@@ -64,8 +64,9 @@ double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points) {
       });
   Corral corral{{*nearest - p}, {1.0}};
   dvec3 x = corral.sum();
+  const double rounding = 16 * rounding_unit * (glm::length(p) + glm::length(*nearest));
   double best = glm::length(x);
-  for (int step = 0; step < step_limit && best > 0; ++step) {
+  for (int step = 0; step < step_limit && best > 0 && best + rounding > enough; ++step) {
     const auto next = std::min_element(
         points.begin(), points.end(),
         [&](const dvec3& a, const dvec3& b) { return glm::dot(a, x) < glm::dot(b, x); });
@@ -80,7 +81,7 @@ double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points) {
     if (!(glm::length(x) < best)) break;
     best = glm::length(x);
   }
-  return best + 16 * rounding_unit * (glm::length(p) + glm::length(*nearest));
+  return best + rounding;
 }
 
 }  // namespace taut

@@ -380,7 +380,7 @@ double Refinement::bound_of(const std::vector<std::size_t>& region, bool fit, bo
     known.push_back(corners(patches_[fan->cells.front()])[fan->corners.front()]);
   }
   if (!known.empty()) {
-    return region_bound(level_, region, patches_, std::move(known), tolerance_, least);
+    return region_bound(level_, region, patches_, known, tolerance_, least);
   }
   Box box;
   std::vector<dvec3> points;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "taut/subdivision/edge_middles.h"
 #include "taut/subdivision/hull_distance.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
+#include "taut/surface/bezier.h"
 
 namespace taut {
 namespace {
@@ -19,6 +19,8 @@ namespace {
 constexpr int levels_below = 48;
 /// Intervals between the points of a side along a crease that are known.
 constexpr int crease_samples = 8;
+/// Of a cap's side, and lines across.
+constexpr int cap_samples = 8;
 
 dvec3 cubic(const std::array<dvec3, 4>& c, double t) {
   const double s = 1 - t;
@@ -31,15 +33,13 @@ class Bound {
   /// Nothing is met any more once the bound is over the limit.
   Bound(std::vector<dvec3> known, double limit) : known_(std::move(known)), limit_(limit) {}
 
-  void know(const std::array<dvec3, 4>& crease) {
-    for (int k = 0; k <= crease_samples; ++k) {
-      known_.push_back(cubic(crease, double(k) / crease_samples));
-    }
-  }
+  void know(const dvec3& p) { known_.push_back(p); }
   void meet(const dvec3& p) {
-    if (!is_over()) value_ = std::max(value_, distance(p));
+    if (!is_over()) value_ = std::max(value_, distance_from_hull_bound(p, known_, value_));
   }
-  double distance(const dvec3& p) const { return distance_from_hull_bound(p, known_); }
+  bool is_within(const dvec3& p, double distance) const {
+    return distance_from_hull_bound(p, known_, distance) <= distance;
+  }
   bool is_over() const { return value_ > limit_; }
   double value() const { return value_; }
 
@@ -49,27 +49,87 @@ class Bound {
   double value_ = 0;
 };
 
-/// The control points that are on none of the cell's creases.
-std::vector<dvec3> inner_points(const CageLevel& level, std::size_t cell, const CellPatch& patch) {
-  std::vector<bool> is_outer(patch.points.size());
-  for (std::size_t side = 0; side < level.vertices(cell).size(); ++side) {
-    if (!level.crease(cell, side)) continue;
-    for (const std::size_t k : side_points(patch, side)) is_outer[k] = true;
-  }
+/// A patch, or part of one.
+struct Piece {
+  CellPatch patch;
+  std::size_t sides = 0;
+  std::array<bool, 4> on_crease = {};  ///< from each corner to the next
+};
+
+BezierPatch bezier(const CellPatch& quad) {
+  BezierPatch result;
+  result.degree_u = result.degree_v = quad.degree;
+  for (const dvec3& p : quad.points) result.points.push_back(homogeneous(p));
+  return result;
+}
+
+/// Points of the patch where its sides, and lines across, are divided in so many.
+std::vector<dvec3> lattice(const Piece& piece, int count) {
   std::vector<dvec3> result;
-  for (std::size_t k = 0; k < patch.points.size(); ++k) {
-    if (!is_outer[k]) result.push_back(patch.points[k]);
+  const bool quad = piece.sides == 4;
+  const BezierPatch patch = quad ? bezier(piece.patch) : BezierPatch{};
+  for (int i = 0; i <= count; ++i) {
+    for (int j = 0; j <= (quad ? count : count - i); ++j) {
+      const dvec2 at = dvec2(i, j) / double(count);
+      result.push_back(quad ? point(patch, at.x, at.y)
+                            : value_of_triangle(piece.patch.points, {1 - at.x - at.y, at}));
+    }
   }
   return result;
 }
 
-/// Adds points of the cells' creases.
-void know_creases(const CageLevel& level, std::span<const std::size_t> cells, Bound& bound) {
-  for (const std::size_t c : cells) {
-    for (std::size_t side = 0; side < level.vertices(c).size(); ++side) {
-      if (const auto crease = level.crease(c, side)) bound.know(*crease);
-    }
+/// The control points that are on none of the creases.
+std::vector<dvec3> inner_points(const Piece& piece) {
+  std::vector<bool> is_outer(piece.patch.points.size());
+  for (std::size_t side = 0; side < piece.sides; ++side) {
+    if (!piece.on_crease[side]) continue;
+    for (const std::size_t k : side_points(piece.patch, side)) is_outer[k] = true;
   }
+  std::vector<dvec3> result;
+  for (std::size_t k = 0; k < is_outer.size(); ++k) {
+    if (!is_outer[k]) result.push_back(piece.patch.points[k]);
+  }
+  return result;
+}
+
+/// The control points of a quad's part at a corner, half as wide.
+std::vector<dvec3> quarter_of_quad(const CellPatch& patch, std::size_t corner) {
+  const auto half = [](bool upper) { return upper ? Interval{0.5, 1} : Interval{0, 0.5}; };
+  std::vector<dvec3> result;
+  for (const dvec4& p :
+       restricted(bezier(patch), half(corner == 1 || corner == 2), half(corner >= 2)).points) {
+    result.push_back(euclidean(p));
+  }
+  return result;
+}
+
+/// The parts at the corners, half as wide, and of a triangle the middle one.
+std::vector<Piece> quarters(const Piece& piece) {
+  std::vector<Piece> result;
+  const std::size_t n = piece.sides;
+  std::array<dvec3, 3> middles = {dvec3(0.5, 0.5, 0), dvec3(0, 0.5, 0.5), dvec3(0.5, 0, 0.5)};
+  for (std::size_t k = 0; k < n; ++k) {
+    Piece part = piece;
+    for (std::size_t side = k + 1; side + 1 < k + n; ++side) part.on_crease[side % n] = false;
+    if (n == 4) {
+      part.patch.points = quarter_of_quad(piece.patch, k);
+    } else {
+      std::array<dvec3, 3> own;
+      own[k] = dvec3(0.0);
+      own[k][static_cast<int>(k)] = 1;
+      own[(k + 1) % 3] = middles[k];
+      own[(k + 2) % 3] = middles[(k + 2) % 3];
+      part.patch.points = sub_triangle(piece.patch.points, own);
+    }
+    result.push_back(std::move(part));
+  }
+  if (n == 3) {
+    Piece part = piece;
+    part.on_crease = {};
+    part.patch.points = sub_triangle(piece.patch.points, middles);
+    result.push_back(std::move(part));
+  }
+  return result;
 }
 
 /// Sharp sides of the cells, and those of them that are creases: so are then those of the levels
@@ -122,34 +182,92 @@ std::vector<dvec3> enclosures(const CageLevel& level, std::span<const std::size_
   return result;
 }
 
-/// Meets all of the cells' limit surface, by its patches on the levels below.
-void meet_limit(const CageLevel& level, std::span<const std::size_t> cells, Bound& bound,
-                double small) {
+/// How far the cells' limit surface is from the convex hull of points of the caps that stand for
+/// them, and the caps from that of points of the limit surface, both with what is known.
+class Comparison {
+ public:
+  /// `creases`: they have the cells' sharp sides in common.
+  Comparison(const std::vector<dvec3>& known, bool creases, double limit)
+      : of_limit_(known, limit), of_caps_(known, limit), creases_(creases) {}
+
+  /// Points of the caps are known to the limit surface.
+  void take_caps(const CageLevel& level, std::span<const std::size_t> cells,
+                 const std::vector<CellPatch>& patches);
+  /// The limit surface by its patches on the levels below, down to where what is left is near.
+  void take_limit(const CageLevel& level, std::span<const std::size_t> cells, double small);
+  double value() const { return std::max(of_limit_.value(), of_caps_.value()); }
+
+ private:
+  Piece piece_of(const CageLevel& level, std::size_t cell, const CellPatch& patch);
+
+  Bound of_limit_;
+  Bound of_caps_;
+  bool creases_;
+  std::vector<Piece> caps_;
+};
+
+/// Points of its creases are known from now on.
+Piece Comparison::piece_of(const CageLevel& level, std::size_t cell, const CellPatch& patch) {
+  Piece piece{patch, level.vertices(cell).size(), {}};
+  for (std::size_t side = 0; side < piece.sides && creases_; ++side) {
+    const auto crease = level.crease(cell, side);
+    piece.on_crease[side] = crease.has_value();
+    for (int k = 0; k <= crease_samples && crease; ++k) {
+      const dvec3 p = cubic(*crease, double(k) / crease_samples);
+      of_limit_.know(p);
+      of_caps_.know(p);
+    }
+  }
+  return piece;
+}
+
+void Comparison::take_caps(const CageLevel& level, std::span<const std::size_t> cells,
+                           const std::vector<CellPatch>& patches) {
+  for (const std::size_t c : cells) {
+    const Piece cap = piece_of(level, c, patches[c]);
+    for (const dvec3& p : lattice(cap, cap_samples)) of_limit_.know(p);
+    for (Piece& part : quarters(cap)) caps_.push_back(std::move(part));
+  }
+}
+
+void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t> cells,
+                            double small) {
   EdgeMiddles middles(0);
   std::vector<std::size_t> left(cells.begin(), cells.end());
   CageLevel below = level.refined(left, middles);
-  for (int depth = 0; depth < levels_below && !bound.is_over(); ++depth) {
+  for (int depth = 0; depth < levels_below && !of_limit_.is_over(); ++depth) {
     left.clear();
     const std::vector<CellPatch> patches = below.patches();
+    std::vector<Piece> pieces;
     for (std::size_t c = 0; c < patches.size(); ++c) {
-      if (patches[c].kind != CellPatch::Kind::regular) left.push_back(c);
+      const Piece piece = piece_of(below, c, patches[c]);
+      if (patches[c].kind == CellPatch::Kind::regular) {
+        pieces.push_back(piece);
+      } else {
+        left.push_back(c);
+      }
     }
-    std::vector<std::size_t> all(patches.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    know_creases(below, all, bound);
-    for (std::size_t c = 0; c < patches.size(); ++c) {
-      if (patches[c].kind != CellPatch::Kind::regular) continue;
-      for (const dvec3& p : inner_points(below, c, patches[c])) bound.meet(p);
+    for (const Piece& piece : pieces) {
+      for (const Piece& part : depth == 0 ? quarters(piece) : std::vector<Piece>{piece}) {
+        for (const dvec3& p : inner_points(part)) of_limit_.meet(p);
+      }
+      for (const dvec3& p : lattice(piece, std::max(1, cap_samples >> (depth + 1)))) {
+        of_caps_.know(p);
+      }
     }
     const std::vector<dvec3> rest = enclosures(below, left);
     const bool ends = depth + 1 == levels_below ||
                       std::all_of(rest.begin(), rest.end(),
-                                  [&](const dvec3& p) { return bound.distance(p) <= small; });
+                                  [&](const dvec3& p) { return of_limit_.is_within(p, small); });
     if (ends) {
-      for (const dvec3& p : rest) bound.meet(p);
-      return;
+      for (const dvec3& p : rest) of_limit_.meet(p);
+      break;
     }
     below = below.refined(left, middles);
+  }
+  for (const Piece& cap : caps_) {
+    if (of_limit_.is_over()) return;
+    for (const dvec3& p : inner_points(cap)) of_caps_.meet(p);
   }
 }
 
@@ -170,25 +288,23 @@ std::vector<std::size_t> side_points(const CellPatch& patch, std::size_t side) {
 }
 
 double region_bound(const CageLevel& level, std::span<const std::size_t> region,
-                    const std::vector<CellPatch>& patches, std::vector<dvec3> known, double enough,
-                    bool least) {
+                    const std::vector<CellPatch>& patches, const std::vector<dvec3>& known,
+                    double enough, bool least) {
   const double limit = least ? std::numeric_limits<double>::infinity() : enough;
   Bound plain(known, limit);
   for (const dvec3& p : enclosures(level, region)) plain.meet(p);
   for (const std::size_t c : region) {
     for (const dvec3& p : patches[c].points) plain.meet(p);
   }
-  // Where there are no creases, levels below are as good as the region's own.
   const SharpSides sharp = sharp_sides(level, region, patches);
   const bool may_gain = sharp.count > 0 || least;
-  if (plain.value() <= enough || sharp.creases < sharp.count || !may_gain) return plain.value();
-  Bound bound(std::move(known), limit);
-  know_creases(level, region, bound);
-  for (const std::size_t c : region) {
-    for (const dvec3& p : inner_points(level, c, patches[c])) bound.meet(p);
-  }
-  meet_limit(level, region, bound, enough);
-  return std::min(plain.value(), bound.value() + side_gap(level, region, patches));
+  if (plain.value() <= enough || !may_gain) return plain.value();
+  const bool creases = sharp.creases == sharp.count;
+  Comparison comparison(known, creases, limit);
+  comparison.take_caps(level, region, patches);
+  comparison.take_limit(level, region, enough);
+  const double gap = creases ? side_gap(level, region, patches) : 0;
+  return std::min(plain.value(), comparison.value() + gap);
 }
 
 }  // namespace taut

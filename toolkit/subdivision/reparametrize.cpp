@@ -60,6 +60,19 @@ Net product(const Net& a, const Net& b) {
   return r;
 }
 
+/// A step of de Casteljau's algorithm on a triangular net of this degree, at least 1.
+std::vector<dvec3> inner_net(const std::vector<dvec3>& net, std::size_t degree, const dvec3& at) {
+  std::vector<dvec3> inner(degree * (degree + 1) / 2);
+  for (std::size_t j = 0; j < degree; ++j) {
+    for (std::size_t i = 0; i + j < degree; ++i) {
+      inner[triangle_point(degree - 1, i, j)] = at.x * net[triangle_point(degree, i, j)] +
+                                                at.y * net[triangle_point(degree, i + 1, j)] +
+                                                at.z * net[triangle_point(degree, i, j + 1)];
+    }
+  }
+  return inner;
+}
+
 }  // namespace
 
 /// With B_i^m(s w) = sum over k >= i of B_i^k(w) B_k^m(s).
@@ -118,6 +131,12 @@ BezierPatch quad_of_triangle(std::span<const dvec3> triangle, const std::array<d
   return result;
 }
 
+dvec3 value_of_triangle(std::span<const dvec3> triangle, const dvec3& at) {
+  std::vector<dvec3> net(triangle.begin(), triangle.end());
+  for (std::size_t n = triangle_degree_of(triangle.size()); n > 0; --n) net = inner_net(net, n, at);
+  return net.front();
+}
+
 /// Each point is the blossom at as many times each corner as it counts towards it.
 std::vector<dvec3> sub_triangle(std::span<const dvec3> triangle,
                                 const std::array<dvec3, 3>& corners) {
@@ -128,16 +147,7 @@ std::vector<dvec3> sub_triangle(std::span<const dvec3> triangle,
       std::vector<dvec3> net(triangle.begin(), triangle.end());
       for (std::size_t degree = n; degree > 0; --degree) {
         const std::size_t step = n - degree;
-        const dvec3& at = corners[step < i ? 1 : step < i + j ? 2 : 0];
-        std::vector<dvec3> inner(degree * (degree + 1) / 2);
-        for (std::size_t l = 0; l < degree; ++l) {
-          for (std::size_t k = 0; k + l < degree; ++k) {
-            inner[triangle_point(degree - 1, k, l)] = at.x * net[triangle_point(degree, k, l)] +
-                                                      at.y * net[triangle_point(degree, k + 1, l)] +
-                                                      at.z * net[triangle_point(degree, k, l + 1)];
-          }
-        }
-        net = std::move(inner);
+        net = inner_net(net, degree, corners[step < i ? 1 : step < i + j ? 2 : 0]);
       }
       result[triangle_point(n, i, j)] = net.front();
     }

@@ -29,6 +29,9 @@ std::vector<dvec3> sub_triangle(std::span<const dvec3> triangle,
                                 const std::array<dvec3, 3>& corners);
 std::vector<dvec3> elevated_triangle(std::span<const dvec3> triangle);
 
+/// Its point at barycentric coordinates.
+dvec3 value_of_triangle(std::span<const dvec3> triangle, const dvec3& at);
+
 /// The polynomial curve of these control points in a degree as high at least.
 std::vector<dvec3> elevated_curve(std::vector<dvec3> points, std::size_t degree);
 
