@@ -87,6 +87,7 @@ class Trace {
   bool ends_in(std::optional<MergedEnd> end);
   std::optional<Pace> near_merging();
   Pace surpassed(const CommonSupport& next, const Contact& winner);
+  bool is_at_own_vertex(const CommonSupport& plane) const;
   bool ends_in_tie(const CommonSupport& next, std::size_t contact, const Contact& third);
   std::optional<Pace> beside_edge(const CommonSupport& next,
                                   const std::optional<ElementChange>& event);
@@ -476,6 +477,16 @@ bool Trace::ends_widened() {
   return true;
 }
 
+/// The third contact of a plane is in a face, and in the plane too is a vertex of it at which one
+/// of the other two is: support values do not tell the two places apart.
+bool Trace::is_at_own_vertex(const CommonSupport& plane) const {
+  const std::optional<EdgeBeside> beside = tied_edge(geometry_, plane.contact[2], plane.n);
+  if (!beside) return false;
+  const Contact vertex = geometry_.canonical(beside->edge);
+  return vertex.kind == SourceKind::vertex &&
+         (same_element(vertex, plane.contact[0]) || same_element(vertex, plane.contact[1]));
+}
+
 /// A contact surpasses the two at `next`: ends the arc in the plane of the three.
 Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
   if (ends_in_line(winner)) return ended(TracedArc::End::plane);
@@ -489,7 +500,8 @@ Trace::Pace Trace::surpassed(const CommonSupport& next, const Contact& winner) {
     plane->evaluate(geometry_);
   }
   const double there = plane ? point_.length_to(*plane) : 0;
-  if (!plane || there < -plane_slack || there > point_.length_to(next) + plane_slack) {
+  if (!plane || is_at_own_vertex(*plane) || there < -plane_slack ||
+      there > point_.length_to(next) + plane_slack) {
     return shorter("no common plane with a contact that surpasses two");
   }
   if (step_ > border_step && there > plane_slack &&
@@ -538,7 +550,7 @@ std::optional<Trace::Pace> Trace::beside_edge(const CommonSupport& next,
   }
   for (std::size_t i = 0; i < 2; ++i) {
     const std::optional<EdgeBeside> beside = tied_edge(geometry_, next.contact[i], next.n);
-    if (!beside) continue;
+    if (!beside || beside->edge.kind != SourceKind::edge) continue;
     if (ends_in_tie(next, i, beside->edge)) return ended(TracedArc::End::plane);
     const double apart = glm::distance(geometry_.point(beside->edge), next.jet[i].x);
     if (apart > plane_slack) continue;

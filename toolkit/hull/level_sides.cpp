@@ -129,7 +129,7 @@ std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Conta
     const std::optional<Contact> over = beyond(geometry, border, exit);
     if (!over || over->kind != SourceKind::edge) continue;
     const std::optional<Contact> top = climbed(geometry, *over, n);
-    if (!top || top->kind != SourceKind::edge) continue;
+    if (!top || top->kind == SourceKind::face) continue;
     if (glm::dot(geometry.point(*top), n) >= height - geometry.tie()) {
       return EdgeBeside{exit, *top};
     }

@@ -34,15 +34,15 @@ std::optional<Contact> on_level_edge(const ContactGeometry& geometry, const Cont
 /// place. Where the third derivative tells it, that place. None elsewhere.
 std::optional<Contact> inside_level(const ContactGeometry& geometry, Contact c, const dvec3& n);
 
-/// A contact on an edge of a patch, beyond one of the patch's sides.
+/// A contact on an edge of a patch, beyond one of the patch's sides, or at a vertex at its end.
 struct EdgeBeside {
   ContactExit exit;
   Contact edge;
 };
 
-/// The contact on an edge of the patch of a face's contact, another local maximum of x . n than
-/// this one, that is as high as it to within tie(): beside edges across which the patch is level.
-/// None elsewhere.
+/// The contact on an edge of the patch of a face's contact, or at a vertex at the edge's end,
+/// another local maximum of x . n than this one, that is as high as it to within tie(): beside
+/// edges across which the patch is level. None elsewhere.
 std::optional<EdgeBeside> tied_edge(const ContactGeometry& geometry, const Contact& c,
                                     const dvec3& n);
 

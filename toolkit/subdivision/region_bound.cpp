@@ -297,9 +297,9 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
     for (const dvec3& p : patches[c].points) plain.meet(p);
   }
   const SharpSides sharp = sharp_sides(level, region, patches);
+  const bool creases = sharp.creases == sharp.count;
   const bool may_gain = sharp.count > 0 || least;
   if (plain.value() <= enough || !may_gain) return plain.value();
-  const bool creases = sharp.creases == sharp.count;
   Comparison comparison(known, creases, limit);
   comparison.take_caps(level, region, patches);
   comparison.take_limit(level, region, enough);
