@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "boundaries.h"
+#include "cages.h"
 #include "models.h"
+#include "taut/hull/boundary_measures.h"
 #include "taut/hull/convex_hull.h"
 
 namespace taut {
@@ -74,6 +77,26 @@ TEST(DocumentMeasures, OfACylinder) {
   EXPECT_NEAR(near.mean_width, 1 + pi / 2, 1e-7);
   EXPECT_GE(near.interpolation, std::abs(near.volume / (2 * pi) - 1));
   EXPECT_LE(near.interpolation, 1e-5);
+}
+
+/// Facets within curves of which only the points are known, and along which the surface's third
+/// derivatives jump.
+TEST(DocumentMeasures, OfTorusCages) {
+  for (const int m : {4, 5, 6, 8}) {
+    for (const int n : {3, 4, 5}) {
+      const Model model = cage_model(torus_cage(m, n));
+      const Scene scene(model);
+      HullOptions options;
+      options.relative = 1e-2;
+      const HullBoundary boundary = *convex_hull(scene, options).boundary;
+      const BoundaryMeasures known = measure(scene, ContactGeometry(scene), boundary);
+      const DocumentMeasures found = measured(hull_document(scene, boundary), scene);
+      const std::string name = std::to_string(m) + " x " + std::to_string(n);
+      EXPECT_LE(std::abs(found.area / known.area - 1), found.interpolation + 1e-12) << name;
+      EXPECT_LE(std::abs(found.volume / known.volume - 1), found.interpolation + 1e-12) << name;
+      EXPECT_LE(found.interpolation, 1e-5) << name;
+    }
+  }
 }
 
 TEST(DocumentMeasures, OfTheOloid) {

@@ -380,9 +380,11 @@ DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutline
   DocumentMeasures best = sums.run();
   if (!sums.interpolated()) return best;
   const DocumentMeasures worse = MeasureSums(geometry, outlines, worse_window).run();
-  best.interpolation =
-      std::max({std::abs(worse.volume / best.volume - 1), std::abs(worse.area / best.area - 1),
-                std::abs(worse.mean_width / best.mean_width - 1)});
+  // Where the curve is not as smooth as the polynomials suppose, both err by as much.
+  constexpr double safety = 2;
+  best.interpolation = safety * std::max({std::abs(worse.volume / best.volume - 1),
+                                          std::abs(worse.area / best.area - 1),
+                                          std::abs(worse.mean_width / best.mean_width - 1)});
   return best;
 }
 
