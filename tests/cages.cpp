@@ -214,6 +214,17 @@ ControlCage triangulated(ControlCage cage) {
   return cage;
 }
 
+ControlCage semi_sharp_rim_cage(int k) {
+  ControlCage cage = triangulated(box_cage({k}));
+  for (const int axis : {0, 1}) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto is_there = [&](const dvec3& p) { return p.z == 1 && p[axis] == side; };
+      make_sharp(cage, is_there, 1.5);
+    }
+  }
+  return cage;
+}
+
 std::vector<CageCrease> rim(const ControlCage& cage, double sharpness) {
   const int ring = int(cage.points.size() - 2) / 2;
   std::vector<CageCrease> creases;

@@ -53,6 +53,8 @@ ControlCage triangulated(ControlCage cage);
 /// Makes the edges with both ends there sharp.
 void make_sharp(ControlCage& cage, const std::function<bool(const dvec3&)>& is_there,
                 double sharpness = taut::infinite_sharpness);
+/// The box of k x k squares a side, triangulated, with a rim of sharpness 1.5 about its top.
+ControlCage semi_sharp_rim_cage(int k);
 /// @}
 
 /// The edges of a dome's rim about its top.

@@ -7,8 +7,8 @@
 namespace taut {
 
 /// Upper bound of the distance of a point from the convex hull of others, that of a point of it
-/// that is nearest up to rounding (Wolfe 1976, "Finding the nearest point in a polytope"); of one
-/// that is near `enough`, if there is one, perhaps.
+/// that is nearest up to rounding (Wolfe 1976, "Finding the nearest point in a polytope"); no
+/// nearer one is sought once it is no more than `enough`.
 /// @pre not empty
 double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points, double enough = 0);
 

@@ -195,6 +195,8 @@ class Comparison {
                  const std::vector<CellPatch>& patches);
   /// The limit surface by its patches on the levels below, down to where what is left is near.
   void take_limit(const CageLevel& level, std::span<const std::size_t> cells, double small);
+  /// The caps, after the limit surface.
+  void meet_caps();
   double value() const { return std::max(of_limit_.value(), of_caps_.value()); }
 
  private:
@@ -265,8 +267,10 @@ void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t>
     }
     below = below.refined(left, middles);
   }
+}
+
+void Comparison::meet_caps() {
   for (const Piece& cap : caps_) {
-    if (of_limit_.is_over()) return;
     for (const dvec3& p : inner_points(cap)) of_caps_.meet(p);
   }
 }
@@ -303,6 +307,7 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
   Comparison comparison(known, creases, limit);
   comparison.take_caps(level, region, patches);
   comparison.take_limit(level, region, enough);
+  if (comparison.value() <= limit) comparison.meet_caps();
   const double gap = creases ? side_gap(level, region, patches) : 0;
   return std::min(plain.value(), comparison.value() + gap);
 }
