@@ -21,7 +21,6 @@ class TiedMerging {
 
  private:
   void push() { end_.pieces.back().rulings.push_back(at_.ruling()); }
-  void turn_to(std::size_t i);
   void cross(std::size_t i, const Contact& from, const Contact& to);
 
   const ContactGeometry& geometry_;
@@ -29,27 +28,10 @@ class TiedMerging {
   MergedEnd end_;
 };
 
-/// The direction becomes contact i's normal; the other contact moves with it, if towards it.
-void TiedMerging::turn_to(std::size_t i) {
-  const dvec3 before = at_.n;
-  at_.n = limit_normal({at_.jet[i], at_.jet[i]}, before);
-  const std::optional<dvec2> rate = parameter_rate(at_.jet[1 - i], before, at_.n - before);
-  if (!rate) return;
-  const ContactJet& j = at_.jet[1 - i];
-  const dvec3 motion = rate->x * j.dx[0] + rate->y * j.dx[1];
-  const dvec3 way = at_.jet[i].x - j.x;
-  if (glm::length(motion) > 0.25 * glm::length(way) || glm::dot(motion, way) < 0) return;
-  Contact& other = at_.contact[1 - i];
-  other.u = std::clamp(other.u + rate->x, 0.0, 1.0);
-  other.v = std::clamp(other.v + rate->y, 0.0, 1.0);
-  at_.evaluate(geometry_);
-}
-
-/// Contact i goes on over a border.
+/// Contact i goes on over a border, in the same direction: in it the whole way is level.
 void TiedMerging::cross(std::size_t i, const Contact& from, const Contact& to) {
   at_.contact[i] = from;
   at_.evaluate(geometry_);
-  turn_to(i);
   push();
   at_.contact[i] = to;
   at_.evaluate(geometry_);
