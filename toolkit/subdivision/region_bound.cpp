@@ -21,6 +21,8 @@ constexpr int levels_below = 48;
 constexpr int crease_samples = 8;
 /// Of a cap's side, and lines across.
 constexpr int cap_samples = 8;
+/// Of pieces in a corner between creases.
+constexpr int corner_halvings = 13;
 
 dvec3 cubic(const std::array<dvec3, 4>& c, double t) {
   const double s = 1 - t;
@@ -78,11 +80,25 @@ std::vector<dvec3> lattice(const Piece& piece, int count) {
   return result;
 }
 
-/// The control points that are on none of the creases.
+/// Two creases are in a common corner.
+bool has_crease_corner(const Piece& piece) {
+  for (std::size_t side = 0; side < piece.sides; ++side) {
+    if (piece.on_crease[side] && piece.on_crease[(side + 1) % piece.sides]) return true;
+  }
+  return false;
+}
+
+/// The control points that are on none of the creases, but for those of creases that meet one of
+/// these in a corner: the piece is within the convex hull of these points and of creases that have
+/// no corner in common.
 std::vector<dvec3> inner_points(const Piece& piece) {
   std::vector<bool> is_outer(piece.patch.points.size());
+  std::array<bool, 4> is_left_out = {};
   for (std::size_t side = 0; side < piece.sides; ++side) {
-    if (!piece.on_crease[side]) continue;
+    const std::size_t before = (side + piece.sides - 1) % piece.sides;
+    const std::size_t after = (side + 1) % piece.sides;
+    is_left_out[side] = piece.on_crease[side] && !is_left_out[before] && !is_left_out[after];
+    if (!is_left_out[side]) continue;
     for (const std::size_t k : side_points(piece.patch, side)) is_outer[k] = true;
   }
   std::vector<dvec3> result;
@@ -130,6 +146,18 @@ std::vector<Piece> quarters(const Piece& piece) {
     result.push_back(std::move(part));
   }
   return result;
+}
+
+/// The quarters, those in corners between creases divided again and again: there control points of
+/// a crease count, which are as much nearer to it as they are closer to the corner, squared.
+void divide(const Piece& piece, int halvings, std::vector<Piece>& parts) {
+  for (Piece& part : quarters(piece)) {
+    if (halvings > 1 && has_crease_corner(part)) {
+      divide(part, halvings - 1, parts);
+    } else {
+      parts.push_back(std::move(part));
+    }
+  }
 }
 
 /// Sharp sides of the cells, and those of them that are creases: so are then those of the levels
@@ -228,7 +256,7 @@ void Comparison::take_caps(const CageLevel& level, std::span<const std::size_t> 
   for (const std::size_t c : cells) {
     const Piece cap = piece_of(level, c, patches[c]);
     for (const dvec3& p : lattice(cap, cap_samples)) of_limit_.know(p);
-    for (Piece& part : quarters(cap)) caps_.push_back(std::move(part));
+    divide(cap, corner_halvings, caps_);
   }
 }
 
@@ -250,7 +278,13 @@ void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t>
       }
     }
     for (const Piece& piece : pieces) {
-      for (const Piece& part : depth == 0 ? quarters(piece) : std::vector<Piece>{piece}) {
+      std::vector<Piece> parts;
+      if (depth == 0 || has_crease_corner(piece)) {
+        divide(piece, corner_halvings, parts);
+      } else {
+        parts.push_back(piece);
+      }
+      for (const Piece& part : parts) {
         for (const dvec3& p : inner_points(part)) of_limit_.meet(p);
       }
       for (const dvec3& p : lattice(piece, std::max(1, cap_samples >> (depth + 1)))) {
