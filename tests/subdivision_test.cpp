@@ -722,6 +722,20 @@ TEST(HullDistance, OfSimplePolytopes) {
   }
 }
 
+/// Far below the root of rounding, on triangles large and small that are not axis-parallel.
+TEST(HullDistance, OfNearPoints) {
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const double size = std::pow(10.0, -(i % 6));
+    std::vector<dvec3> triangle;
+    for (int k = 0; k < 3; ++k) triangle.push_back(size * random_point(random));
+    const dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    const double height = 1e-11 * size;
+    const dvec3 p = (triangle[0] + triangle[1] + triangle[2]) / 3.0 + height * unit(across);
+    EXPECT_NEAR(distance_from_hull_bound(p, triangle), height, 1e-14 * size);
+  }
+}
+
 TEST(TouchTest, IsSure) {
   Random random(7);
   TouchTest test;

@@ -9,6 +9,8 @@
 namespace taut {
 namespace {
 
+Eigen::Vector3d vector(const dvec3& p) { return {p.x, p.y, p.z}; }
+
 /// The corral of Wolfe's algorithm: points with their barycentric weights.
 struct Corral {
   std::vector<dvec3> points;
@@ -20,22 +22,18 @@ struct Corral {
     return x;
   }
 
-  /// Weights of the point of the affine hull that is nearest to the origin.
+  /// Weights of the point of the affine hull that is nearest to the origin. By the differences of
+  /// points, not by their products, which would tell distances to the root of rounding only.
   std::vector<double> affine_minimizer() const {
-    const auto n = static_cast<Eigen::Index>(points.size());
-    Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n + 1, n + 1);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 1);
-    double scale = 0;
-    for (const dvec3& p : points) scale = std::max(scale, glm::dot(p, p));
+    const auto n = static_cast<Eigen::Index>(points.size()) - 1;
+    Eigen::Matrix3Xd differences(3, n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        m(i, j) = glm::dot(points[std::size_t(i)], points[std::size_t(j)]) / scale;
-      }
-      m(i, n) = m(n, i) = 1;
+      differences.col(i) = vector(points[std::size_t(i) + 1] - points[0]);
     }
-    right(n) = 1;
-    const Eigen::VectorXd solution = m.fullPivLu().solve(right);
-    return {solution.data(), solution.data() + n};
+    const Eigen::VectorXd solution = differences.colPivHouseholderQr().solve(-vector(points[0]));
+    std::vector<double> result = {1 - solution.sum()};
+    result.insert(result.end(), solution.begin(), solution.end());
+    return result;
   }
 
   /// Moves towards the weights until one of them vanishes, and drops its point; false if none does.

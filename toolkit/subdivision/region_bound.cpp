@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -22,7 +23,7 @@ constexpr int crease_samples = 8;
 /// Of a cap's side, and lines across.
 constexpr int cap_samples = 8;
 /// Of pieces in a corner between creases.
-constexpr int corner_halvings = 13;
+constexpr int corner_halvings = 16;
 
 dvec3 cubic(const std::array<dvec3, 4>& c, double t) {
   const double s = 1 - t;
@@ -149,7 +150,7 @@ std::vector<Piece> quarters(const Piece& piece) {
 }
 
 /// The quarters, those in corners between creases divided again and again: there control points of
-/// a crease count, which are as much nearer to it as they are closer to the corner, squared.
+/// a crease count, which are as much nearer to it as the part is smaller, squared.
 void divide(const Piece& piece, int halvings, std::vector<Piece>& parts) {
   for (Piece& part : quarters(piece)) {
     if (halvings > 1 && has_crease_corner(part)) {
@@ -229,6 +230,10 @@ class Comparison {
 
  private:
   Piece piece_of(const CageLevel& level, std::size_t cell, const CellPatch& patch);
+  void know_both(const dvec3& p) {
+    of_limit_.know(p);
+    of_caps_.know(p);
+  }
 
   Bound of_limit_;
   Bound of_caps_;
@@ -242,11 +247,11 @@ Piece Comparison::piece_of(const CageLevel& level, std::size_t cell, const CellP
   for (std::size_t side = 0; side < piece.sides && creases_; ++side) {
     const auto crease = level.crease(cell, side);
     piece.on_crease[side] = crease.has_value();
-    for (int k = 0; k <= crease_samples && crease; ++k) {
-      const dvec3 p = cubic(*crease, double(k) / crease_samples);
-      of_limit_.know(p);
-      of_caps_.know(p);
-    }
+    if (!crease) continue;
+    for (int k = 0; k <= crease_samples; ++k) know_both(cubic(*crease, double(k) / crease_samples));
+    // The ends of parts in corners.
+    const double part = std::ldexp(1.0, -corner_halvings);
+    for (const double t : {part, 1 - part}) know_both(cubic(*crease, t));
   }
   return piece;
 }
