@@ -142,6 +142,18 @@ TEST(TrimRegions, HolesAndIslands) {
   EXPECT_GE(island.expect_left_of_traces(), 1);
 }
 
+TEST(TrimRegions, TellCurvesWithoutLength) {
+  Trimmed balls(sphere(1) + shifted(sphere(0.5), {0.2, 0.4, 3}));
+  ASSERT_EQ(balls.graph.arcs.size(), 1U);
+  SeparatingArc& arc = balls.graph.arcs.front();
+  ASSERT_TRUE(arc.closed);
+  arc.pieces.resize(1);
+  arc.pieces.front().rulings.resize(1);
+  std::vector<Unresolved> unresolved;
+  trim_regions(balls.geometry, balls.query, balls.graph, {}, unresolved);
+  EXPECT_FALSE(unresolved.empty());
+}
+
 TEST(HalfArcs, GoRoundTheirRegions) {
   // Two facets that three arcs join: each half-arc's region is bounded by two of them.
   SeparatingGraph graph;

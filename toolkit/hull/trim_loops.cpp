@@ -336,6 +336,10 @@ void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
   std::vector<std::pair<Loop, dvec2>> holes;
   for (Loop& loop : loops) {
     std::vector<dvec2> outline = polyline(loop);
+    if (outline.empty()) {
+      fail(strokes_[std::size_t(sheet.strokes.front())].n, "a trim loop has no length");
+      return;
+    }
     if (sheet.sign * signed_area(outline) > 0) {
       regions_.push_back({sheet.instance, sheet.patch, sheet.sign, {std::move(loop)}});
       outlines.push_back(std::move(outline));
