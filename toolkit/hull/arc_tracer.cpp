@@ -787,6 +787,9 @@ TracedArc Trace::run(const Progress& progress, bool aside) {
   if (!is_sound()) lost("a separating curve is not finite");
   for (ArcPiece& piece : arc_.pieces) divide_flat_ends(system_, piece.rulings);
   drop_empty_pieces(geometry_, arc_.pieces);
+  if (arc_.end == TracedArc::End::closed && arc_.pieces.front().rulings.size() < 2) {
+    lost("a separating curve closes where it stands");
+  }
   return std::move(arc_);
 }
 

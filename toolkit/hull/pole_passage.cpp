@@ -8,6 +8,7 @@
 #include "taut/hull/contact_bends.h"
 #include "taut/hull/contact_exits.h"
 #include "taut/hull/level_sides.h"
+#include "taut/hull/plane_corners.h"
 
 namespace taut {
 namespace {
@@ -26,6 +27,11 @@ constexpr int way_count = 12;
 /// and where the patch is flat in the corner, which curves may reach along a side.
 constexpr double corner_share = 1.1;
 constexpr double flat_corner_share = 3;
+/// A corner in which the patch is plane is reached in a step so many times as long: beside it
+/// Newton's method finds nothing that is farther away than a share of the way there.
+constexpr double plane_corner_reach = 16;
+/// The least cosine of the way to such a corner with the contact's, which arrives in it straight.
+constexpr double plane_corner_cosine = 0.9;
 /// Newton steps of a contact along a side, on which it has its place but for their square.
 constexpr int most_slides = 6;
 /// Ends of elements that a contact passes in a corner, at most.
@@ -304,6 +310,23 @@ bool PolePassage::is_flat_corner(const Contact& c) const {
   return is_flat(j, n, least_curvature) && !is_flat(j, n, -least_curvature);
 }
 
+/// The corner in which its patch is plane for which the contact heads, in reach of a step of this
+/// length.
+std::optional<Contact> PolePassage::plane_corner_ahead(int i, double length) const {
+  const dvec3& from = point_.at.jet[std::size_t(i)].x;
+  const dvec3& rate = point_.tangent.x[std::size_t(i)];
+  for (const Contact& corner : corners_of(point_.at.contact[std::size_t(i)])) {
+    const dvec3 way = geometry_.point(corner) - from;
+    const double distance = glm::length(way);
+    if (distance > plane_corner_reach * length ||
+        glm::dot(way, rate) < plane_corner_cosine * distance * glm::length(rate)) {
+      continue;
+    }
+    if (is_plane_corner(geometry_, corner)) return corner;
+  }
+  return std::nullopt;
+}
+
 /// The contact where the tangent leads it, within a step of this length, to the end of an edge or
 /// to a side of its patch.
 std::optional<Contact> PolePassage::end_ahead(int i, double length) const {
@@ -321,6 +344,7 @@ std::optional<Contact> PolePassage::end_ahead(int i, double length) const {
     if (point_.at.contact[std::size_t(1 - i)].kind != SourceKind::face) return std::nullopt;
     return c;
   }
+  if (const std::optional<Contact> corner = plane_corner_ahead(i, length)) return corner;
   const dvec2 border(rate.x > 0 ? 1 : 0, rate.y > 0 ? 1 : 0);
   const dvec2 way = (border - parameters(c)) / rate;
   const int across = way.x < way.y ? 0 : 1;
@@ -430,7 +454,8 @@ std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
     return is_tangent(*last) ? last : std::nullopt;
   }
   const double ahead = point_.length_to(end);
-  if (ahead <= margin_slack || ahead > length) return std::nullopt;
+  const double reach = in_plane_corner(end) ? plane_corner_reach * length : length;
+  if (ahead <= margin_slack || ahead > reach) return std::nullopt;
   end.n = common_normal(end);
   if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -442,6 +467,12 @@ std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
   }
   end.evaluate(geometry_);
   return is_tangent(end) ? std::optional(end) : std::nullopt;
+}
+
+bool PolePassage::in_plane_corner(const CommonSupport& s) const {
+  return std::any_of(s.contact.begin(), s.contact.begin() + 2, [&](const Contact& c) {
+    return c.kind == SourceKind::face && is_corner(c) && is_plane_corner(geometry_, c);
+  });
 }
 
 /// The plane holds both contacts, supports, and the rulings that lead there are found.

@@ -69,6 +69,8 @@ class PolePassage {
   std::optional<CommonSupport> corrected_aside(CommonSupport next, double step) const;
   std::optional<Contact> aside(int i, double tilt, const dvec3& n, bool climbs) const;
   std::optional<Contact> end_ahead(int i, double length) const;
+  std::optional<Contact> plane_corner_ahead(int i, double length) const;
+  bool in_plane_corner(const CommonSupport& s) const;
   bool is_flat_corner(const Contact& c) const;
   std::optional<Side> level_side(const Contact& c) const;
   std::optional<CommonSupport> at_swell_end(const CommonSupport& end, double length) const;

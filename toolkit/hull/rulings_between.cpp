@@ -72,13 +72,16 @@ bool leaves_flat(const ContactGeometry& geometry, const Ruling& r, const Ruling&
 }
 
 /// How n begins at one of the rulings: as ever, with the square of a contact's way while the other
-/// one moves as n does, or with that of both.
+/// one moves as n does, or with that of both; a vertex does not move.
 enum class Start { plain, straight, stands };
 Start start_at(const ContactGeometry& geometry, const Ruling& r, const Ruling& other) {
   const std::array<bool, 2> flat = {leaves_flat(geometry, r, other, 0),
                                     leaves_flat(geometry, r, other, 1)};
   if (!flat[0] && !flat[1]) return Start::plain;
-  return flat[0] && flat[1] ? Start::stands : Start::straight;
+  const auto moves_so = [&](std::size_t i) {
+    return flat[i] || r.contact[i].kind == SourceKind::vertex;
+  };
+  return moves_so(0) && moves_so(1) ? Start::stands : Start::straight;
 }
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.

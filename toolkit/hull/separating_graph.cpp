@@ -22,6 +22,7 @@
 #include "taut/hull/level_sides.h"
 #include "taut/hull/level_way.h"
 #include "taut/hull/partings.h"
+#include "taut/hull/plane_corners.h"
 #include "taut/hull/point_hull.h"
 #include "taut/hull/supporting_poles.h"
 #include "taut/hull/surface_seeds.h"
@@ -443,7 +444,8 @@ bool GraphTracer::is_facet(const CommonSupport& seed) {
 /// support values do not tell the two contacts apart: the curve, if it goes on to where they do, is
 /// found there.
 void GraphTracer::trace(const CommonSupport& seed) {
-  const CommonSupport settled = settled_at_vertices(geometry_, seed);
+  const CommonSupport settled =
+      settled_in_plane_corners(geometry_, query_, settled_at_vertices(geometry_, seed));
   if (built_.is_traced(settled)) return;
   if (level_way(geometry_, settled.contact[0], settled.contact[1], settled.n)) return;
   const std::optional<CommonSupport> wide = widened(geometry_, query_, settled);
