@@ -28,6 +28,8 @@ constexpr double least_sag = 1e-7;
 /// highest point beside the edge.
 constexpr double turn_beside = 0.01;
 constexpr int most_climbs = 20;
+/// Of the sides' places, so many are between two that are asked for what supports.
+constexpr std::size_t places_queried = 16;
 /// Of central difference quotients.
 constexpr double difference = 1e-5;
 /// Stretches of a piece below this are none.
@@ -216,20 +218,25 @@ std::optional<Contact> TouchedEdge::highest_beside(const Place& p, double turn) 
 }
 
 /// Where the places are all on one line, so far as the lowest power of the distance tells: whether
-/// in planes that have turned about the edge others than those between the ends support.
+/// in planes that have turned about the edge others than those between the ends support. These are
+/// hardly lower than what does, so that queries are slow: some of them tell.
 bool TouchedEdge::is_left(const std::vector<Place>& places, SupportQuery& query) const {
   const Place& first = places.front();
   const Place& last = places.back();
-  return std::all_of(places.begin() + 1, places.end() - 1, [&](const Place& p) {
+  const bool is_line = std::all_of(places.begin() + 1, places.end() - 1, [&](const Place& p) {
     const double share = (p.at - first.at) / (last.at - first.at);
     const double line = (1 - share) * first.value + share * last.value;
-    if (std::abs(p.value - line) > least_sag * line) return false;
-    const std::optional<Contact> c = highest_beside(p, turn_beside);
+    return std::abs(p.value - line) <= least_sag * line;
+  });
+  if (!is_line) return false;
+  for (std::size_t k = places_queried; k + 1 < places.size(); k += places_queried) {
+    const std::optional<Contact> c = highest_beside(places[k], turn_beside);
     if (!c) return false;
     const dvec3 normal = unit_normal(geometry_, *c);
     const dvec3 n = glm::dot(normal, n_) < 0 ? -normal : normal;
-    return query(n, *c).h > glm::dot(geometry_.point(*c), n) + geometry_.tie();
-  });
+    if (query(n, *c).h <= glm::dot(geometry_.point(*c), n) + geometry_.tie()) return false;
+  }
+  return true;
 }
 
 /// Where the tangent goes through the chord's other end: between two places of one side, or of two
