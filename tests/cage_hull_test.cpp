@@ -45,8 +45,9 @@ void expect_verified(const Model& model, const Hull& hull, const std::string& na
   const HullVerification found = verify(hull_document(scene, *hull.boundary), scene, options);
   EXPECT_EQ(found.euler, 2) << name;
   EXPECT_TRUE(found.closed) << name;
-  EXPECT_TRUE(found.is_hull(tolerance)) << name << ": off sources " << found.off_source << ", tangency "
-                                    << found.tangency << ", flatness " << found.flatness;
+  EXPECT_TRUE(found.is_hull(tolerance))
+      << name << ": off sources " << found.off_source << ", tangency " << found.tangency
+      << ", flatness " << found.flatness;
 }
 
 /// Permutations of coordinates with an even number of changed signs; for the cube any number.

@@ -37,8 +37,8 @@ std::optional<Contact> plane_corner_at(const ContactGeometry& geometry, const Co
 std::array<Contact, 4> corners_of(Contact c) {
   std::array<Contact, 4> result;
   for (std::size_t k = 0; k < 4; ++k) {
-    c.u = double(k % 2);
-    c.v = double(k / 2);
+    c.u = k % 2 == 0 ? 0 : 1;
+    c.v = k < 2 ? 0 : 1;
     result[k] = c;
   }
   return result;

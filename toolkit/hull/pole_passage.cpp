@@ -318,7 +318,7 @@ std::optional<Contact> PolePassage::plane_corner_ahead(int i, double length) con
   for (const Contact& corner : corners_of(point_.at.contact[std::size_t(i)])) {
     const dvec3 way = geometry_.point(corner) - from;
     const double distance = glm::length(way);
-    if (distance > plane_corner_reach * length ||
+    if (distance == 0 || distance > plane_corner_reach * length ||
         glm::dot(way, rate) < plane_corner_cosine * distance * glm::length(rate)) {
       continue;
     }
