@@ -341,8 +341,6 @@ TEST(CageHull, OfATriangulatedBox) {
   EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6);
 }
 
-/// Separating curves of a sharp edge and of the faces beside it, through or to where both are
-/// level: in 3 x 3 quads a side they begin at chords of the facets' sides.
 /// Cones from the corner touch the sides in curves through the vertices in their middles, about
 /// which the surface is plane: there nothing but third derivatives tells the direction.
 TEST(CageHull, OfATriangulatedBoxWithACorner) {
@@ -356,6 +354,8 @@ TEST(CageHull, OfATriangulatedBoxWithACorner) {
   expect_verified(model, hull, "box", 1e-11);
 }
 
+/// Separating curves of a sharp edge and of the faces beside it, through or to where both are
+/// level: in 3 x 3 quads a side they begin at chords of the facets' sides.
 TEST(CageHull, OfBoxesWithASharpEdge) {
   for (const int k : {2, 3}) {
     ControlCage cage = box_cage({k});
