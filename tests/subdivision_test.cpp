@@ -722,17 +722,20 @@ TEST(HullDistance, OfSimplePolytopes) {
   }
 }
 
-/// Far below the root of rounding, on triangles large and small that are not axis-parallel.
+/// Far below the root of rounding, on slender triangles, large and small, that are not
+/// axis-parallel.
 TEST(HullDistance, OfNearPoints) {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
     const double size = std::pow(10.0, -(i % 6));
-    std::vector<dvec3> triangle;
-    for (int k = 0; k < 3; ++k) triangle.push_back(size * random_point(random));
+    const dvec3 a = size * random_point(random);
+    const dvec3 b = a + size * random_direction(random);
+    const dvec3 off = 1e-6 * size * unit(glm::cross(b - a, random_direction(random)));
+    const std::vector<dvec3> triangle = {a, b, 0.3 * a + 0.7 * b + off};
     const dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     const double height = 1e-11 * size;
     const dvec3 p = (triangle[0] + triangle[1] + triangle[2]) / 3.0 + height * unit(across);
-    EXPECT_NEAR(distance_from_hull_bound(p, triangle), height, 1e-14 * size);
+    EXPECT_NEAR(distance_from_hull_bound(p, triangle), height, 1e-13 * size);
   }
 }
 
