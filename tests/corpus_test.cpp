@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <ostream>
@@ -21,7 +22,7 @@
 namespace taut_test {
 
 /// For GoogleTest.
-static void PrintTo(const Reader& reader, std::ostream* stream) { *stream << reader.format; }
+static void PrintTo(const Reader& reader, std::ostream* stream) { *stream << reader.corpus(); }
 
 namespace {
 
@@ -47,6 +48,9 @@ std::string case_name(std::string text) {
   return text;
 }
 
+/// Far more than any of the inputs takes.
+constexpr std::chrono::minutes longest(2);
+
 class CorpusOf : public testing::TestWithParam<Reader> {};
 
 TEST_P(CorpusOf, IsReadOrRefusedAsItShould) {
@@ -57,13 +61,14 @@ TEST_P(CorpusOf, IsReadOrRefusedAsItShould) {
     SCOPED_TRACE(file.filename().string());
     Outcome outcome;
     try {
-      outcome = read_one(reader, content(file), file.string());
+      outcome = read_one(reader, content(file), file.string(), longest);
     } catch (const Finding& finding) {
       ADD_FAILURE() << finding.what();
       continue;
     }
     // What is wrong with a model may be passed over in a mesh.
     if (begins(file, "fuzz_") || reader.kind == Reader::Kind::mesh) continue;
+    EXPECT_FALSE(outcome.stopped);
     EXPECT_EQ(outcome.accepted, !begins(file, "bad_")) << outcome.error;
     EXPECT_EQ(outcome.accepted && !outcome.warnings.empty(), begins(file, "warn_"));
   }

@@ -664,7 +664,10 @@ TEST_F(ReadModel, ObjSubdivisionTags) {
   EXPECT_EQ(control("t crease 3/1/0 0 1 2 4\n").creases[1].sharpness, 4);
   EXPECT_EQ(control("t interpolateboundary 1/0/0 2\n").boundary, taut::CageBoundary::edge_only);
   EXPECT_TRUE(control("t creasemethod 0/0/1 chaikin\n").chaikin);
+  EXPECT_FALSE(control("t creasemethod 0/0/1 normal\n").chaikin);
   EXPECT_TRUE(control("t smoothtriangles 1/0/0 2\n").smooth_triangles);
+  EXPECT_TRUE(control("t smoothtriangles 0/0/1 smooth\n").smooth_triangles);
+  EXPECT_FALSE(control("t smoothtriangles 0/0/1 catmark\n").smooth_triangles);
   EXPECT_EQ(control("t vertexedit 1/0/0 2\n").faces.size(), 1U);
   const auto at_fault = [&](const std::string& tag) {
     return message<InvalidInput>("a.obj", cage + tag);
@@ -679,6 +682,22 @@ TEST_F(ReadModel, ObjSubdivisionTags) {
   EXPECT_EQ(malformed("t crease 2/1 0 1 1\n").substr(0, 4), ":6: ");
   EXPECT_EQ(malformed("t crease 2/2/0 0 1 1\n").substr(0, 4), ":6: ");
   EXPECT_EQ(malformed("t corner 1/1/0\n").substr(0, 4), ":6: ");
+  EXPECT_EQ(malformed("t smoothtriangles 0/0/1 rough\n"),
+            ":6: the tag \"smoothtriangles\" takes one word of catmark, smooth");
+  EXPECT_EQ(malformed("t creasemethod 1/0/0 1\n").substr(0, 4), ":6: ");
+}
+
+/// Errors and warnings of cages begin with the file, once.
+TEST_F(ReadModel, NamesTheFileOfACageOnce) {
+  options_.scheme = taut::Scheme::loop;
+  EXPECT_EQ(message<InvalidInput>("a.obj", vertices(4) + "f 1 2 3 4\n"),
+            ": face 0 is no triangle, as the scheme loop needs");
+  options_.scheme = taut::Scheme::catmark;
+  collect_warnings();
+  read("b.obj", vertices(4) + "f 1 1 2 3\n");
+  ASSERT_FALSE(warning_texts_.empty());
+  EXPECT_EQ(warning_texts_.back(),
+            path("b.obj").string() + ": 1 faces of the cage have a vertex more than once");
 }
 
 TEST_F(ReadModel, ObjCageFromElsewhere) {

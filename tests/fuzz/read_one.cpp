@@ -3,10 +3,14 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <cstddef>
+#include <ctime>
+#include <mutex>
 #include <stop_token>
+#include <thread>
 
 #include "taut/hull/convex_hull.h"
 #include "taut/io/hull_document.h"
@@ -27,8 +31,12 @@ constexpr std::size_t most_points = 2000;
 /// Exact hulls of longer documents are not verified.
 constexpr std::size_t longest_document = 200'000;
 
-/// Hulls that take longer are stopped; there are many to try.
-constexpr std::chrono::milliseconds longest_hull(300);
+/// Within which a stop is heard.
+#ifdef TAUT_SANITIZED
+constexpr double longest_deafness = 2;
+#else
+constexpr double longest_deafness = 0.2;
+#endif
 
 /// A sentence and the longest path; longer is no message for a person.
 constexpr std::size_t longest_message = 5000;
@@ -47,10 +55,15 @@ void require_line(std::string_view text) {
   }
 }
 
-/// Collects warnings, and stops after a while.
+/// Seconds of the process.
+double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Collects warnings, and asks to stop after a while.
 class Listener {
  public:
-  explicit Listener(Outcome& outcome) : outcome_(outcome) {}
+  Listener(Outcome& outcome, std::chrono::milliseconds limit)
+      : outcome_(outcome),
+        timer_([this, limit](const std::stop_token& done) { wait(done, limit); }) {}
 
   Progress progress() {
     Progress progress;
@@ -64,17 +77,32 @@ class Listener {
     };
     progress.report = [this](std::string_view, double share) {
       require(0 <= share && share <= 1, "a share of " + std::to_string(share) + " is done");
-      if (may_stop && std::chrono::steady_clock::now() > end_) stop_.request_stop();
     };
     return progress;
   }
 
-  bool may_stop = false;
+  /// @throws Finding if a stop was asked for, but not heard in time
+  void check() const {
+    if (!stop_.stop_requested()) return;
+    const double deafness = cpu_seconds() - asked_;
+    require(deafness <= longest_deafness, "deaf for " + std::to_string(deafness) + " s");
+  }
 
  private:
+  void wait(const std::stop_token& done, std::chrono::milliseconds limit) {
+    std::unique_lock lock(mutex_);
+    ended_.wait_for(lock, done, limit, [] { return false; });
+    if (done.stop_requested()) return;
+    asked_ = cpu_seconds();
+    stop_.request_stop();
+  }
+
   Outcome& outcome_;
   std::stop_source stop_;
-  std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + longest_hull;
+  std::atomic<double> asked_ = 0;
+  std::mutex mutex_;
+  std::condition_variable_any ended_;
+  std::jthread timer_;
 };
 
 std::size_t points_in(const Part& part) {
@@ -119,12 +147,13 @@ void check_hull(const Model& model, Listener& listener) {
   options.max_vertices = 2000;
   options.threads = 1;
   options.progress = listener.progress();
-  listener.may_stop = true;
   Hull hull;
   try {
     hull = convex_hull(model, options);
   } catch (const BackendError& error) {
     throw Finding(std::string("a library refused the hull: ") + error.what());
+  } catch (const Cancelled&) {
+    throw;
   } catch (const Error& error) {
     require_line(error.what());
     return;
@@ -226,6 +255,7 @@ void read_and_check(const Reader& reader, std::string_view data, const std::stri
   } else {
     Model model;
     ReadOptions options;
+    options.scheme = reader.scheme;
     options.progress = listener.progress();
     try {
       read_model(data, name, reader.format, model, options);
@@ -239,29 +269,47 @@ void read_and_check(const Reader& reader, std::string_view data, const std::stri
 
 }  // namespace
 
+std::string Reader::corpus() const {
+  if (scheme) return *scheme == Scheme::loop ? "loop" : "catmark";
+  return format.substr(format.starts_with('.') ? 1 : 0);
+}
+
 const std::vector<Reader>& readers() {
   using enum Reader::Kind;
-  static const std::vector<Reader> all = {{model, ".bpt"},       {model, ".mlp"},
-                                          {model, ".obj"},       {model, ".off"},
-                                          {model, ".ply"},       {model, ".stl"},
-                                          {model, ".taut.cbor"}, {model, ".taut.json"},
-                                          {model, ".xyz"},       {mesh, ".obj"},
-                                          {mesh, ".off"},        {mesh, ".ply"},
-                                          {mesh, ".stl"},        {directions, "directions"},
-                                          {hull, ".hull.cbor"},  {hull, ".hull.json"}};
+  static const std::vector<Reader> all = {{model, ".obj", Scheme::catmark},
+                                          {model, ".obj", Scheme::loop},
+                                          {model, ".bpt"},
+                                          {model, ".mlp"},
+                                          {model, ".obj"},
+                                          {model, ".off"},
+                                          {model, ".ply"},
+                                          {model, ".stl"},
+                                          {model, ".taut.cbor"},
+                                          {model, ".taut.json"},
+                                          {model, ".xyz"},
+                                          {mesh, ".obj"},
+                                          {mesh, ".off"},
+                                          {mesh, ".ply"},
+                                          {mesh, ".stl"},
+                                          {directions, "directions"},
+                                          {hull, ".hull.cbor"},
+                                          {hull, ".hull.json"}};
   return all;
 }
 
-Outcome read_one(const Reader& reader, std::string_view data, const std::string& name) {
+Outcome read_one(const Reader& reader, std::string_view data, const std::string& name,
+                 std::chrono::milliseconds limit) {
   if (reader.kind == Reader::Kind::directions && !name.starts_with("/proc/")) {
     const MemoryFile file(data);
-    return read_one(reader, data, file.name());
+    return read_one(reader, data, file.name(), limit);
   }
   Outcome outcome;
-  Listener listener(outcome);
+  Listener listener(outcome, limit);
   try {
     read_and_check(reader, data, name, listener);
     outcome.accepted = true;
+  } catch (const Cancelled&) {
+    outcome.stopped = true;
   } catch (const Error& error) {
     outcome.error = error.what();
     require_line(outcome.error);
@@ -272,6 +320,7 @@ Outcome read_one(const Reader& reader, std::string_view data, const std::string&
   } catch (const std::exception& error) {
     throw Finding(std::string("an exception that is not Taut's: ") + error.what());
   }
+  listener.check();
   return outcome;
 }
 

@@ -292,7 +292,7 @@ bool Summation::bounds_normals(const GreenRegion& region, const TrimStretch& str
   const HullCurveKind kind = boundary_.curves[std::size_t(stretch.curve)].kind;
   if (kind != HullCurveKind::bitangent) return kind == HullCurveKind::edge;
   const Contact c = region.contact(0, 0);
-  const Patch& patch = geometry_.part(c).patches()[std::size_t(c.element)];
+  const Patch& patch = geometry_.patch(c);
   return patch.borders[std::size_t(stretch.side)].piece >= 0;
 }
 

@@ -88,7 +88,7 @@ std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Conta
 }
 
 double twist_rounding(const ContactGeometry& geometry, const Contact& c, const CurveBend& bend) {
-  const double degree = geometry.part(c).pieces()[std::size_t(c.element)].bezier.degree();
+  const double degree = geometry.piece(c).bezier.degree();
   // Differences of order k are of 2^k roundings, times no more than the degree to the power k.
   const double rate = 2 * degree / glm::length(geometry.curve_jet(c).ct);
   return geometry.rounding() * rate * rate * (rate * bend.curvature + glm::length(bend.third));

@@ -63,7 +63,7 @@ std::optional<Contact> beyond_side(const ContactGeometry& geometry, const Contac
 }
 
 std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact& c, int end) {
-  const EdgePiece& piece = geometry.part(c).pieces()[std::size_t(c.element)];
+  const EdgePiece& piece = geometry.piece(c);
   if (const int vertex = piece.end_vertex[std::size_t(end)]; vertex >= 0) {
     return Contact{c.instance, SourceKind::vertex, vertex, 0, 0};
   }

@@ -1,6 +1,7 @@
 #include "taut/hull/contact_geometry.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "taut/bounds/scene_content.h"
@@ -9,6 +10,15 @@
 
 namespace taut {
 namespace {
+
+/// What a list has of the contact's element. A contact of another kind, or of none of the elements,
+/// is a mistake of ours.
+template <class Item>
+const Item& own_of(const std::vector<Item>& all, const Contact& c,
+                   [[maybe_unused]] SourceKind kind) {
+  assert(c.kind == kind && c.element >= 0 && std::size_t(c.element) < all.size());
+  return all[std::size_t(c.element)];
+}
 
 /// In the scene's units about the part's centre, as queries see it; w (x - c) is rounded once.
 std::vector<dvec4> moved(const std::vector<dvec4>& points, const dvec3& center, double scale) {
@@ -151,15 +161,15 @@ PlacedElement ContactGeometry::placed(const Contact& c) const {
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   PlacedElement result{c.kind, c.instance, c.element, 0, 0, {}};
   if (c.kind == SourceKind::face) {
-    const BezierPatch& patch = own.patches[std::size_t(c.element)];
+    const BezierPatch& patch = own_of(own.patches, c, SourceKind::face);
     result.degree_u = patch.degree_u;
     result.degree_v = patch.degree_v;
     result.points = patch.points;
   } else if (c.kind == SourceKind::edge) {
-    result.points = own.pieces[std::size_t(c.element)].points;
+    result.points = own_of(own.pieces, c, SourceKind::edge).points;
     result.degree_u = int(result.points.size()) - 1;
   } else {
-    result.points = {homogeneous(own.vertices[std::size_t(c.element)])};
+    result.points = {homogeneous(own_of(own.vertices, c, SourceKind::vertex))};
   }
   for (dvec4& p : result.points) {
     const dvec3 x = instance.rotated ? instance.rotation * dvec3(p) : dvec3(p);
@@ -275,7 +285,12 @@ void ContactGeometry::share(const Contact& repeated) {
 
 const Part& ContactGeometry::part(const Contact& c) const {
   const Model& model = scene_.model();
+  assert(c.instance >= 0 && std::size_t(c.instance) < model.instances().size());
   return model.parts()[std::size_t(model.instances()[std::size_t(c.instance)].part)];
+}
+
+const Patch& ContactGeometry::patch(const Contact& c) const {
+  return own_of(part(c).patches(), c, SourceKind::face);
 }
 
 const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c) const {
@@ -283,11 +298,11 @@ const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c)
 }
 
 bool ContactGeometry::is_straight(const Contact& c) const {
-  return elements(c).straight[std::size_t(c.element)][0] >= 0;
+  return own_of(elements(c).straight, c, SourceKind::edge)[0] >= 0;
 }
 
 Contact ContactGeometry::straight_end(const Contact& c, int end) const {
-  const int vertex = elements(c).straight[std::size_t(c.element)][std::size_t(end)];
+  const int vertex = own_of(elements(c).straight, c, SourceKind::edge)[std::size_t(end)];
   return first({c.instance, SourceKind::vertex, vertex, 0, 0});
 }
 
@@ -308,13 +323,13 @@ ContactJet ContactGeometry::jet(const Contact& c) const {
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   ContactJet result;
   if (c.kind == SourceKind::face) {
-    const PatchJet2 j = jet2(own.patches[std::size_t(c.element)], c.u, c.v);
+    const PatchJet2 j = jet2(own_of(own.patches, c, SourceKind::face), c.u, c.v);
     result = {2, j.S, {j.Su, j.Sv}, j.Suu, j.Suv, j.Svv};
   } else if (c.kind == SourceKind::edge) {
-    const CurveJet j = taut::jet(own.pieces[std::size_t(c.element)], c.u);
+    const CurveJet j = taut::jet(own_of(own.pieces, c, SourceKind::edge), c.u);
     result = {1, j.c, {j.ct, dvec3(0.0)}, j.ctt, dvec3(0.0), dvec3(0.0)};
   } else {
-    result.x = own.vertices[std::size_t(c.element)];
+    result.x = own_of(own.vertices, c, SourceKind::vertex);
   }
   if (instance.rotated) {
     const dmat3& R = instance.rotation;
@@ -329,7 +344,7 @@ ContactJet ContactGeometry::jet(const Contact& c) const {
 }
 
 PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
-  PatchJet3 j = jet3(elements(c).patches[std::size_t(c.element)], c.u, c.v);
+  PatchJet3 j = jet3(own_of(elements(c).patches, c, SourceKind::face), c.u, c.v);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {
     for (dvec3* x :
@@ -342,7 +357,7 @@ PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
 }
 
 CurveJet ContactGeometry::curve_jet(const Contact& c) const {
-  CurveJet j = taut::jet(elements(c).pieces[std::size_t(c.element)], c.u);
+  CurveJet j = taut::jet(own_of(elements(c).pieces, c, SourceKind::edge), c.u);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {
     for (dvec3* x : {&j.c, &j.ct, &j.ctt, &j.cttt}) *x = instance.rotation * *x;
@@ -385,23 +400,30 @@ Contact ContactGeometry::canonical(const Contact& contact) const {
   return c;
 }
 
+const EdgePiece& ContactGeometry::piece(const Contact& c) const {
+  return own_of(part(c).pieces(), c, SourceKind::edge);
+}
+
 const std::vector<ContactGeometry::PieceSide>& ContactGeometry::sides(const Contact& c) const {
+  assert(c.kind == SourceKind::edge);
   const auto shared = shared_sides_.find({c.instance, c.element});
   if (shared != shared_sides_.end()) return shared->second;
-  return elements(c).sides[std::size_t(c.element)];
+  return own_of(elements(c).sides, c, SourceKind::edge);
 }
 
 const std::vector<ContactGeometry::PieceSide>& ContactGeometry::ruled_sides(
     const Contact& c) const {
+  assert(c.kind == SourceKind::edge);
   const auto shared = shared_ruled_sides_.find({c.instance, c.element});
   if (shared != shared_ruled_sides_.end()) return shared->second;
-  return elements(c).ruled_sides[std::size_t(c.element)];
+  return own_of(elements(c).ruled_sides, c, SourceKind::edge);
 }
 
 const std::vector<ContactGeometry::PieceEnd>& ContactGeometry::ends(const Contact& c) const {
+  assert(c.kind == SourceKind::vertex);
   const auto shared = shared_ends_.find({c.instance, c.element});
   if (shared != shared_ends_.end()) return shared->second;
-  return elements(c).ends[std::size_t(c.element)];
+  return own_of(elements(c).ends, c, SourceKind::vertex);
 }
 
 }  // namespace taut

@@ -108,7 +108,10 @@ class ContactGeometry {
   /// @pre kind face
   bool is_ruled(const Contact& c) const { return patch(c).ruled(); }
 
-  const Patch& patch(const Contact& c) const { return part(c).patches()[std::size_t(c.element)]; }
+  /// @pre kind face
+  const Patch& patch(const Contact& c) const;
+  /// @pre kind edge
+  const EdgePiece& piece(const Contact& c) const;
   /// The piece in the scene's frame. @pre kind edge
   BezierCurve curve(const Contact& c) const;
 

@@ -66,7 +66,7 @@ double distance_from(const Contact& c, Side side) {
 }
 
 const Border& border_at(const ContactGeometry& geometry, const Contact& c, Side side) {
-  return geometry.part(c).patches()[std::size_t(c.element)].borders[std::size_t(side)];
+  return geometry.patch(c).borders[std::size_t(side)];
 }
 
 bool near_pole(const ContactGeometry& geometry, const Contact& c) {
@@ -239,9 +239,11 @@ struct Beyond {
 std::optional<Beyond> beyond_join(const ContactGeometry& geometry, const Contact& c, Side side) {
   const Border& border = border_at(geometry, c, side);
   if (border.kind != BorderKind::smooth) return std::nullopt;
-  const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::side, int(side)});
-  if (!over) return std::nullopt;
-  return Beyond{*over, border.neighbor_side};
+  // Not beyond(): of a seam that is the seam's piece.
+  const double t = along_v(side) ? c.v : c.u;
+  const Contact neighbor{c.instance, SourceKind::face, border.neighbor, 0, 0};
+  return Beyond{on_side_of(neighbor, border.neighbor_side, border.reversed ? 1 - t : t),
+                border.neighbor_side};
 }
 
 double curvature_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {

@@ -84,6 +84,8 @@ class DocumentNode {
       call();
     } catch (const InvalidInput& error) {
       refuse(error.what());
+    } catch (const BackendError& error) {
+      throw BackendError(place() + ": " + error.what());
     } catch (const LimitExceeded& error) {
       throw LimitExceeded(place() + ": " + error.what());
     }

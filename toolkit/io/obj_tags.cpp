@@ -55,6 +55,14 @@ bool ObjTagReader::add(const TextScanner& scanner, const std::vector<Word>& stat
     }
     return tag.integers[0];
   };
+  // Which of two.
+  const auto word = [&](const std::array<std::string_view, 2>& known) {
+    if (tag.words.size() == 1 && tag.integers.empty()) {
+      const auto found = std::find(known.begin(), known.end(), tag.words[0]);
+      if (found != known.end()) return found - known.begin();
+    }
+    tag.fail(scanner, "takes one word of " + std::string(known[0]) + ", " + std::string(known[1]));
+  };
   if (tag.name == "crease") {
     add_crease(scanner, tag);
   } else if (tag.name == "corner") {
@@ -72,10 +80,11 @@ bool ObjTagReader::add(const TextScanner& scanner, const std::vector<Word>& stat
                                   CageBoundary::edge_only};
     tags_.boundary = rules[static_cast<std::size_t>(first_integer(0, 2))];
   } else if (tag.name == "creasemethod") {
-    if (tag.words.size() != 1) tag.fail(scanner, "takes one word");
-    tags_.chaikin = tag.words[0] == "chaikin";
+    tags_.chaikin = word({"normal", "chaikin"}) == 1;
   } else if (tag.name == "smoothtriangles") {
-    tags_.smooth_triangles = first_integer(0, 2) != 0;
+    // OpenSubdiv's shapes have a word here, renderers' exports an integer.
+    tags_.smooth_triangles =
+        tag.words.empty() ? first_integer(0, 2) != 0 : word({"catmark", "smooth"}) == 1;
   } else {
     // Face-varying data do not change the surface.
     return tag.name.starts_with("facevarying");

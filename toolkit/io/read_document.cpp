@@ -263,7 +263,7 @@ void PartReader::read_polygons(const DocumentNode& node) {
 
 void PartReader::add(const DocumentNode& node, const ControlCage& cage) {
   node.placed([&] {
-    add_cage(part_, cage, "the cage", {options_.cage_accuracy, options_.progress});
+    add_cage(part_, cage, node.place(), {options_.cage_accuracy, options_.progress});
   });
 }
 

@@ -46,8 +46,7 @@ Part as_part(FileContent content, const std::string& name, const ReadOptions& op
   try {
     part.add_polygons(content.mesh);
     if (content.cage) {
-      const std::string shown_name = std::filesystem::path(name).filename().string();
-      add_cage(part, *content.cage, shown_name, {options.cage_accuracy, options.progress});
+      add_cage(part, *content.cage, name, {options.cage_accuracy, options.progress});
     }
   } catch (const BackendError& error) {
     throw BackendError(name + ": " + error.what());

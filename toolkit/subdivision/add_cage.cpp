@@ -26,21 +26,21 @@ std::string two_digits(double x) {
   return {text.data(), result.ptr};
 }
 
-void warn(const ControlCage& cage, const LimitSurface& surface, const std::string& name,
+void warn(const ControlCage& cage, const LimitSurface& surface, const std::string& place,
           const Progress& progress) {
   if (surface.non_manifold_edges + surface.non_manifold_vertices > 0) {
-    progress.warning("non-manifold-cage", name + ": the cage is no manifold at " +
+    progress.warning("non-manifold-cage", place + ": the cage is no manifold at " +
                                               std::to_string(surface.non_manifold_edges) +
                                               " edges and " +
                                               std::to_string(surface.non_manifold_vertices) +
                                               " vertices, which are taken as infinitely sharp");
   }
   if (const long count = faces_with_repeated_vertices(cage); count > 0) {
-    progress.warning("degenerate-cage", name + ": " + std::to_string(count) +
+    progress.warning("degenerate-cage", place + ": " + std::to_string(count) +
                                             " faces of the cage have a vertex more than once");
   }
   if (surface.deviation_bound > surface.accuracy) {
-    progress.warning("cage-accuracy", name + ": the cage's limit surface is known to within " +
+    progress.warning("cage-accuracy", place + ": the cage's limit surface is known to within " +
                                           two_digits(surface.deviation_bound) +
                                           " only, not to the accuracy asked for, " +
                                           two_digits(surface.accuracy));
@@ -49,14 +49,14 @@ void warn(const ControlCage& cage, const LimitSurface& surface, const std::strin
 
 }  // namespace
 
-void add_cage(Part& part, const ControlCage& cage, const std::string& name,
+void add_cage(Part& part, const ControlCage& cage, const std::string& place,
               const CageOptions& options) {
-  validate(cage, name);
+  validate(cage);
   LimitOptions limit;
   limit.accuracy = options.accuracy;
   limit.progress = options.progress;
   LimitSurface surface = limit_patches(cage, limit);
-  warn(cage, surface, name, options.progress);
+  warn(cage, surface, place, options.progress);
 
   const int first_face = static_cast<int>(part.faces().size());
   std::vector<FacePatch> face;

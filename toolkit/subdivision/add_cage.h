@@ -27,10 +27,11 @@ struct CageOptions {
 ///
 /// Warns of what OpenSubdiv treats by rules of its own: edges with more than two faces or none of
 /// one orientation, vertices about which faces are no fan, and faces with repeated vertices.
-/// `name` begins messages.
+/// `place` begins the warnings: what of which the cage is, as "FILE". Errors tell of the cage
+/// alone.
 /// @throws InvalidInput if the cage is not valid or the part's extent would overflow, BackendError
 /// if OpenSubdiv does not take it, Cancelled
-void add_cage(Part& part, const ControlCage& cage, const std::string& name,
+void add_cage(Part& part, const ControlCage& cage, const std::string& place,
               const CageOptions& options = {});
 
 }  // namespace taut

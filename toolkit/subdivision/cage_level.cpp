@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "taut/core/error.h"
 #include "taut/subdivision/extraction.h"
 #include "taut/subdivision/loop_corner.h"
 #include "taut/subdivision/patch_nets.h"
@@ -31,6 +32,15 @@ struct Primvar {
   void AddWithWeight(const Primvar& other, float weight) { x += double(weight) * other.x; }
   // NOLINTEND(readability-identifier-naming)
 };
+
+/// A point that OpenSubdiv names in its tables.
+template <class Point>
+const Point& at(const std::vector<Point>& points, int i) {
+  if (i < 0 || to_size(i) >= points.size()) {
+    throw BackendError("OpenSubdiv gives a face of the cage a cap of points that are not there");
+  }
+  return points[to_size(i)];
+}
 
 Sdc::Options::VtxBoundaryInterpolation interpolation(CageBoundary boundary) {
   switch (boundary) {
@@ -123,21 +133,22 @@ struct CageLevel::Topology {
     return std::any_of(edges.begin(), edges.end(), [&](int e) { return base.IsEdgeInfSharp(e); });
   }
 
-  bool is_inner_with_three_triangles(int vertex) const {
+  /// An inner vertex of two faces, which so have two sides in common, or of three triangles.
+  bool is_inner_with_few_faces(int vertex) const {
     const Far::TopologyLevel base = level();
-    return scheme == CageScheme::loop && !base.IsVertexBoundary(vertex) &&
-           base.GetVertexFaces(vertex).size() == 3;
+    return !base.IsVertexBoundary(vertex) &&
+           base.GetVertexFaces(vertex).size() <= (scheme == CageScheme::loop ? 3 : 2);
   }
 
   /// OpenSubdiv (3.5) makes the rows of a cap's matrix too short, and writes past its end, where
-  /// the infinitely sharp edge at a dart leads to an irregular vertex; of a Loop cage it makes them
-  /// too long, and leaves in them what was there, where an edge leads to one from an inner vertex
-  /// of three triangles. Only the control cage has such edges.
+  /// the infinitely sharp edge at a dart leads to an irregular vertex; it makes them too long, and
+  /// leaves in them what was there, where an edge leads to one from an inner vertex of two faces
+  /// or, of a Loop cage, of three. Only the control cage has such edges.
   bool has_patch(int face) const {
     if (is_refined) return true;
     const auto vertices = level().GetFaceVertices(face);
     return std::none_of(vertices.begin(), vertices.end(),
-                        [&](int v) { return is_dart(v) || is_inner_with_three_triangles(v); });
+                        [&](int v) { return is_dart(v) || is_inner_with_few_faces(v); });
   }
 
   /// Of some faces, one at least.
@@ -167,10 +178,10 @@ struct CageLevel::Topology {
     for (int i = 0; i < stencils.GetNumStencils(); ++i) {
       const Far::StencilReal<double> stencil = stencils.GetStencil(i);
       const Far::Index* const vertices = stencil.GetVertexIndices();
-      const dvec3 origin = points[to_size(vertices[0])];
+      const dvec3 origin = at(points, vertices[0]);
       dvec3 x(0.0);
       for (int k = 0; k < stencil.GetSize(); ++k) {
-        x += stencil.GetWeights()[k] * (points[to_size(vertices[k])] - origin);
+        x += stencil.GetWeights()[k] * (at(points, vertices[k]) - origin);
       }
       all[points.size() + to_size(i)].x = origin + x;
     }
@@ -328,14 +339,14 @@ std::vector<CellPatch> CageLevel::patches() const {
       if (topology.scheme == CageScheme::catmark) {
         std::array<dvec3, 16> net;
         for (int k = 0; k < 16; ++k) {
-          net[to_size(k)] = vertices[k] < 0 ? dvec3(0.0) : points[to_size(vertices[k])].x;
+          net[to_size(k)] = vertices[k] < 0 ? dvec3(0.0) : at(points, vertices[k]).x;
         }
         patch.points = bezier_net(net, param.GetBoundary());
         continue;
       }
       if (vertices.size() == gregory_points) {
         std::array<dvec3, gregory_points> net;
-        for (int k = 0; k < gregory_points; ++k) net[to_size(k)] = points[to_size(vertices[k])].x;
+        for (int k = 0; k < gregory_points; ++k) net[to_size(k)] = at(points, vertices[k]).x;
         patch.points = quartic_of_gregory(net, topology.regular_corners(face));
         patch.degree = 4;
         continue;
@@ -350,7 +361,7 @@ std::vector<CellPatch> CageLevel::patches() const {
       for (int r = 0; r < quartic_points; ++r) {
         for (int k = 0; k < loop_points; ++k) {
           patch.points[to_size(r)] +=
-              known->second[to_size(r)][to_size(k)] * points[to_size(vertices[k])].x;
+              known->second[to_size(r)][to_size(k)] * at(points, vertices[k]).x;
         }
       }
     }

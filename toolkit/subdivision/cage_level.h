@@ -23,8 +23,8 @@ struct CageCell {
 /// The surface of a cell.
 struct CellPatch {
   enum class Kind {
-    /// A face of the control cage that is no quad, or at a dart; of a Loop cage, one at a dart or
-    /// at an inner vertex of three triangles.
+    /// A face of the control cage that is no quad (of a Loop cage: no triangle), or one at a dart
+    /// or at an inner vertex of two faces; of a Loop cage, of three, too.
     none,
     regular,  ///< exactly the limit surface
     /// Stands for it, polynomial too: its corners are the limit's, and so are its borders to

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "taut/core/tolerances.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 
@@ -207,7 +208,9 @@ void divide(const SurfacePatch& whole, const std::array<bool, 4>& split, EdgeMid
   const bool v0 = split[index(Side::v0)];
   const bool v1 = split[index(Side::v1)];
   const int count = int(u0) + int(u1) + int(v0) + int(v1);
-  if (count % 2 != 0 || count == 0) {
+  const bool tapers = count == 2 && u0 != u1;
+  const int tapered_degree = whole.bezier.degree_u + whole.bezier.degree_v;
+  if (count % 2 != 0 || count == 0 || (tapers && tapered_degree > max_degree)) {
     result.push_back(whole);
     return;
   }
@@ -215,8 +218,7 @@ void divide(const SurfacePatch& whole, const std::array<bool, 4>& split, EdgeMid
     const auto [a, b] = side_corners(side);
     return middles.find(whole.vertices[a], whole.vertices[b]);
   };
-  const bool straight = count == 2 && (u0 == u1);
-  const int centre = straight ? -1 : middles.add_vertex();
+  const int centre = count == 2 && !tapers ? -1 : middles.add_vertex();
   const auto& v = whole.vertices;
   VertexGrid grid = {{{v[0], middle(Side::u0), v[1]},
                       {middle(Side::v0), centre, middle(Side::v1)},

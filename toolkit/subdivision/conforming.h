@@ -48,8 +48,8 @@ struct SurfaceTriangle {
 
 /// A quad with two sides to be split becomes two rectangles, or a rectangle and two trapezoids;
 /// with four, four. One with an odd number gets another one, which is passed on from neighbour to
-/// neighbour to the next that needs one or to a boundary. (Where there is neither, the quad stays
-/// whole.)
+/// neighbour to the next that needs one or to a boundary. (Where there is neither, or trapezoids
+/// of trapezoids come to a degree above max_degree, the quad stays whole.)
 std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches, EdgeMiddles middles);
 /// Triangles are bisected; in the end, each becomes three quads about its centre.
 std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, EdgeMiddles middles);

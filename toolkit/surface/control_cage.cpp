@@ -1,16 +1,17 @@
 #include "taut/surface/control_cage.h"
 
 #include <cmath>
+#include <string>
 
 #include "taut/core/error.h"
 
 namespace taut {
 namespace {
 
-/// Checks one cage; its name begins the messages.
+/// Checks one cage.
 class Validator {
  public:
-  Validator(const ControlCage& cage, const std::string& name) : cage_(cage), name_(name) {}
+  explicit Validator(const ControlCage& cage) : cage_(cage) {}
 
   void points() const {
     for (std::size_t i = 0; i < cage_.points.size(); ++i) {
@@ -51,7 +52,7 @@ class Validator {
 
  private:
   [[noreturn]] void fail(const char* kind, std::size_t i, const std::string& what) const {
-    throw InvalidInput(name_ + ": " + kind + " " + std::to_string(i) + " " + what);
+    throw InvalidInput(std::string(kind) + " " + std::to_string(i) + " " + what);
   }
   void vertex(const char* kind, std::size_t i, int v) const {
     if (v >= 0 && static_cast<std::size_t>(v) < cage_.points.size()) return;
@@ -63,13 +64,12 @@ class Validator {
   }
 
   const ControlCage& cage_;
-  const std::string& name_;
 };
 
 }  // namespace
 
-void validate(const ControlCage& cage, const std::string& name) {
-  const Validator validator(cage, name);
+void validate(const ControlCage& cage) {
+  const Validator validator(cage);
   validator.points();
   validator.faces();
   validator.tags();

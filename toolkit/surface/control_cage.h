@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "taut/core/geometry.h"
@@ -54,8 +53,8 @@ struct ControlCage {
 
 /// @throws InvalidInput if an index is out of range, a face has fewer than three corners (of a Loop
 /// cage: other than three), a point is not finite, a sharpness is negative or no number, or a
-/// crease's ends are one; `name` begins the message
-void validate(const ControlCage& cage, const std::string& name);
+/// crease's ends are one
+void validate(const ControlCage& cage);
 
 /// "catmark" or "loop".
 const char* name_of(CageScheme scheme);
