@@ -138,7 +138,7 @@ inline void expect_support(const taut::Scene& scene, const Truth& truth,
                            double contact_error = 1e-14) {
   for (const taut::SupportBounds bounds :
        {taut::SupportBounds::bezier_nets, taut::SupportBounds::coons}) {
-    taut::SupportQuery query(scene, bounds);
+    taut::SupportQuery query(scene, {}, bounds);
     SupportErrors errors;
     for (const dvec3& n : directions) check_support(scene, truth, n, query(n), errors);
     expect_correct(errors, name + (bounds == taut::SupportBounds::coons ? " (coons)" : " (nets)"),

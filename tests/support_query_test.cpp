@@ -187,7 +187,7 @@ TEST(SupportQuery, HintsOfAnyKindGiveTheSameAnswer) {
   const Part& part = scene.model().parts()[0];
   const Truth truth = reference(scene);
   for (const SupportBounds bounds : {SupportBounds::bezier_nets, SupportBounds::coons}) {
-    SupportQuery query(scene, bounds);
+    SupportQuery query(scene, {}, bounds);
     SupportErrors errors;
     for (int k = 0; k < 40; ++k) {
       const dvec3 n = k < 6 ? special_directions(random)[std::size_t(k)] : random_direction(random);

@@ -20,7 +20,7 @@ void sweep(const Scene& scene, const Truth& truth, const std::vector<dvec3>& dir
            const std::string& name, double model_error = 0,
            double bound_excess = support_accuracy) {
   SupportQuery nets(scene);
-  SupportQuery coons(scene, SupportBounds::coons);
+  SupportQuery coons(scene, {}, SupportBounds::coons);
   SupportQuery warm(scene);
   SupportErrors of_nets, of_coons, of_warm;
   Contact near;

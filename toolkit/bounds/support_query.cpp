@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "taut/bounds/scene_content.h"
@@ -24,6 +25,8 @@ constexpr int cell_limit = 400'000;
 /// Cells after which a query turns from depth first to best first, so that, should it meet its
 /// limit, what it has left is as low as can be.
 constexpr int patience = 2'000;
+/// Cells between two looks at whether to stop.
+constexpr int stop_interval = 256;
 
 /// A bound, in the scene's frame, that even the vanishing of all slopes leaves so high is not worth
 /// the evaluation that would complete it.
@@ -38,8 +41,9 @@ constexpr double hopeless_bound = 0.01;
 /// iteration, so rational elements need no quotient rule.
 class SupportQuery::Search {
  public:
-  Search(const Scene::Content& scene, SupportBounds bounds)
+  Search(const Scene::Content& scene, std::stop_token stop, SupportBounds bounds)
       : scene_(scene),
+        stop_(std::move(stop)),
         bounds_(bounds),
         rounding_(scene.rounding),
         directions_(scene.instances.size()) {}
@@ -148,6 +152,7 @@ class SupportQuery::Search {
   void finish();
 
   const Scene::Content& scene_;
+  std::stop_token stop_;
   SupportBounds bounds_;
   double rounding_;  ///< of a value x . n
   dvec3 n_ = dvec3(0.0);
@@ -503,6 +508,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
 
   stack_.push({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
+    if (count % stop_interval == 0 && stop_.stop_requested()) throw Cancelled();
     if (count == patience) stack_.turn_best_first();
     const Entry entry = stack_.pop();
     if (!(entry.bound > threshold())) continue;
@@ -528,8 +534,8 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
           scene_.frame_point(best_)};
 }
 
-SupportQuery::SupportQuery(const Scene& scene, SupportBounds bounds)
-    : search_(std::make_unique<Search>(scene.content(), bounds)) {}
+SupportQuery::SupportQuery(const Scene& scene, std::stop_token stop, SupportBounds bounds)
+    : search_(std::make_unique<Search>(scene.content(), std::move(stop), bounds)) {}
 SupportQuery::~SupportQuery() = default;
 SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;
 

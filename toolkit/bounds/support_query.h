@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 
 #include "taut/bounds/scene.h"
 
@@ -30,7 +31,9 @@ enum class SupportBounds {
 /// Holds scratch memory, so use one object a thread; the scene must outlive it.
 class SupportQuery {
  public:
-  explicit SupportQuery(const Scene& scene, SupportBounds bounds = SupportBounds::bezier_nets);
+  /// `stop`: makes the query that runs throw Cancelled, and each one after.
+  explicit SupportQuery(const Scene& scene, std::stop_token stop = {},
+                        SupportBounds bounds = SupportBounds::bezier_nets);
   ~SupportQuery();
   SupportQuery(SupportQuery&&) noexcept;
 
@@ -41,7 +44,7 @@ class SupportQuery {
   ///
   /// `hint`: a contact near the answer, usually that of a nearby direction; makes the query faster,
   /// never different in h beyond h_bound - h.
-  /// @pre |n| = 1 within rounding
+  /// @pre |n| = 1 within rounding @throws Cancelled
   Support operator()(const dvec3& n, const Contact& hint = {});
 
   /// Since construction.

@@ -89,7 +89,7 @@ void HullContainment::Content::make_mesh() {
   hull_options.threads = options.threads;
   hull_options.progress = options.progress;
   const double tolerance = tolerance_for(hull_options, scene.diagonal());
-  SupportQuery query(scene);
+  SupportQuery query(scene, options.progress.stop);
   const SampledStart first = sampled_start(scene, query);
   if (first.span.dimension < 3) {
     start = support_polytope(scene, first.samples);

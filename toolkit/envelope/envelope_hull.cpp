@@ -186,7 +186,7 @@ Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
                    const HullOptions& options) {
   const Scene& scene = images.scene();
   const double tolerance = tolerance_for(options, scene.diagonal());
-  SupportQuery query(scene);
+  SupportQuery query(scene, options.progress.stop);
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
   return polytope_hull(scene, options, ImagePolytope(images, map, options, tolerance).run());
 }

@@ -82,7 +82,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   const ContactFaces faces(geometry, *boundary);
   const double width =
       std::max(width_share * tolerance, scene.frame().length_to_model(meaningful_width(scene)));
-  SupportQuery query(scene);
+  SupportQuery query(scene, options.progress.stop);
   BoundarySamples start = boundary_samples(geometry, *boundary, faces, {tolerance, width}, query);
   std::vector<dvec3> in_frame;
   for (const dvec3& p : start.points) in_frame.push_back(scene.frame().to_frame(p));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/core/tolerances.h"
@@ -110,7 +111,8 @@ bool is_flat(const ContactJet& j, const dvec3& n, double least) {
   return uu * vv - uv * uv < least * std::abs(uu + vv);
 }
 
-ContactGeometry::ContactGeometry(const Scene& scene) : scene_(scene) {
+ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop)
+    : scene_(scene), stop_(std::move(stop)) {
   const Box box = scene.model().control_box();
   const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
   rounding_ =
@@ -319,6 +321,7 @@ dvec3 ContactGeometry::to_frame(int instance, const dvec3& direction) const {
 }
 
 ContactJet ContactGeometry::jet(const Contact& c) const {
+  check_stop();
   const PartElements& own = elements(c);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   ContactJet result;
@@ -344,6 +347,7 @@ ContactJet ContactGeometry::jet(const Contact& c) const {
 }
 
 PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
+  check_stop();
   PatchJet3 j = jet3(own_of(elements(c).patches, c, SourceKind::face), c.u, c.v);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {
@@ -357,6 +361,7 @@ PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
 }
 
 CurveJet ContactGeometry::curve_jet(const Contact& c) const {
+  check_stop();
   CurveJet j = taut::jet(own_of(elements(c).pieces, c, SourceKind::edge), c.u);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {

@@ -4,9 +4,11 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "taut/bounds/scene.h"
+#include "taut/core/error.h"
 #include "taut/hull/coincidences.h"
 
 namespace taut {
@@ -46,8 +48,9 @@ inline constexpr double least_curvature = 1e-8;
 /// their borders.
 class ContactGeometry {
  public:
-  /// The scene must outlive it.
-  explicit ContactGeometry(const Scene& scene);
+  /// The scene must outlive it. `stop`: makes evaluations throw Cancelled from then on, so that all
+  /// that works on contacts stops.
+  explicit ContactGeometry(const Scene& scene, std::stop_token stop = {});
 
   const Scene& scene() const { return scene_; }
   /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
@@ -58,7 +61,8 @@ class ContactGeometry {
   double rounding() const { return rounding_; }
   const Part& part(const Contact& c) const;
 
-  /// @pre the contact exists; parameters may leave [0, 1] by a little
+  /// @pre the contact exists; parameters may leave [0, 1] by a little @throws Cancelled, as the
+  /// next two do
   ContactJet jet(const Contact& c) const;
   /// Third derivatives too, of a contact on a patch.
   PatchJet3 patch_jet(const Contact& c) const;
@@ -135,7 +139,12 @@ class ContactGeometry {
   void place_points(const std::vector<PlacedElement>& all);
   void share(const Contact& repeated);
 
+  void check_stop() const {
+    if (stop_.stop_requested()) throw Cancelled();
+  }
+
   const Scene& scene_;
+  std::stop_token stop_;
   double rounding_ = 0;
   double tie_ = 0;
   std::vector<PartElements> parts_;

@@ -88,7 +88,7 @@ class SpreadSamples {
     parallel_for(cells.size(), directions_per_task, options.threads,
                  [&](std::size_t begin, std::size_t end) {
                    options.progress.check();
-                   SupportQuery query(scene);
+                   SupportQuery query(scene, options.progress.stop);
                    for (std::size_t k = begin; k < end; ++k) {
                      const auto c = cells[k].corners();
                      const dvec3 n = unit(c[0] + c[1] + c[2] + c[3]);
@@ -129,8 +129,8 @@ struct PatchResult {
 
 /// Scratch memory of a task.
 struct Tools {
-  Tools(const Scene& scene, ConcaveSurroundings& with)
-      : query(scene), reach(scene), surroundings(with) {}
+  Tools(const Scene& scene, ConcaveSurroundings& with, std::stop_token stop = {})
+      : query(scene, std::move(stop)), reach(scene), surroundings(with) {}
   SupportQuery query;
   ReachTest reach;
   ConcaveSurroundings& surroundings;
@@ -589,7 +589,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
                [&](std::size_t begin, std::size_t end) {
                  const Pool<ConcaveSurroundings>::Lease lent = surroundings.lease();
                  (*lent).begin_anew();  // whichever tasks had it before
-                 Tools tools(scene, *lent);
+                 Tools tools(scene, *lent, options.progress.stop);
                  for (std::size_t k = begin; k < end; ++k) {
                    options.progress.check();
                    results[k] = PatchCulling(scene, map, spread, places[k].instance, places[k].root,

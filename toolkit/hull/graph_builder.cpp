@@ -296,6 +296,14 @@ bool GraphBuilder::is_traced(const CommonSupport& seed) const {
       for (std::size_t i = 0; i + 1 < piece.rulings.size(); ++i) {
         const Ruling& from = piece.rulings[i];
         const Ruling& to = piece.rulings[i + 1];
+        const dvec3 dn = to.n - from.n;
+        const dvec3 d0 = to.point[0] - from.point[0];
+        const dvec3 d1 = to.point[1] - from.point[1];
+        const double square = glm::dot(dn, dn) + glm::dot(d0, d0) + glm::dot(d1, d1);
+        const dvec3 en = seed.n - from.n;
+        // As far as the conditions on s and what is off let it be, for a start.
+        constexpr double farthest = (1 + overlap) * (1 + overlap) + 0.25;
+        if (glm::dot(en, en) > farthest * square + 4 * same_curve * same_curve) continue;
         for (const bool swapped : {false, true}) {
           const dvec3& x0 = x[swapped ? 1 : 0];
           const dvec3& x1 = x[swapped ? 0 : 1];
@@ -306,12 +314,7 @@ bool GraphBuilder::is_traced(const CommonSupport& seed) const {
           };
           // At a pole no ruling between others may be found.
           if (is_seed(from) || is_seed(to)) return true;
-          const dvec3 dn = to.n - from.n;
-          const dvec3 d0 = to.point[0] - from.point[0];
-          const dvec3 d1 = to.point[1] - from.point[1];
-          const double square = glm::dot(dn, dn) + glm::dot(d0, d0) + glm::dot(d1, d1);
           if (square == 0) continue;
-          const dvec3 en = seed.n - from.n;
           const dvec3 e0 = x0 - from.point[0];
           const dvec3 e1 = x1 - from.point[1];
           const double s = (glm::dot(en, dn) + glm::dot(e0, d0) + glm::dot(e1, d1)) / square;

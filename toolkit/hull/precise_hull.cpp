@@ -45,8 +45,8 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
 
   options.progress.update("trace", 0);
   culling.samples.insert(culling.samples.end(), more.begin(), more.end());
-  const ContactGeometry geometry(scene);
-  SupportQuery query(scene);
+  const ContactGeometry geometry(scene, options.progress.stop);
+  SupportQuery query(scene, options.progress.stop);
   SeparatingGraph graph =
       trace_separating_curves(geometry, query, culling.samples, culling.cells, options.progress);
   statistics.newton_iterations += graph.newton_iterations;
@@ -63,7 +63,7 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
 
 Hull precise_hull(const Scene& scene, const HullOptions& options) {
   tolerance_for(options, scene.diagonal());  // what is wrong with it is told at once
-  SupportQuery query(scene);
+  SupportQuery query(scene, options.progress.stop);
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
 
   HullStatistics statistics;
@@ -74,7 +74,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
                              .threads = options.threads,
                              .progress = options.progress});
   statistics.seconds_gauss_map = lap.seconds();
-  const ContactGeometry geometry(scene);
+  const ContactGeometry geometry(scene, options.progress.stop);
   std::vector<Sample> found;
   for (int round = 0;; ++round) {
     auto boundary =

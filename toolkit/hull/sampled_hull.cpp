@@ -7,7 +7,7 @@ namespace taut {
 Hull sampled_hull(const Scene& scene, const HullOptions& options) {
   const double tolerance = tolerance_for(options, scene.diagonal());
   const Stopwatch start_time;
-  SupportQuery query(scene);
+  SupportQuery query(scene, options.progress.stop);
   SampledStart start = sampled_start(scene, query);
   if (start.span.dimension < 3) {
     Hull hull = flat_sampled_hull(scene, options, tolerance, std::move(start), query);

@@ -155,7 +155,7 @@ void Sampler::find_planes() {
   constexpr std::size_t grain = 64;
   std::vector<std::pair<long, long>> counts((wanted.size() + grain - 1) / grain);
   parallel_for(wanted.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
-    SupportQuery query(scene_);
+    SupportQuery query(scene_, options_.progress.stop);
     for (std::size_t k = begin; k < end; ++k) {
       options_.progress.check();
       const PointHull::Facet& facet = hull_.facet(wanted[k]);

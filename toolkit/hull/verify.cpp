@@ -280,7 +280,7 @@ void Verifier::measure_distances() {
   result_.directions = int(tried.size());
   std::vector<double> difference(tried.size());
   parallel_for(tried.size(), 256, options_.threads, [&](std::size_t begin, std::size_t end) {
-    SupportQuery query(scene_);
+    SupportQuery query(scene_, options_.progress.stop);
     Contact near;
     int near_vertex = -1;
     for (std::size_t k = begin; k < end; ++k) {

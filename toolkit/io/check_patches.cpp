@@ -169,7 +169,7 @@ double PatchCheck::run() {
   constexpr std::size_t grain = 64;
   parallel_for(samples_.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
-    SupportQuery query(scene_);
+    SupportQuery query(scene_, options_.progress.stop);
     for (std::size_t i = begin; i < end; ++i) {
       const Sample& sample = samples_[i];
       if (sample.region >= 0) {

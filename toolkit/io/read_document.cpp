@@ -379,7 +379,8 @@ void read_document(const std::string& file, std::string_view data, DocumentEncod
   PartReader reader(options);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part part = reader.read(parts[i], "part " + std::to_string(i));
-    parts[i].placed([&] { grown.add_part(std::move(part), options.smooth_angle); });
+    parts[i].placed(
+        [&] { grown.add_part(std::move(part), options.smooth_angle, options.progress); });
   }
   if (const auto instances = root.find("instances")) {
     place_instances(*instances, first, before, grown);

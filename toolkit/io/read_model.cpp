@@ -27,7 +27,7 @@ void add(FileContent content, const std::string& name, Model& model, const ReadO
   Part part = as_part(std::move(content), name, options);
   options.progress.check();
   try {
-    model.add_part(std::move(part), options.smooth_angle);
+    model.add_part(std::move(part), options.smooth_angle, options.progress);
   } catch (const InvalidInput& error) {
     throw InvalidInput(name + ": " + error.what());
   } catch (const LimitExceeded& error) {

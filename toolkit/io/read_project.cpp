@@ -265,7 +265,7 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
 void ProjectLoader::put_into(Model& model) {
   for (Part* part : parts_) {
     options_.progress.check();
-    part->connect(options_.smooth_angle);
+    part->connect(options_.smooth_angle, options_.progress);
   }
   Model grown = model;
   std::vector<Instance> all = model.instances();
@@ -275,7 +275,7 @@ void ProjectLoader::put_into(Model& model) {
   }
   try {
     for (Part* part : parts_) {
-      grown.add_part(std::move(*part), options_.smooth_angle);
+      grown.add_part(std::move(*part), options_.smooth_angle, options_.progress);
       // It comes with an instance at rest, which need not be one of the project's.
       grown.clear_instances();
     }

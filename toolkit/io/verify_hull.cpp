@@ -259,7 +259,7 @@ void HullVerifier::check_faces() {
   for (std::size_t i = 0; i < hull_.sources.size(); ++i) {
     place_of_source_[hull_.sources[i].id] = int(i);
   }
-  const ContactGeometry contacts(scene_);
+  const ContactGeometry contacts(scene_, options_.progress.stop);
   const ContactSystem system(contacts);
   const DocumentOutlines outlines(geometry_, system);
   std::vector<Claim> claims;
@@ -324,7 +324,7 @@ void HullVerifier::check_support(const std::vector<Claim>& claims) {
   constexpr std::size_t grain = 64;
   parallel_for(claims.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
-    SupportQuery query(scene_);
+    SupportQuery query(scene_, options_.progress.stop);
     Contact near;
     for (std::size_t i = begin; i < end; ++i) {
       if (!(glm::length(claims[i].n) > 0.5)) {
@@ -373,7 +373,7 @@ void HullVerifier::check_even_directions(const DocumentOutlines& outlines,
   constexpr std::size_t grain = 64;
   parallel_for(directions.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
-    SupportQuery query(scene_);
+    SupportQuery query(scene_, options_.progress.stop);
     for (std::size_t i = begin; i < end; ++i) {
       const Support s = query(directions[i]);
       h[i] = s.h;

@@ -398,8 +398,8 @@ void set_side(SurfaceTriangle& triangle, int side, BezierCurve curve) {
 template <class Polygon>
 class Division {
  public:
-  Division(std::vector<Polygon> polygons, EdgeMiddles& middles)
-      : polygons_(std::move(polygons)), middles_(middles) {}
+  Division(std::vector<Polygon> polygons, EdgeMiddles& middles, const Progress& progress)
+      : polygons_(std::move(polygons)), middles_(middles), progress_(progress) {}
 
   /// Divides polygons until whole sides meet.
   std::vector<Polygon> run() {
@@ -425,6 +425,7 @@ class Division {
     std::vector<Polygon> next;
     next.reserve(polygons_.size());
     for (int p = 0; p < to_int(polygons_.size()); ++p) {
+      progress_.check();
       const Polygon& whole = polygons_[to_size(p)];
       std::array<bool, 4> split = {};
       for (int i = 0; i < k; ++i) split[to_size(i)] = graph.is_split(k * p + i);
@@ -459,6 +460,7 @@ class Division {
   void place_vertices() {
     places_.assign(to_size(middles_.vertex_count()), {});
     for (const Polygon& polygon : polygons_) {
+      progress_.check();
       for (int i = 0; i < k; ++i) {
         const BezierCurve curve = side_curve(polygon, i);
         const VertexSide v = side_vertices(polygon, i);
@@ -522,19 +524,22 @@ class Division {
 
   std::vector<Polygon> polygons_;
   EdgeMiddles& middles_;
+  const Progress& progress_;
   std::vector<Place> places_;  // per vertex
 };
 
 }  // namespace
 
-std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches, EdgeMiddles middles) {
-  return Division<SurfacePatch>(std::move(patches), middles).run();
+std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches, EdgeMiddles middles,
+                                     const Progress& progress) {
+  return Division<SurfacePatch>(std::move(patches), middles, progress).run();
 }
 
-std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, EdgeMiddles middles) {
+std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, EdgeMiddles middles,
+                                     const Progress& progress) {
   std::vector<SurfacePatch> result;
   for (const SurfaceTriangle& triangle :
-       Division<SurfaceTriangle>(std::move(triangles), middles).run()) {
+       Division<SurfaceTriangle>(std::move(triangles), middles, progress).run()) {
     add_quads(triangle, middles, result);
   }
   return result;

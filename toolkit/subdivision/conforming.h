@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "taut/core/progress.h"
 #include "taut/subdivision/edge_middles.h"
 #include "taut/surface/bezier.h"
 
@@ -44,15 +45,18 @@ struct SurfaceTriangle {
 /// Patches that are not exact take over the sides, and so the corners, of those that are, and those
 /// that may not touch the hull the ones of all others: all their points stay in the convex hull of
 /// their own and others' points. Pieces stay in the order of their patches.
+/// @throws Cancelled
 /// @{
 
 /// A quad with two sides to be split becomes two rectangles, or a rectangle and two trapezoids;
 /// with four, four. One with an odd number gets another one, which is passed on from neighbour to
 /// neighbour to the next that needs one or to a boundary. (Where there is neither, or trapezoids
 /// of trapezoids come to a degree above max_degree, the quad stays whole.)
-std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches, EdgeMiddles middles);
+std::vector<SurfacePatch> conforming(std::vector<SurfacePatch> patches, EdgeMiddles middles,
+                                     const Progress& progress = {});
 /// Triangles are bisected; in the end, each becomes three quads about its centre.
-std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, EdgeMiddles middles);
+std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, EdgeMiddles middles,
+                                     const Progress& progress = {});
 /// @}
 
 }  // namespace taut

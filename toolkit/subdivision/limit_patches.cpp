@@ -380,7 +380,7 @@ double Refinement::bound_of(const std::vector<std::size_t>& region, bool fit, bo
     known.push_back(corners(patches_[fan->cells.front()])[fan->corners.front()]);
   }
   if (!known.empty()) {
-    return region_bound(level_, region, patches_, known, tolerance_, least);
+    return region_bound(level_, region, patches_, known, tolerance_, options_.progress, least);
   }
   Box box;
   std::vector<dvec3> points;
@@ -559,6 +559,7 @@ void Refinement::emit_caps(const std::vector<std::size_t>& region) {
 }
 
 void Refinement::finish_or_refine(const std::vector<std::size_t>& region) {
+  options_.progress.check();
   const bool has_caps = std::all_of(region.begin(), region.end(), [&](std::size_t c) {
     return patches_[c].kind == CellPatch::Kind::cap && !patches_[c].semi_sharp;
   });
@@ -608,8 +609,8 @@ void Refinement::go_down() {
 
 LimitSurface Refinement::finish() {
   std::vector<SurfacePatch>& patches = result_.patches;
-  patches = triangles_.empty() ? conforming(std::move(patches), middles_)
-                               : conforming(std::move(triangles_), middles_);
+  patches = triangles_.empty() ? conforming(std::move(patches), middles_, options_.progress)
+                               : conforming(std::move(triangles_), middles_, options_.progress);
   std::stable_sort(
       patches.begin(), patches.end(),
       [](const SurfacePatch& a, const SurfacePatch& b) { return a.cage_face < b.cage_face; });

@@ -34,13 +34,16 @@ dvec3 cubic(const std::array<dvec3, 4>& c, double t) {
 class Bound {
  public:
   /// Nothing is met any more once the bound is over the limit.
-  Bound(std::vector<dvec3> known, double limit) : known_(std::move(known)), limit_(limit) {}
+  Bound(std::vector<dvec3> known, double limit, const Progress& progress)
+      : known_(std::move(known)), limit_(limit), progress_(progress) {}
 
   void know(const dvec3& p) { known_.push_back(p); }
   void meet(const dvec3& p) {
+    progress_.check();
     if (!is_over()) value_ = std::max(value_, distance_from_hull_bound(p, known_, value_));
   }
   bool is_within(const dvec3& p, double distance) const {
+    progress_.check();
     return distance_from_hull_bound(p, known_, distance) <= distance;
   }
   bool is_over() const { return value_ > limit_; }
@@ -49,6 +52,7 @@ class Bound {
  private:
   std::vector<dvec3> known_;
   double limit_;
+  const Progress& progress_;
   double value_ = 0;
 };
 
@@ -216,8 +220,8 @@ std::vector<dvec3> enclosures(const CageLevel& level, std::span<const std::size_
 class Comparison {
  public:
   /// `creases`: they have the cells' sharp sides in common.
-  Comparison(const std::vector<dvec3>& known, bool creases, double limit)
-      : of_limit_(known, limit), of_caps_(known, limit), creases_(creases) {}
+  Comparison(const std::vector<dvec3>& known, bool creases, double limit, const Progress& progress)
+      : of_limit_(known, limit, progress), of_caps_(known, limit, progress), creases_(creases) {}
 
   /// Points of the caps are known to the limit surface.
   void take_caps(const CageLevel& level, std::span<const std::size_t> cells,
@@ -270,10 +274,12 @@ void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t>
   EdgeMiddles middles(0);
   std::vector<std::size_t> left(cells.begin(), cells.end());
   CageLevel below = level.refined(left, middles);
+  int samples = cap_samples;
   for (int depth = 0; depth < levels_below && !of_limit_.is_over(); ++depth) {
     left.clear();
     const std::vector<CellPatch> patches = below.patches();
     std::vector<Piece> pieces;
+    samples = std::max(samples / 2, 1);
     for (std::size_t c = 0; c < patches.size(); ++c) {
       const Piece piece = piece_of(below, c, patches[c]);
       if (patches[c].kind == CellPatch::Kind::regular) {
@@ -292,9 +298,7 @@ void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t>
       for (const Piece& part : parts) {
         for (const dvec3& p : inner_points(part)) of_limit_.meet(p);
       }
-      for (const dvec3& p : lattice(piece, std::max(1, cap_samples >> (depth + 1)))) {
-        of_caps_.know(p);
-      }
+      for (const dvec3& p : lattice(piece, samples)) of_caps_.know(p);
     }
     const std::vector<dvec3> rest = enclosures(below, left);
     const bool ends = depth + 1 == levels_below ||
@@ -332,9 +336,9 @@ std::vector<std::size_t> side_points(const CellPatch& patch, std::size_t side) {
 
 double region_bound(const CageLevel& level, std::span<const std::size_t> region,
                     const std::vector<CellPatch>& patches, const std::vector<dvec3>& known,
-                    double enough, bool least) {
+                    double enough, const Progress& progress, bool least) {
   const double limit = least ? std::numeric_limits<double>::infinity() : enough;
-  Bound plain(known, limit);
+  Bound plain(known, limit, progress);
   for (const dvec3& p : enclosures(level, region)) plain.meet(p);
   for (const std::size_t c : region) {
     for (const dvec3& p : patches[c].points) plain.meet(p);
@@ -343,7 +347,7 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
   const bool creases = sharp.creases == sharp.count;
   const bool may_gain = sharp.count > 0 || least;
   if (plain.value() <= enough || !may_gain) return plain.value();
-  Comparison comparison(known, creases, limit);
+  Comparison comparison(known, creases, limit, progress);
   comparison.take_caps(level, region, patches);
   comparison.take_limit(level, region, enough);
   if (comparison.value() <= limit) comparison.meet_caps();

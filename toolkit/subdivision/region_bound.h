@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "taut/core/progress.h"
 #include "taut/subdivision/cage_level.h"
 
 namespace taut {
@@ -20,10 +21,10 @@ namespace taut {
 /// is left of the region is small. Control points on creases, farther out than these by their own
 /// curvature, do not count: creases are the sides of the caps beside them but for what is added,
 /// and a patch is within the convex hull of its side along one and its other control points.
-/// @pre no cell has more than four sides
+/// @pre no cell has more than four sides @throws Cancelled
 double region_bound(const CageLevel& level, std::span<const std::size_t> region,
                     const std::vector<CellPatch>& patches, const std::vector<dvec3>& known,
-                    double enough, bool least = false);
+                    double enough, const Progress& progress, bool least = false);
 
 /// Places in the patch's net of the control points of a side, from a corner to the next.
 std::vector<std::size_t> side_points(const CellPatch& patch, std::size_t side);

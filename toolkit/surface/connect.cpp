@@ -59,12 +59,14 @@ struct Arc {
 class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,
-            std::vector<dvec3>& vertices, const Box& box, double smooth_angle)
+            std::vector<dvec3>& vertices, const Box& box, double smooth_angle,
+            const Progress& progress)
       : patches_(patches),
         pieces_(pieces),
         edges_(edges),
         vertices_(vertices),
         box_(box),
+        progress_(progress),
         tolerance_(join_tolerance(box)),
         free_piece_count_(to_int(pieces.size())),
         sides_(side_curves(patches, tolerance_)),
@@ -74,7 +76,10 @@ class Connector {
   void run() {
     joins_ = match_sides(patches_, sides_, box_, tolerance_);
     smooth_.reserve(joins_.size());
-    for (const Join& join : joins_) smooth_.push_back(smoothness_.is_smooth(join));
+    for (const Join& join : joins_) {
+      progress_.check();
+      smooth_.push_back(smoothness_.is_smooth(join));
+    }
     identify_points();
     find_arcs();
     place_vertices();
@@ -117,6 +122,7 @@ class Connector {
   std::vector<Edge>& edges_;
   std::vector<dvec3>& vertices_;
   const Box box_;
+  const Progress& progress_;
   const double tolerance_;
   const int free_piece_count_;
   const std::vector<SideCurve> sides_;
@@ -192,6 +198,7 @@ void Connector::find_arcs() {
   for (int j = 0; j < to_int(joins_.size()); ++j) {
     const Join& join = joins_[to_size(j)];
     const bool smooth = smooth_[to_size(j)];
+    progress_.check();
     if (smooth && !smoothness_.is_seam(join)) continue;
     const int side = join.front().side;
     add_arc(j, sides_[to_size(side)].curve, side_points(side));
@@ -398,8 +405,9 @@ void Connector::fill_repeated() {
   }
 }
 
-void find_rulings(std::vector<Patch>& patches) {
+void find_rulings(std::vector<Patch>& patches, const Progress& progress) {
   for (Patch& patch : patches) {
+    progress.check();
     const bool plane = is_plane(patch.bezier);
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
@@ -409,18 +417,18 @@ void find_rulings(std::vector<Patch>& patches) {
 
 }  // namespace
 
-void Part::connect(double smooth_angle) {
+void Part::connect(double smooth_angle, const Progress& progress) {
   assert(!connected_);
   if (!(smooth_angle >= 0 && smooth_angle <= std::numbers::pi / 2)) {
     throw InvalidInput(name + ": the smooth angle " + std::to_string(smooth_angle) +
                        " is not between 0 and pi/2");
   }
   point_count_ = to_int(vertices_.size());
-  find_rulings(patches_);
-  split_crests(faces_, patches_, box_);
-  split_junctions(faces_, patches_, box_);
+  find_rulings(patches_, progress);
+  split_crests(faces_, patches_, box_, progress);
+  split_junctions(faces_, patches_, box_, progress);
   find_repeated_patches(patches_, box_);
-  Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle);
+  Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
   connected_ = true;

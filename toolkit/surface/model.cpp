@@ -203,8 +203,8 @@ void Part::add_polygons(const PolygonMesh& mesh) {
   }
 }
 
-int Model::add_part(Part part, double smooth_angle) {
-  if (!part.connected()) part.connect(smooth_angle);
+int Model::add_part(Part part, double smooth_angle, const Progress& progress) {
+  if (!part.connected()) part.connect(smooth_angle, progress);
   const std::string shown_name = "part " + printable(part.name);
   validate_room(part, shown_name);
   validate_extent(with(box_, part, {}), shown_name);

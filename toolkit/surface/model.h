@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/progress.h"
 #include "taut/surface/control_cage.h"
 #include "taut/surface/nurbs.h"
 #include "taut/surface/polygon_mesh.h"
@@ -181,8 +182,9 @@ class Part {
   /// crests as above. Their ends are as those of edges, except that edges do not see them: an edge
   /// goes on where a seam ends beside it, though its pieces end in a vertex there. Seams are no
   /// edges; vertices that stand at their ends alone, and their pieces, come last.
-  /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]
-  void connect(double smooth_angle);
+  /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]; Cancelled, after
+  /// which the part is of no use
+  void connect(double smooth_angle, const Progress& progress = {});
   bool connected() const { return connected_; }
 
   /// The surfaces.
@@ -250,8 +252,8 @@ class Model {
  public:
   /// Adds the part, which is connected now if it was not yet, and one instance of it at rest.
   /// Returns the part's index. @throws InvalidInput if the model's extent overflows,
-  /// LimitExceeded as add_instance() does
-  int add_part(Part part, double smooth_angle);
+  /// LimitExceeded as add_instance() does, Cancelled
+  int add_part(Part part, double smooth_angle, const Progress& progress = {});
   /// Places a part once more. @throws InvalidInput if the index is out of range, the rotation is
   /// not orthogonal with determinant 1 within rotation_tolerance, the translation is not finite
   /// or the model's extent overflows;

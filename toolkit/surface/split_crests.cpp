@@ -70,8 +70,13 @@ struct Cut {
 
 class RowSplitter {
  public:
-  RowSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box)
-      : faces_(faces), patches_(patches), box_(box), tolerance_(join_tolerance(box)) {}
+  RowSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
+              const Progress& progress)
+      : faces_(faces),
+        patches_(patches),
+        box_(box),
+        progress_(progress),
+        tolerance_(join_tolerance(box)) {}
 
   void split_at_crests() {
     find_grids();
@@ -112,6 +117,7 @@ class RowSplitter {
   std::vector<Face>& faces_;
   std::vector<Patch>& patches_;
   const Box& box_;
+  const Progress& progress_;
   const double tolerance_;
   std::vector<FaceGrid> grids_;  // per face
   std::vector<int> face_of_row_;
@@ -135,6 +141,7 @@ std::vector<Cut> RowSplitter::find_crests() const {
   std::vector<Cut> result;
   const std::vector<dvec3> points = corner_points(patches_);
   for (int p = 0; p < to_int(patches_.size()); ++p) {
+    progress_.check();
     const Patch& patch = patches_[to_size(p)];
     if (patch.ruled()) continue;
     for (const Direction direction : {Direction::u, Direction::v}) {
@@ -353,16 +360,18 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches) {
   return points;
 }
 
-void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
-  RowSplitter(faces, patches, box).split_at_crests();
+void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
+                  const Progress& progress) {
+  RowSplitter(faces, patches, box, progress).split_at_crests();
 }
 
-void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box) {
+void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
+                     const Progress& progress) {
   // A cut may end inside of a side that met none before.
   std::vector<Face> cut_faces = faces;
   std::vector<Patch> cut_patches = patches;
   for (int round = 0; round < round_limit; ++round) {
-    if (RowSplitter(cut_faces, cut_patches, box).split_at_junctions()) continue;
+    if (RowSplitter(cut_faces, cut_patches, box, progress).split_at_junctions()) continue;
     if (round == 0) return;
     faces = std::move(cut_faces);
     patches = std::move(cut_patches);

@@ -18,14 +18,16 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches);
 /// point, stays where it is.
 /// Faces of cages with more than one patch are not split.
 /// @pre the patches of all other faces are grids, v within u; rulings are found. The box contains
-/// them.
-void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
+/// them. @throws Cancelled, as the next one does
+void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
+                  const Progress& progress);
 
 /// Splits patches, rows as above, where sides of others end inside of theirs and run along them, so
 /// that whole sides meet; but for sides that are straight, along which no point is extreme. Sides
 /// that run along each other at different parameters are left as they are. Cuts that always meet
 /// further sides, as around a closed face, are not made at all.
 /// @pre as above
-void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box);
+void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
+                     const Progress& progress);
 
 }  // namespace taut

@@ -163,7 +163,7 @@ void cbvh_convergence(benchmark::State& state) {
 BENCHMARK(cbvh_convergence)->DenseRange(1, 5)->Iterations(1);
 
 void support_cold(benchmark::State& state) {
-  SupportQuery query(teapot_scene(), bounds_of(state));
+  SupportQuery query(teapot_scene(), {}, bounds_of(state));
   const auto directions = random_directions(4096, 1);
   std::size_t k = 0;
   for (auto _ : state) benchmark::DoNotOptimize(query(directions[k++ % directions.size()]));
@@ -173,7 +173,7 @@ BENCHMARK(support_cold)->ArgName("coons")->Arg(0)->Arg(1);
 
 /// From the contact of a direction about 0.01 radians away.
 void support_warm(benchmark::State& state) {
-  SupportQuery query(teapot_scene(), bounds_of(state));
+  SupportQuery query(teapot_scene(), {}, bounds_of(state));
   const auto directions = random_directions(4096, 1);
   const auto offsets = random_directions(4096, 2);
   std::vector<Contact> contacts;

@@ -191,7 +191,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
       exact.mean_width = mean_width(hull.mesh);
     } else if (boundary.unresolved.empty()) {
       const BoundaryMeasures measures =
-          measure(input.scene(), ContactGeometry(input.scene()), boundary);
+          measure(input.scene(), ContactGeometry(input.scene(), console.progress().stop), boundary);
       exact.measures = measures;
       exact.mean_width = measures.mean_width;
       exact.measures_accuracy = measures.accuracy;
