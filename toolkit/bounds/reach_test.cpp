@@ -7,6 +7,7 @@
 
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/vector_net.h"
+#include "taut/core/progress.h"
 
 namespace taut {
 namespace {
@@ -19,7 +20,8 @@ constexpr int split_limit = 64;
 
 class ReachTest::Search {
  public:
-  explicit Search(const Scene::Content& scene) : scene_(scene) {}
+  Search(const Scene::Content& scene, std::stop_token stop)
+      : scene_(scene), stop_(std::move(stop)) {}
 
   bool run(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
            std::span<const PatchRectangle> except, int finest) {
@@ -121,6 +123,7 @@ class ReachTest::Search {
   }
 
   bool cells_below(std::size_t index) {
+    check_stop(stop_);
     const BoxTree& tree = part_->tree;
     const BoxTree::Node& node = tree.nodes[index];
     const bool has_slabs = !tree.slabs.empty();
@@ -227,6 +230,7 @@ class ReachTest::Search {
   };
 
   const Scene::Content& scene_;
+  std::stop_token stop_;
   Directions frame_, local_;
   dvec4 offset_ = dvec4(0.0);  // of the instance that is looked at
   std::vector<dvec4> limits_;  // of x . n by each of the points
@@ -240,7 +244,8 @@ class ReachTest::Search {
   std::vector<std::array<Quarter, 4>> quarters_;  // per depth
 };
 
-ReachTest::ReachTest(const Scene& scene) : search_(std::make_unique<Search>(scene.content())) {}
+ReachTest::ReachTest(const Scene& scene, std::stop_token stop)
+    : search_(std::make_unique<Search>(scene.content(), std::move(stop))) {}
 ReachTest::~ReachTest() = default;
 
 bool ReachTest::surely_below(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,

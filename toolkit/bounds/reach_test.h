@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 #include "taut/bounds/scene.h"
 
@@ -22,7 +23,8 @@ struct PatchRectangle {
 /// Holds scratch memory, so use one object a thread; the scene must outlive it.
 class ReachTest {
  public:
-  explicit ReachTest(const Scene& scene);
+  /// `stop`: makes what follows throw Cancelled.
+  explicit ReachTest(const Scene& scene, std::stop_token stop = {});
   ~ReachTest();
 
   /// True is certain: for every point x of the scene, those of the rectangles apart, one of the

@@ -12,6 +12,7 @@
 #include "taut/bounds/second_order.h"
 #include "taut/bounds/support_polish.h"
 #include "taut/core/error.h"
+#include "taut/core/progress.h"
 
 namespace taut {
 namespace {
@@ -508,7 +509,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
 
   stack_.push({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
-    if (count % stop_interval == 0 && stop_.stop_requested()) throw Cancelled();
+    if (count % stop_interval == 0) check_stop(stop_);
     if (count == patience) stack_.turn_best_first();
     const Entry entry = stack_.pop();
     if (!(entry.bound > threshold())) continue;

@@ -8,6 +8,11 @@
 
 namespace taut {
 
+/// @throws Cancelled if stopping was asked for
+inline void check_stop(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Cancelled();
+}
+
 /// How a long operation tells where it stands and learns that it should stop.
 ///
 /// The default does nothing and never stops. The callbacks are called from the thread that called
@@ -29,9 +34,7 @@ struct Progress {
     if (warn) warn(code, text);
   }
   /// @throws Cancelled if stopping was asked for
-  void check() const {
-    if (stop.stop_requested()) throw Cancelled();
-  }
+  void check() const { check_stop(stop); }
 };
 
 }  // namespace taut

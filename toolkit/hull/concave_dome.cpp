@@ -148,6 +148,7 @@ class Walk {
   bool run(int patch, const ParameterRectangle& cell) {
     if (!begin(patch, surfaces_.patch(part_, patch), 0, cell)) return false;
     while (!waiting_.empty()) {
+      surfaces_.check_stop();
       const int piece = waiting_.top().second;
       waiting_.pop();
       for (const Side side : all_sides) {

@@ -4,11 +4,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
 #include "taut/bounds/normal_pyramid.h"
 #include "taut/bounds/scene.h"
+#include "taut/core/progress.h"
 #include "taut/hull/concave_patch.h"
 #include "taut/hull/fall_map.h"
 
@@ -18,7 +20,9 @@ namespace taut {
 /// a thread; the scene must outlive it.
 class ConcaveSurfaces {
  public:
-  explicit ConcaveSurfaces(const Scene& scene) : scene_(scene) {}
+  /// `stop`: makes walks over them throw Cancelled.
+  explicit ConcaveSurfaces(const Scene& scene, std::stop_token stop = {})
+      : scene_(scene), stop_(std::move(stop)) {}
 
   const std::vector<Patch>& patches(int part) const;
   ConcavePatch& patch(int part, int patch);
@@ -26,9 +30,11 @@ class ConcaveSurfaces {
   void forget() { held_.clear(); }
   /// Numbers of walks over them, see ConcavePatch::Mark.
   long next_walk() { return ++walks_; }
+  void check_stop() const { taut::check_stop(stop_); }
 
  private:
   const Scene& scene_;
+  std::stop_token stop_;
   long walks_ = 0;
   std::map<std::pair<int, int>, std::unique_ptr<ConcavePatch>> held_;  // by part and patch
 };

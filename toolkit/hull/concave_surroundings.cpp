@@ -53,8 +53,8 @@ struct ConcaveSurroundings::Subject {
   }
 };
 
-ConcaveSurroundings::ConcaveSurroundings(const Scene& scene)
-    : scene_(scene), reach_(scene), surfaces_(scene) {}
+ConcaveSurroundings::ConcaveSurroundings(const Scene& scene, std::stop_token stop)
+    : scene_(scene), reach_(scene, stop), surfaces_(scene, std::move(stop)) {}
 
 void ConcaveSurroundings::begin_anew() {
   domes_.clear();

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,8 @@ namespace taut {
 /// Holds what it learns of patches; use one object a thread. The scene must outlive it.
 class ConcaveSurroundings {
  public:
-  explicit ConcaveSurroundings(const Scene& scene);
+  /// `stop`: makes what follows throw Cancelled.
+  explicit ConcaveSurroundings(const Scene& scene, std::stop_token stop = {});
 
   /// True is certain. `pyramid`: of the cell's normals Su x Sv, `sign` times which are outward.
   /// Whether it is found depends on the cells before it.

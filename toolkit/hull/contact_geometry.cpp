@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "taut/bounds/scene_content.h"
+#include "taut/core/progress.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/nearest_parameter.h"
 
@@ -321,7 +322,7 @@ dvec3 ContactGeometry::to_frame(int instance, const dvec3& direction) const {
 }
 
 ContactJet ContactGeometry::jet(const Contact& c) const {
-  check_stop();
+  check_stop(stop_);
   const PartElements& own = elements(c);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   ContactJet result;
@@ -347,7 +348,7 @@ ContactJet ContactGeometry::jet(const Contact& c) const {
 }
 
 PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
-  check_stop();
+  check_stop(stop_);
   PatchJet3 j = jet3(own_of(elements(c).patches, c, SourceKind::face), c.u, c.v);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {
@@ -361,7 +362,7 @@ PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
 }
 
 CurveJet ContactGeometry::curve_jet(const Contact& c) const {
-  check_stop();
+  check_stop(stop_);
   CurveJet j = taut::jet(own_of(elements(c).pieces, c, SourceKind::edge), c.u);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {

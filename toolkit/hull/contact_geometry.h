@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/core/error.h"
 #include "taut/hull/coincidences.h"
 
 namespace taut {
@@ -138,10 +137,6 @@ class ContactGeometry {
   void find_coincidences();
   void place_points(const std::vector<PlacedElement>& all);
   void share(const Contact& repeated);
-
-  void check_stop() const {
-    if (stop_.stop_requested()) throw Cancelled();
-  }
 
   const Scene& scene_;
   std::stop_token stop_;

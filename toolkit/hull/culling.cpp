@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "taut/bounds/patch_nets.h"
 #include "taut/bounds/reach_test.h"
@@ -130,7 +132,7 @@ struct PatchResult {
 /// Scratch memory of a task.
 struct Tools {
   Tools(const Scene& scene, ConcaveSurroundings& with, std::stop_token stop = {})
-      : query(scene, std::move(stop)), reach(scene), surroundings(with) {}
+      : query(scene, stop), reach(scene, std::move(stop)), surroundings(with) {}
   SupportQuery query;
   ReachTest reach;
   ConcaveSurroundings& surroundings;
@@ -512,18 +514,19 @@ void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
 }  // namespace
 
 struct CellRefinement::Content {
-  explicit Content(const Scene& of)
+  Content(const Scene& of, const std::stop_token& stop)
       : scene(of),
         spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}),
-        surroundings(of),
-        tools(of, surroundings) {}
+        surroundings(of, stop),
+        tools(of, surroundings, stop) {}
   const Scene& scene;
   SpreadSamples spread;
   ConcaveSurroundings surroundings;
   Tools tools;
 };
 
-CellRefinement::CellRefinement(const Scene& scene) : content_(std::make_unique<Content>(scene)) {}
+CellRefinement::CellRefinement(const Scene& scene, std::stop_token stop)
+    : content_(std::make_unique<Content>(scene, std::move(stop))) {}
 CellRefinement::~CellRefinement() = default;
 
 std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& cells) {
@@ -582,7 +585,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   result.support_queries = long(spread.samples().size());
   std::vector<PatchResult> results(places.size());
   Pool<ConcaveSurroundings> surroundings(
-      [&] { return std::make_unique<ConcaveSurroundings>(scene); });
+      [&] { return std::make_unique<ConcaveSurroundings>(scene, options.progress.stop); });
   const std::size_t patches_per_task =
       std::clamp(places.size() / tasks, least_patches_per_task, most_patches_per_task);
   parallel_for(places.size(), patches_per_task, options.threads,

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <set>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -102,7 +103,8 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
 /// (ConcaveSurroundings). The scene must outlive it.
 class CellRefinement {
  public:
-  explicit CellRefinement(const Scene& scene);
+  /// `stop`: makes refined() throw Cancelled.
+  explicit CellRefinement(const Scene& scene, std::stop_token stop = {});
   ~CellRefinement();
 
   /// Each of the cells as one that is on, or its quarters. Not in parallel.

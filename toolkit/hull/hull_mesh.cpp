@@ -44,7 +44,7 @@ float float_above(double x) {
 }
 
 HullMesh make_hull_mesh(const std::vector<dvec3>& vertices,
-                        const std::vector<std::vector<int>>& polygons) {
+                        const std::vector<std::vector<int>>& polygons, const Progress& progress) {
   HullMesh mesh;
   // Euler: V - E + F = 2.
   mesh.reserve(vertices.size(), vertices.size() + polygons.size(), polygons.size());
@@ -55,6 +55,7 @@ HullMesh make_hull_mesh(const std::vector<dvec3>& vertices,
   std::vector<OpenMesh::HalfedgeHandle> side;
   side.reserve(opposite.size());
   for (const std::vector<int>& polygon : polygons) {
+    progress.check();
     const OpenMesh::FaceHandle face = mesh.new_face();
     const std::size_t first = side.size();
     for (std::size_t k = 0; k < polygon.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "taut/core/geometry.h"
+#include "taut/core/progress.h"
 #include "taut/surface/polygon_mesh.h"
 
 namespace taut {
@@ -61,8 +62,10 @@ inline dvec3 position(const HullMesh& mesh, OpenMesh::VertexHandle v) {
 
 /// The mesh of these vertices and polygons, unlabelled; without polygons, two vertices are joined
 /// by an edge. @pre the polygons bound a surface: every side belongs to two, in opposite directions
+/// @throws Cancelled
 HullMesh make_hull_mesh(const std::vector<dvec3>& vertices,
-                        const std::vector<std::vector<int>>& polygons);
+                        const std::vector<std::vector<int>>& polygons,
+                        const Progress& progress = {});
 
 /// The smallest float that is not below x.
 float float_above(double x);

@@ -229,13 +229,14 @@ void PointHull::add(std::span<const dvec3> points, const Progress& progress) {
   }
 }
 
-PointHull::Polygons PointHull::merged_polygons() const {
+PointHull::Polygons PointHull::merged_polygons(const Progress& progress) const {
   const std::size_t count = facets_.size();
   // Groups of facets in one plane.
   std::vector<int> group(count, -1);
   Polygons result;
   std::vector<int> stack;
   for (std::size_t start = 0; start < count; ++start) {
+    progress.check();
     if (!facets_[start].alive || group[start] >= 0) continue;
     const int id = int(result.facets.size());
     result.facets.push_back(int(start));
@@ -260,6 +261,7 @@ PointHull::Polygons PointHull::merged_polygons() const {
   // A vertex is extreme iff three or more groups meet in it.
   std::vector<std::array<int, 3>> seen(points_.size(), {-1, -1, -1});
   for (std::size_t f = 0; f < count; ++f) {
+    progress.check();
     if (!facets_[f].alive) continue;
     for (const int v : facets_[f].vertex) {
       for (int& s : seen[std::size_t(v)]) {
@@ -276,6 +278,7 @@ PointHull::Polygons PointHull::merged_polygons() const {
   result.loops.resize(result.facets.size());
   std::vector<bool> walked(result.facets.size(), false);
   for (std::size_t f = 0; f < count; ++f) {
+    progress.check();
     if (!facets_[f].alive || walked[std::size_t(group[f])]) continue;
     for (int k = 0; k < 3; ++k) {
       if (group[std::size_t(facets_[f].neighbor[std::size_t(k)])] == group[f]) continue;

@@ -67,7 +67,8 @@ class PointHull {
     std::vector<std::vector<int>> loops;
     std::vector<int> facets;
   };
-  Polygons merged_polygons() const;
+  /// @throws Cancelled
+  Polygons merged_polygons(const Progress& progress = {}) const;
 
  private:
   bool make_simplex();

@@ -203,11 +203,11 @@ std::vector<std::vector<int>> triangulated(const std::vector<std::vector<int>>& 
 /// coplanar is chance, so all are triangles.
 void PolyhedralHull::make_polytope(const PointHull& hull, const std::vector<int>* original) {
   result_.kind = HullKind::solid;
-  PointHull::Polygons polygons = hull.merged_polygons();
+  PointHull::Polygons polygons = hull.merged_polygons(options_.progress);
   if (original != nullptr) polygons.loops = triangulated(polygons.loops);
   options_.progress.update("mesh", 0);
   std::vector<int> corners;  // per vertex of the mesh
-  result_.mesh = bare_mesh(hull, 1, std::move(polygons), corners);
+  result_.mesh = bare_mesh(hull, 1, std::move(polygons), corners, options_.progress);
   if (original != nullptr) {
     for (int& c : corners) c = (*original)[std::size_t(c)];
   }

@@ -114,8 +114,9 @@ class SurfaceWalk {
 
 void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
                     const std::vector<double>& bounds, const std::vector<int>& point_of,
-                    HullMesh& mesh) {
+                    HullMesh& mesh, const Progress& progress) {
   for (const auto v : mesh.vertices()) {
+    progress.check();
     const auto p = std::size_t(point_of[std::size_t(v.idx())]);
     const SourceContact c = scene.source(samples[p].contact);
     auto& data = mesh.data(v);
@@ -220,13 +221,14 @@ void number_hull_faces(HullMesh& mesh, int count) {
 
 /// With the origins.
 HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
-                       const KnownLabels& known) {
-  const PointHull::Polygons polygons = polytope.hull.merged_polygons();
+                       const KnownLabels& known, const Progress& progress) {
+  const PointHull::Polygons polygons = polytope.hull.merged_polygons(progress);
   std::vector<int> point_of;  // per mesh vertex
-  HullMesh mesh = bare_mesh(polytope.hull, scene.frame().scale, polygons, point_of);
-  label_vertices(scene, polytope.samples, polytope.vertex_bounds, point_of, mesh);
+  HullMesh mesh = bare_mesh(polytope.hull, scene.frame().scale, polygons, point_of, progress);
+  label_vertices(scene, polytope.samples, polytope.vertex_bounds, point_of, mesh, progress);
   GuessedLabels guess(scene, polytope, mesh, point_of);
   for (const auto f : mesh.faces()) {
+    progress.check();
     const std::vector<int>& corners = polygons.loops[std::size_t(f.idx())];
     std::optional<FaceLabel> label;
     if (known.label) label = known.label(corners);
@@ -246,10 +248,11 @@ HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
 }  // namespace
 
 HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons polygons,
-                   std::vector<int>& point_of) {
+                   std::vector<int>& point_of, const Progress& progress) {
   std::vector<int> vertex_of(hull.points().size(), -1);
   std::vector<dvec3> vertices;
   for (std::vector<int>& loop : polygons.loops) {
+    progress.check();
     for (int& p : loop) {
       int& vertex = vertex_of[std::size_t(p)];
       if (vertex < 0) {
@@ -260,7 +263,7 @@ HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons poly
       p = vertex;
     }
   }
-  return make_hull_mesh(vertices, polygons.loops);
+  return make_hull_mesh(vertices, polygons.loops, progress);
 }
 
 Hull polytope_hull(const Scene& scene, const HullOptions& options, const SampledPolytope& polytope,
@@ -269,7 +272,7 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   options.progress.update("mesh", 0);
   Hull hull;
   hull.kind = HullKind::solid;
-  hull.mesh = labelled_mesh(scene, polytope, known);
+  hull.mesh = labelled_mesh(scene, polytope, known, options.progress);
   hull.distance_bound = polytope.distance_bound;
   hull.statistics = polytope.statistics;
   hull.statistics.seconds_mesh = time.seconds();

@@ -11,9 +11,9 @@ namespace taut {
 
 /// The mesh of a polytope, unlabelled: coplanar facets as polygons, extreme points only. The
 /// polytope's coordinates are the mesh's times `scale`, a power of two; `point_of` becomes, for
-/// each vertex of the mesh, its number among the hull's points.
+/// each vertex of the mesh, its number among the hull's points. @throws Cancelled
 HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons polygons,
-                   std::vector<int>& point_of);
+                   std::vector<int>& point_of, const Progress& progress = {});
 
 /// Where a face of a mesh lies.
 struct FaceLabel {

@@ -387,7 +387,7 @@ void GraphTracer::part_beside(const FreeEnd& end) {
 /// that fails looks for curves across their sides, and in the end for free ends in them.
 void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
   std::vector<CulledCell> left = built_.uncrossed(cells, 0);
-  CellRefinement refinement(geometry_.scene());
+  CellRefinement refinement(geometry_.scene(), progress_.stop);
   bool fewer = true;
   for (int level = 1; !left.empty() && !given_up(); ++level) {
     if (level > least_refinements && (!fewer || level > most_refinements)) break;

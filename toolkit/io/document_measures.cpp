@@ -111,7 +111,7 @@ class MeasureSums {
   };
   MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
               std::size_t window);
-  DocumentMeasures run();
+  DocumentMeasures run(const Progress& progress);
   /// Something was interpolated.
   bool interpolated() const { return interpolated_; }
 
@@ -163,10 +163,14 @@ MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutline
   if (count > 0) inside_ /= count;
 }
 
-DocumentMeasures MeasureSums::run() {
-  for (const RegionOutline& region : outlines_.regions()) add_patch(region);
+DocumentMeasures MeasureSums::run(const Progress& progress) {
+  for (const RegionOutline& region : outlines_.regions()) {
+    progress.check();
+    add_patch(region);
+  }
   const std::vector<Face>& faces = geometry_.hull().faces;
   for (std::size_t f = 0; f < faces.size(); ++f) {
+    progress.check();
     if (faces[f].kind == FaceKind::scroll) add_scroll(faces[f], outlines_.intervals()[f]);
     if (faces[f].kind == FaceKind::facet) add_facet(faces[f]);
   }
@@ -375,11 +379,12 @@ std::optional<MeasureSums::EdgePart> MeasureSums::edge_between(const HullDocumen
 
 }  // namespace
 
-DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines) {
+DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+                         const Progress& progress) {
   MeasureSums sums(geometry, outlines, best_window);
-  DocumentMeasures best = sums.run();
+  DocumentMeasures best = sums.run(progress);
   if (!sums.interpolated()) return best;
-  const DocumentMeasures worse = MeasureSums(geometry, outlines, worse_window).run();
+  const DocumentMeasures worse = MeasureSums(geometry, outlines, worse_window).run(progress);
   // Where the curve is not as smooth as the polynomials suppose, both err by as much.
   constexpr double safety = 2;
   best.interpolation = safety * std::max({std::abs(worse.volume / best.volume - 1),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "taut/core/progress.h"
 #include "taut/io/region_outlines.h"
 
 namespace taut {
@@ -25,6 +26,8 @@ struct DocumentMeasures {
 /// each face counts with the angle between the face's normal and the direction from a point inside
 /// of the hull, whose differences are the creases' angles.
 /// Meaningless where faces are missing or contacts off their sources. @pre hull of dimension 3
-DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines);
+/// @throws Cancelled
+DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+                         const Progress& progress = {});
 
 }  // namespace taut

@@ -274,7 +274,7 @@ void HullVerifier::check_faces() {
     check_labels(geometry_, scene_, faults_);
   }
   if (hull_.dimension == 3) {
-    measures = measure(geometry_, outlines);
+    measures = measure(geometry_, outlines, options_.progress);
     raise(result_.vector_area, glm::length(measures->vector_area) / measures->area);
     raise(result_.interpolation, measures->interpolation);
     if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");

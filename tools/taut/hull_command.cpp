@@ -190,6 +190,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
       exact.measures = measure(polygons(hull.mesh));
       exact.mean_width = mean_width(hull.mesh);
     } else if (boundary.unresolved.empty()) {
+      console.progress().update("measure", 0);
       const BoundaryMeasures measures =
           measure(input.scene(), ContactGeometry(input.scene(), console.progress().stop), boundary);
       exact.measures = measures;
