@@ -123,7 +123,7 @@ bool is_small(const Model& model) {
   return count <= most_points;
 }
 
-void check_document(const Model& model) {
+void check_document(const Model& model, Listener& listener) {
   for (const DocumentEncoding encoding : {DocumentEncoding::json, DocumentEncoding::cbor}) {
     std::string document;
     try {
@@ -132,8 +132,13 @@ void check_document(const Model& model) {
       return;  // a trim loop's Euclidean coordinate overflows
     }
     Model back;
+    ReadOptions options;
+    options.progress = listener.progress();
+    options.progress.warn = {};
     try {
-      read_document("document", document, encoding, back);
+      read_document("document", document, encoding, back, options);
+    } catch (const Cancelled&) {
+      throw;
     } catch (const Error& error) {
       throw Finding(std::string("the model's document is refused: ") + error.what());
     }
@@ -174,7 +179,7 @@ void check_hull(const Model& model, Listener& listener) {
 
 void check_model(const Model& model, Listener& listener) {
   if (!is_small(model)) return;
-  check_document(model);
+  check_document(model, listener);
   check_hull(model, listener);
 }
 
