@@ -26,7 +26,7 @@ struct CageOptions {
 /// something simpler stands for it.
 ///
 /// A corner that repeats the one before it is left out, so that a quad with one corner twice is a
-/// triangle; of a Loop cage, and where fewer than three are left, it stays. Warns of that, and of
+/// triangle; where fewer than three would be left, it stays. Warns of that, and of
 /// what OpenSubdiv treats by rules of its own: edges with more than two faces or none of one
 /// orientation, vertices about which faces are no fan, and faces with repeated vertices. `place`
 /// begins the warnings: what of which the cage is, as "FILE". Errors tell of the cage alone.

@@ -540,6 +540,7 @@ std::vector<SurfacePatch> conforming(std::vector<SurfaceTriangle> triangles, Edg
   std::vector<SurfacePatch> result;
   for (const SurfaceTriangle& triangle :
        Division<SurfaceTriangle>(std::move(triangles), middles, progress).run()) {
+    progress.check();
     add_quads(triangle, middles, result);
   }
   return result;

@@ -174,16 +174,27 @@ class RulingTrace {
   dvec3 along_, across_;
 };
 
+/// Ends of segments through the point, that in the direction among them if there is one.
+std::vector<dvec2> ends_along(const Patch& patch, const dvec2& uv, const dvec3& along) {
+  std::vector<dvec2> ends;
+  if (patch.ruled_v) ends.insert(ends.end(), {dvec2(uv.x, 0), dvec2(uv.x, 1)});
+  if (patch.ruled_u) ends.insert(ends.end(), {dvec2(0, uv.y), dvec2(1, uv.y)});
+  if (!patch.ruled_obliquely) return ends;
+  if (const auto direction = traced_direction(patch.bezier, uv)) {
+    const double sense = glm::dot(direction->along, along) < 0 ? -1 : 1;
+    ends.push_back(RulingTrace(patch.bezier, uv, direction->along).end(sense));
+  }
+  return ends;
+}
+
 /// The end of a segment through the point in the direction.
 std::optional<PatchPoint> end_along(const Part& part, const PatchPoint& at, const dvec3& along) {
   const double least = shortest * diagonal(part.control_box());
   const dvec3 x = point(part, at);
-  for (const std::array<dvec2, 2>& ends : rulings(part.patches()[std::size_t(at.patch)], at.uv)) {
-    for (const dvec2& uv : ends) {
-      const PatchPoint end{at.patch, uv};
-      const dvec3 way = point(part, end) - x;
-      if (glm::length(way) > least && glm::distance(unit(way), along) < same_line) return end;
-    }
+  for (const dvec2& uv : ends_along(part.patches()[std::size_t(at.patch)], at.uv, along)) {
+    const PatchPoint end{at.patch, uv};
+    const dvec3 way = point(part, end) - x;
+    if (glm::length(way) > least && glm::distance(unit(way), along) < same_line) return end;
   }
   return std::nullopt;
 }
