@@ -625,7 +625,7 @@ TEST(AddCage, LeavesOutCornersThatRepeat) {
   pyramid.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.1, 0.2, 1}};
   pyramid.faces = {{3, 2, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
   ControlCage repeating = pyramid;
-  repeating.faces = {{3, 2, 1, 0}, {0, 1, 4, 4}, {4, 1, 2, 4}, {4, 4, 2, 3}, {3, 0, 4, 4, 4}};
+  repeating.faces = {{3, 2, 1, 0}, {0, 1, 4, 4}, {1, 2, 4, 1}, {2, 2, 3, 4}, {3, 0, 4, 4, 4}};
   std::array<Part, 2> parts;
   std::vector<std::string> codes;
   CageOptions options;
