@@ -64,14 +64,17 @@ class Stopper {
   }
 
  private:
+  void ask() {
+    asked_ = seconds_of(clock_);
+    source_.request_stop();
+  }
   void start() {
+    if (delay_ == milliseconds(0)) return ask();
     timer_ = std::jthread([this](const std::stop_token& over) {
       std::mutex mutex;
       std::unique_lock lock(mutex);
       std::condition_variable_any().wait_for(lock, over, delay_, [] { return false; });
-      if (over.stop_requested()) return;
-      asked_ = seconds_of(clock_);
-      source_.request_stop();
+      if (!over.stop_requested()) ask();
     });
   }
 

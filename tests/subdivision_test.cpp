@@ -619,29 +619,6 @@ TEST(AddCage, WarnsWhereTheAccuracyIsNotReached) {
   }
 }
 
-/// A pyramid's sides as quads with its tip twice are the triangles that they are, with a warning.
-TEST(AddCage, LeavesOutCornersThatRepeat) {
-  ControlCage pyramid;
-  pyramid.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.1, 0.2, 1}};
-  pyramid.faces = {{3, 2, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
-  ControlCage repeating = pyramid;
-  repeating.faces = {{3, 2, 1, 0}, {0, 1, 4, 4}, {1, 2, 4, 1}, {2, 2, 3, 4}, {3, 0, 4, 4, 4}};
-  std::array<Part, 2> parts;
-  std::vector<std::string> codes;
-  CageOptions options;
-  options.progress.warn = [&](std::string_view code, std::string_view) {
-    codes.emplace_back(code);
-  };
-  add_cage(parts[0], pyramid, "c", options);
-  EXPECT_TRUE(codes.empty());
-  add_cage(parts[1], repeating, "c", options);
-  EXPECT_EQ(codes, std::vector<std::string>{"degenerate-cage"});
-  ASSERT_EQ(parts[0].patches().size(), parts[1].patches().size());
-  for (std::size_t p = 0; p < parts[0].patches().size(); ++p) {
-    EXPECT_EQ(parts[0].patches()[p].bezier.points, parts[1].patches()[p].bezier.points) << p;
-  }
-}
-
 /// Three sheets along one edge, and a face with a vertex twice.
 TEST(AddCage, WarnsOfNonManifoldCages) {
   ControlCage cage;

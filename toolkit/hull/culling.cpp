@@ -525,8 +525,8 @@ struct CellRefinement::Content {
   Tools tools;
 };
 
-CellRefinement::CellRefinement(const Scene& scene, std::stop_token stop)
-    : content_(std::make_unique<Content>(scene, std::move(stop))) {}
+CellRefinement::CellRefinement(const Scene& scene, const std::stop_token& stop)
+    : content_(std::make_unique<Content>(scene, stop)) {}
 CellRefinement::~CellRefinement() = default;
 
 std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& cells) {

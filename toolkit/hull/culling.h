@@ -104,7 +104,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
 class CellRefinement {
  public:
   /// `stop`: makes refined() throw Cancelled.
-  explicit CellRefinement(const Scene& scene, std::stop_token stop = {});
+  explicit CellRefinement(const Scene& scene, const std::stop_token& stop = {});
   ~CellRefinement();
 
   /// Each of the cells as one that is on, or its quarters. Not in parallel.

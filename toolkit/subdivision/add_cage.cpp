@@ -19,22 +19,6 @@ long faces_with_repeated_vertices(const ControlCage& cage) {
   });
 }
 
-/// The corners without those that repeat the one before, if three are left.
-std::vector<int> distinct_corners(std::vector<int> face) {
-  std::vector<int> corners = face;
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
-  return corners.size() < 3 ? face : corners;
-}
-
-/// The cage without edges from a vertex to itself: polygons that are written with more corners than
-/// they have. At a pole of them the surface is smooth then, as where the polygons are told as such.
-ControlCage without_repeated_corners(const ControlCage& cage) {
-  ControlCage result = cage;
-  for (std::vector<int>& face : result.faces) face = distinct_corners(std::move(face));
-  return result;
-}
-
 std::string two_digits(double x) {
   std::array<char, 32> text;
   const std::to_chars_result result =
@@ -71,8 +55,7 @@ void add_cage(Part& part, const ControlCage& cage, const std::string& place,
   LimitOptions limit;
   limit.accuracy = options.accuracy;
   limit.progress = options.progress;
-  const bool repeats = faces_with_repeated_vertices(cage) > 0;
-  LimitSurface surface = limit_patches(repeats ? without_repeated_corners(cage) : cage, limit);
+  LimitSurface surface = limit_patches(cage, limit);
   warn(cage, surface, place, options.progress);
 
   const int first_face = static_cast<int>(part.faces().size());

@@ -25,11 +25,10 @@ struct CageOptions {
 /// accuracy (Part::deviation_bound), and where the surface cannot touch its convex hull: there
 /// something simpler stands for it.
 ///
-/// A corner that repeats the one before it is left out, so that a quad with one corner twice is a
-/// triangle; where fewer than three would be left, it stays. Warns of that, and of
-/// what OpenSubdiv treats by rules of its own: edges with more than two faces or none of one
-/// orientation, vertices about which faces are no fan, and faces with repeated vertices. `place`
-/// begins the warnings: what of which the cage is, as "FILE". Errors tell of the cage alone.
+/// Warns of what OpenSubdiv treats by rules of its own: edges with more than two faces or none of
+/// one orientation, vertices about which faces are no fan, and faces with repeated vertices.
+/// `place` begins the warnings: what of which the cage is, as "FILE". Errors tell of the cage
+/// alone.
 /// @throws InvalidInput if the cage is not valid or the part's extent would overflow, BackendError
 /// if OpenSubdiv does not take it, Cancelled
 void add_cage(Part& part, const ControlCage& cage, const std::string& place,
