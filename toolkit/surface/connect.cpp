@@ -427,7 +427,7 @@ void Part::connect(double smooth_angle, const Progress& progress) {
   find_rulings(patches_, progress);
   split_crests(faces_, patches_, box_, progress);
   split_junctions(faces_, patches_, box_, progress);
-  find_repeated_patches(patches_, box_);
+  find_repeated_patches(patches_, box_, progress);
   Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();

@@ -65,7 +65,7 @@ dvec2 place_in_repeated(const Patch& patch, dvec2 uv) {
 
 }  // namespace
 
-void find_repeated_patches(std::vector<Patch>& patches, const Box& box) {
+void find_repeated_patches(std::vector<Patch>& patches, const Box& box, const Progress& progress) {
   const double tolerance =
       std::max(repeated_patch_distance * diagonal(box), std::numeric_limits<double>::min());
   // Cells of the join tolerance are fine enough to tell patches apart, and coarse enough to number.
@@ -74,6 +74,7 @@ void find_repeated_patches(std::vector<Patch>& patches, const Box& box) {
     Patch& patch = patches[i];
     const dvec3 place = place_of(patch.bezier);
     places.visit_near(place, [&](int earlier) {
+      progress.check();
       const Patch& first = patches[std::size_t(earlier)];
       if (patch.repeats < 0 && find_mapping(first, patch, tolerance)) patch.repeats = earlier;
     });
