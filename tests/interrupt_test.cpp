@@ -151,17 +151,19 @@ TEST(Interrupt, Build) {
   expect_heard("", [&](const Progress& progress) { Scene(model, {1, progress}); });
 }
 
+void find_hull(const Scene& scene, const Progress& progress) {
+  HullOptions options;
+  options.relative = 1e-5;
+  options.threads = 1;
+  options.progress = progress;
+  convex_hull(scene, options);
+}
+
 class InterruptHull : public testing::TestWithParam<const char*> {};
 
 TEST_P(InterruptHull, OfABlob) {
   const Scene scene = make_scene(blob(3));
-  expect_heard(GetParam(), [&](const Progress& progress) {
-    HullOptions options;
-    options.relative = 1e-5;
-    options.threads = 1;
-    options.progress = progress;
-    convex_hull(scene, options);
-  });
+  expect_heard(GetParam(), [&](const Progress& progress) { find_hull(scene, progress); });
 }
 
 TEST_P(InterruptHull, OfACage) {
@@ -170,13 +172,7 @@ TEST_P(InterruptHull, OfACage) {
   add_cage(part, cube_cage(), "cage", {.accuracy = 1e-6, .progress = {}});
   model.add_part(std::move(part), smooth_join_angle);
   const Scene scene(model, {1, {}});
-  expect_heard(GetParam(), [&](const Progress& progress) {
-    HullOptions options;
-    options.relative = 1e-5;
-    options.threads = 1;
-    options.progress = progress;
-    convex_hull(scene, options);
-  });
+  expect_heard(GetParam(), [&](const Progress& progress) { find_hull(scene, progress); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Steps, InterruptHull,

@@ -301,9 +301,10 @@ bool GraphBuilder::is_traced(const CommonSupport& seed) const {
         const dvec3 d1 = to.point[1] - from.point[1];
         const double square = glm::dot(dn, dn) + glm::dot(d0, d0) + glm::dot(d1, d1);
         const dvec3 en = seed.n - from.n;
-        // As far as the conditions on s and what is off let it be, for a start.
+        // As far as the conditions below let it be: those on s and on what is off, and the ends'
+        // own, (|dn| + e)^2 <= 1.25 |dn|^2 + 5 e^2.
         constexpr double farthest = (1 + overlap) * (1 + overlap) + 0.25;
-        if (glm::dot(en, en) > farthest * square + 4 * same_curve * same_curve) continue;
+        if (glm::dot(en, en) > farthest * square + 5 * same_curve * same_curve) continue;
         for (const bool swapped : {false, true}) {
           const dvec3& x0 = x[swapped ? 1 : 0];
           const dvec3& x1 = x[swapped ? 0 : 1];
