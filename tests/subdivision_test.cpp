@@ -692,18 +692,19 @@ TEST(SubTriangle, IsTheSamePatch) {
 }
 
 TEST(HullDistance, OfSimplePolytopes) {
-  const std::vector<dvec3> cube = cube_cage().points;
+  const PointTree cube(cube_cage().points);
   EXPECT_LE(distance_from_hull_bound({0.1, 0.2, -0.3}, cube), 1e-14);
   EXPECT_NEAR(distance_from_hull_bound({0.1, 0.2, 3}, cube), 2, 1e-13);
   EXPECT_NEAR(distance_from_hull_bound({2, 2, 0.5}, cube), std::sqrt(2.0), 1e-13);
   EXPECT_NEAR(distance_from_hull_bound({2, 2, 2}, cube), std::sqrt(3.0), 1e-13);
-  EXPECT_NEAR(distance_from_hull_bound({1, 2, 3}, std::vector<dvec3>{{1, 2, 2}}), 1, 1e-13);
+  EXPECT_NEAR(distance_from_hull_bound({1, 2, 3}, PointTree({{1, 2, 2}})), 1, 1e-13);
   Random random(5);
   std::vector<dvec3> points;
   for (int i = 0; i < 40; ++i) points.push_back(random_direction(random));
+  const PointTree tree(points);
   for (int i = 0; i < 200; ++i) {
     const dvec3 p = 1.5 * random_point(random);
-    const double bound = distance_from_hull_bound(p, points);
+    const double bound = distance_from_hull_bound(p, tree);
     // Any supporting plane gives a lower bound.
     double lower = 0;
     for (int k = 0; k < 2000; ++k) {
@@ -715,7 +716,7 @@ TEST(HullDistance, OfSimplePolytopes) {
     EXPECT_GE(bound, lower - 1e-14);
     EXPECT_LE(bound, lower * 1.05 + 5e-2);
     for (const double enough : {0.01, 0.1, 1.0}) {
-      const double perhaps = distance_from_hull_bound(p, points, enough);
+      const double perhaps = distance_from_hull_bound(p, tree, enough);
       EXPECT_GE(perhaps, lower - 1e-14);
       EXPECT_LE(perhaps, std::max(bound, enough));
     }
@@ -735,7 +736,28 @@ TEST(HullDistance, OfNearPoints) {
     const dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     const double height = 1e-11 * size;
     const dvec3 p = (triangle[0] + triangle[1] + triangle[2]) / 3.0 + height * unit(across);
-    EXPECT_NEAR(distance_from_hull_bound(p, triangle), height, 1e-13 * size);
+    EXPECT_NEAR(distance_from_hull_bound(p, PointTree(triangle)), height, 1e-13 * size);
+  }
+}
+
+TEST(PointTree, SearchesAsAScanDoes) {
+  Random random(3);
+  for (const int count : {1, 8, 9, 100, 3000}) {
+    std::vector<dvec3> points;
+    for (int i = 0; i < count; ++i) points.push_back(random_point(random) * dvec3(1, 1e-3, 10));
+    points.push_back(points.front());
+    const PointTree tree(points);
+    for (int i = 0; i < 100; ++i) {
+      const dvec3 p = 2.0 * random_point(random);
+      double nearest = std::numeric_limits<double>::infinity();
+      double lowest = nearest;
+      for (const dvec3& q : points) {
+        nearest = std::min(nearest, glm::distance(p, q));
+        lowest = std::min(lowest, glm::dot(p, q));
+      }
+      EXPECT_NEAR(glm::distance(p, tree.nearest(p)), nearest, 1e-14);
+      EXPECT_NEAR(glm::dot(p, tree.lowest(p)), lowest, 1e-14);
+    }
   }
 }
 

@@ -54,21 +54,15 @@ struct Corral {
 
 }  // namespace
 
-double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points, double enough) {
+double distance_from_hull_bound(const dvec3& p, const PointTree& points, double enough) {
   constexpr int step_limit = 64;
-  const auto nearest =
-      std::min_element(points.begin(), points.end(), [&](const dvec3& a, const dvec3& b) {
-        return glm::dot(a - p, a - p) < glm::dot(b - p, b - p);
-      });
-  Corral corral{{*nearest - p}, {1.0}};
+  const dvec3 nearest = points.nearest(p);
+  Corral corral{{nearest - p}, {1.0}};
   dvec3 x = corral.sum();
-  const double rounding = 16 * rounding_unit * (glm::length(p) + glm::length(*nearest));
+  const double rounding = 16 * rounding_unit * (glm::length(p) + glm::length(nearest));
   double best = glm::length(x);
   for (int step = 0; step < step_limit && best > 0 && best + rounding > enough; ++step) {
-    const auto next = std::min_element(
-        points.begin(), points.end(),
-        [&](const dvec3& a, const dvec3& b) { return glm::dot(a, x) < glm::dot(b, x); });
-    const dvec3 q = *next - p;
+    const dvec3 q = points.lowest(x) - p;
     if (glm::dot(q, x) >= glm::dot(x, x) * (1 - 64 * rounding_unit)) break;
     corral.points.push_back(q);
     corral.weights.push_back(0);

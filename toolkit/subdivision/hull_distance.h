@@ -1,8 +1,7 @@
 #pragma once
 
-#include <span>
-
 #include "taut/core/geometry.h"
+#include "taut/subdivision/point_tree.h"
 
 namespace taut {
 
@@ -10,6 +9,6 @@ namespace taut {
 /// that is nearest up to rounding (Wolfe 1976, "Finding the nearest point in a polytope"); no
 /// nearer one is sought once it is no more than `enough`.
 /// @pre not empty
-double distance_from_hull_bound(const dvec3& p, std::span<const dvec3> points, double enough = 0);
+double distance_from_hull_bound(const dvec3& p, const PointTree& points, double enough = 0);
 
 }  // namespace taut

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "taut/subdivision/edge_middles.h"
 #include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/point_tree.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 #include "taut/surface/bezier.h"
@@ -34,23 +36,31 @@ dvec3 cubic(const std::array<dvec3, 4>& c, double t) {
 class Bound {
  public:
   /// Nothing is met any more once the bound is over the limit.
-  Bound(std::vector<dvec3> known, double limit, const Progress& progress)
-      : known_(std::move(known)), limit_(limit), progress_(progress) {}
+  Bound(const std::vector<dvec3>& known, double limit, const Progress& progress)
+      : known_(known), limit_(limit), progress_(progress) {}
 
-  void know(const dvec3& p) { known_.push_back(p); }
-  void meet(const dvec3& p) {
-    progress_.check();
-    if (!is_over()) value_ = std::max(value_, distance_from_hull_bound(p, known_, value_));
+  void know(const dvec3& p) {
+    known_.push_back(p);
+    tree_.reset();
   }
-  bool is_within(const dvec3& p, double distance) const {
-    progress_.check();
-    return distance_from_hull_bound(p, known_, distance) <= distance;
+  void meet(const dvec3& p) {
+    if (!is_over()) value_ = std::max(value_, distance(p, value_));
+  }
+  bool is_within(const dvec3& p, double distance) {
+    return this->distance(p, distance) <= distance;
   }
   bool is_over() const { return value_ > limit_; }
   double value() const { return value_; }
 
  private:
+  double distance(const dvec3& p, double enough) {
+    progress_.check();
+    if (!tree_) tree_.emplace(known_);
+    return distance_from_hull_bound(p, *tree_, enough);
+  }
+
   std::vector<dvec3> known_;
+  std::optional<PointTree> tree_;  // of the known points, once it is asked
   double limit_;
   const Progress& progress_;
   double value_ = 0;
