@@ -48,6 +48,12 @@ constexpr std::size_t tasks = 64;
 /// k cells away.
 constexpr int widest_surrounding = 8;
 
+/// Cells that a task's queries may look at, and how many more each of them: a hundred times what is
+/// usual. Where much of a model is as high but for little, as about a pole of hundreds of needles,
+/// they take thousands, and decide next to nothing; such cells are left to be traced.
+constexpr long cells_a_task = 5'000;
+constexpr long cells_a_query = 200;
+
 /// Roundings by which a point that supports its normal may fall short of what a query finds.
 constexpr double middle_rounding = 16;
 
@@ -133,6 +139,7 @@ struct PatchResult {
 struct Tools {
   Tools(const Scene& scene, ConcaveSurroundings& with, std::stop_token stop = {})
       : query(scene, stop), reach(scene, std::move(stop)), surroundings(with) {}
+  bool may_ask() const { return query.cells() < cells_a_task + cells_a_query * query.queries(); }
   SupportQuery query;
   ReachTest reach;
   ConcaveSurroundings& surroundings;
@@ -311,7 +318,7 @@ class PatchCulling {
     const std::size_t near = spread_.nearest(n);
     const Beacon nearest{spread_.samples()[near].contact, to_local(spread_.points()[near]), true};
     if (is_above(nearest.local)) return true;
-    if (spread_.is_dense_in(pyramid)) {
+    if (spread_.is_dense_in(pyramid) || !tools_.may_ask()) {
       beacon = nearest;
       return false;
     }
@@ -424,7 +431,7 @@ class PatchCulling {
     const Contact middle{instance_, SourceKind::face, element_.index, cell.u().at(0.5),
                          cell.v().at(0.5)};
     const dvec3 normal = sign * unit_normal(patch().bezier, middle.u, middle.v);
-    if (normal == dvec3(0.0)) return false;
+    if (normal == dvec3(0.0) || !tools_.may_ask()) return false;
     const dvec3 n = unit(to_frame(normal));
     const Support s = tools_.query(n, middle);
     ++result_.queries;

@@ -12,8 +12,14 @@
 namespace taut {
 namespace {
 
-/// How often the boundary is sought again with support points that the mesh met on no face of it.
+/// How often the boundary is sought again with support points that the mesh met on no face of it,
+/// unless more spots of it than so many could not be resolved: these are then not what it wants.
 constexpr int stray_rounds = 2;
+constexpr std::size_t few_unresolved = 16;
+
+bool wants_more(const HullBoundary& boundary) {
+  return !boundary.exhausted && boundary.unresolved.size() <= few_unresolved;
+}
 
 /// The seconds since the last call, or the construction.
 class Lap {
@@ -82,7 +88,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
     std::vector<Sample> strays;
     try {
       Hull hull = boundary_mesh(scene, geometry, boundary, options, &strays);
-      if (!strays.empty() && round < stray_rounds) {
+      if (!strays.empty() && round < stray_rounds && wants_more(*boundary)) {
         // The mesh has met faces that were not known: once more, with what it met.
         found.insert(found.end(), strays.begin(), strays.end());
         statistics += hull.statistics;

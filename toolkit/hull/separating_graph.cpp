@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <span>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/hull/arc_pieces.h"
@@ -45,9 +46,12 @@ constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too, and how many more a sample and a
-/// refined cell may take: hundreds of times what generic models take, some seconds.
-constexpr long least_cells = 5'000'000;
-constexpr long cells_a_sample = 2'000;
+/// refined cell may take: ten times what generic models take and more, some seconds.
+constexpr long least_cells = 3'000'000;
+constexpr long cells_a_sample = 500;
+constexpr long cells_a_refined_cell = 2'000;
+/// Culled cells, at least, the sides of which are looked at together.
+constexpr std::ptrdiff_t cells_at_a_time = 1024;
 constexpr int depth_limit = 40;
 /// The circle about a pole's normal on which curves are sought.
 constexpr double circle_radius = 2e-4;
@@ -128,6 +132,7 @@ class GraphTracer {
   void part_about(const SupportingPole& pole);
   void part_closely(const Sighting& a, const Sighting& b, int depth);
   void part_cells(const std::vector<CulledCell>& cells);
+  void part_sides(std::span<const CulledCell> cells);
   void part_beside(const FreeEnd& end);
   void search_cells(const std::vector<CulledCell>& cells);
   void trace(const CommonSupport& seed);
@@ -148,7 +153,7 @@ class GraphTracer {
   GraphBuilder built_;
   long first_cells_ = 0;
   long cell_limit_ = 0;
-  bool stopped_ = false;
+  bool exhausted_ = false;
   long cells_searched_ = 0;
   std::set<std::pair<int, int>> settled_;  // instances and patches
   std::vector<TouchedStretch> stretches_;
@@ -162,11 +167,11 @@ class GraphTracer {
 /// Whether there is too much that cannot be resolved, or it costs too much. Counted in the cells of
 /// support queries, so that the same is given up each time.
 bool GraphTracer::given_up() {
-  if (stopped_ || built_.graph().unresolved.size() + failed_.size() >= failure_limit) return true;
+  if (exhausted_ || built_.graph().unresolved.size() + failed_.size() >= failure_limit) return true;
   if (query_.cells() - first_cells_ <= cell_limit_) return false;
   built_.fail(dvec3(0.0),
               "the search for separating curves was given up: contact along curves or areas");
-  stopped_ = true;
+  exhausted_ = true;
   return true;
 }
 
@@ -350,6 +355,20 @@ void GraphTracer::part_closely(const Sighting& a, const Sighting& b, int depth) 
 
 /// Finds and traces the curves that cross the sides of mixed cells.
 void GraphTracer::part_cells(const std::vector<CulledCell>& cells) {
+  const auto same_patch = [](const CulledCell& a, const CulledCell& b) {
+    return a.instance == b.instance && a.patch == b.patch;
+  };
+  for (auto begin = cells.begin(); begin != cells.end() && !given_up();) {
+    auto end = begin + std::min(cells.end() - begin, cells_at_a_time);
+    end = std::find_if_not(end, cells.end(),
+                           [&](const CulledCell& cell) { return same_patch(cell, *(end - 1)); });
+    part_sides({begin, end});
+    begin = end;
+  }
+}
+
+/// Of these cells. @pre none of others are of their patches
+void GraphTracer::part_sides(std::span<const CulledCell> cells) {
   for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
     if (given_up()) break;
     if (built_.is_crossed(change)) continue;
@@ -395,14 +414,16 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
     progress_.check();
     const std::size_t count = left.size();
     left = built_.uncrossed(refinement.refined(left), refined_margin);
-    cell_limit_ += cells_a_sample * long(left.size());
+    cell_limit_ += cells_a_refined_cell * long(left.size());
     part_cells(left);
     left = built_.uncrossed(left, refined_margin);
     fewer = left.size() < count;
     if (left.size() > few_cells && double(left.size()) > line_growth * double(count)) break;
   }
-  for (const FreeEnd& end : free_ends(geometry_, query_, not_definite(left))) {
-    if (!given_up() && !built_.is_reached(end)) part_beside(end);
+  if (!given_up()) {
+    for (const FreeEnd& end : free_ends(geometry_, query_, not_definite(left))) {
+      if (!given_up() && !built_.is_reached(end)) part_beside(end);
+    }
   }
   cells_searched_ = long(built_.uncrossed(left, refined_margin).size());
 }
@@ -572,6 +593,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   tell_failures();
   SeparatingGraph graph = built_.take();
   graph.cells_searched = cells_searched_;
+  graph.exhausted = exhausted_;
   graph.newton_iterations = system_.iterations();
   return graph;
 }

@@ -39,6 +39,7 @@ class Stitcher {
     HullBoundary boundary;
     boundary.frame = geometry.scene().frame();
     boundary.unresolved = graph.unresolved;
+    boundary.exhausted = graph.exhausted;
     return boundary;
   }
 

@@ -92,7 +92,7 @@ bool in_range(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v
 }  // namespace
 
 std::vector<SupportChange> support_changes(const ContactGeometry& geometry, SupportQuery& query,
-                                           const std::vector<CulledCell>& cells) {
+                                           std::span<const CulledCell> cells) {
   using Place = std::tuple<int, double, double>;
   // Of the cells of one patch.
   std::map<Place, Sighting> sightings;

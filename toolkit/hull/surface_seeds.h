@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "taut/bounds/support_query.h"
@@ -21,7 +22,7 @@ struct SupportChange {
 
 /// All of them at the mixed cells' sides, none twice. @pre the cells of a patch follow each other
 std::vector<SupportChange> support_changes(const ContactGeometry& geometry, SupportQuery& query,
-                                           const std::vector<CulledCell>& cells);
+                                           std::span<const CulledCell> cells);
 
 /// A point on the separating curve, where the side crosses it. None if it is about to end there
 /// (merge_distance), or cannot be found.

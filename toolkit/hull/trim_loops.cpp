@@ -95,7 +95,7 @@ class Trimmer {
     }
     link();
     for (Sheet& sheet : sheets_) trim(sheet);
-    add_whole_patches(cells);
+    if (!graph_.exhausted) add_whole_patches(cells);
     return std::move(regions_);
   }
 

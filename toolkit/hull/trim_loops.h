@@ -30,7 +30,7 @@ struct TrimRegion {
 /// The regions of all Bezier patches that lie on the hull, bounded by the contacts of separating
 /// curves and by the patches' borders. The pieces of the arcs are those that the walk leads along;
 /// where it meets no curve, support queries tell whether a patch with cells that may be on the hull
-/// lies there as a whole.
+/// lies there as a whole, unless the search for the graph is exhausted: they would cost as much.
 /// Reasons why something does not fit are added to `unresolved`.
 std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, SupportQuery& query,
                                      const SeparatingGraph& graph,
