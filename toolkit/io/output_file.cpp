@@ -1,8 +1,12 @@
 #include "taut/io/output_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
+#include <mutex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "taut/core/error.h"
 
@@ -11,11 +15,37 @@ namespace {
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
+/// What exit_without_output() removes.
+struct Unpublished {
+  std::mutex mutex;  // held while files come and go
+  std::vector<const std::filesystem::path*> files;
+
+  void remove(const std::filesystem::path& file) {
+    files.erase(std::remove(files.begin(), files.end(), &file), files.end());
+  }
+};
+
+/// Never destroyed: a process may end while files are written.
+Unpublished& unpublished() {
+  static auto& files = *new Unpublished;
+  return files;
+}
+
 }  // namespace
+
+void exit_without_output(int code) {
+  unpublished().mutex.lock();  // for good: nothing is published any more
+  for (const std::filesystem::path* file : unpublished().files) {
+    std::error_code ignored;
+    std::filesystem::remove(*file, ignored);
+  }
+  std::_Exit(code);
+}
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   // Opened only where no file is, so that two writers and what a crash left do not meet.
   constexpr int attempts = 1000;
+  const std::lock_guard lock(unpublished().mutex);
   for (int i = 0; i < attempts && !file_; ++i) {
     temporary_ = path_;
     temporary_ += ".tmp" + std::to_string(i);
@@ -27,12 +57,16 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     temporary_.clear();
     fail("cannot be written", reason(error));
   }
+  unpublished().files.push_back(&temporary_);
 }
 
 OutputFile::~OutputFile() {
   file_.reset();
+  if (temporary_.empty()) return;
+  const std::lock_guard lock(unpublished().mutex);
   std::error_code ignored;
-  if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+  std::filesystem::remove(temporary_, ignored);
+  unpublished().remove(temporary_);
 }
 
 void OutputFile::drain() {
@@ -48,9 +82,11 @@ void OutputFile::finish() {
 }
 
 void OutputFile::publish() {
+  const std::lock_guard lock(unpublished().mutex);
   std::error_code error;
   std::filesystem::rename(temporary_, path_, error);
   if (error) fail("cannot be replaced", error.message());
+  unpublished().remove(temporary_);
   temporary_.clear();
 }
 

@@ -4,10 +4,16 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
+#include <cstdio>
+#include <ctime>
+
+#include "taut/io/output_file.h"
 
 namespace taut::tool {
 namespace {
+
+/// What hears a request to stop needs less.
+constexpr std::chrono::milliseconds patience(100);
 
 sigset_t watched_signals() {
   sigset_t signals;
@@ -41,20 +47,29 @@ Interrupt::~Interrupt() {
 ExitCode Interrupt::exit_code() const { return exit_code_of(signal_); }
 
 void Interrupt::watch() {
+  const sigset_t signals = watched_signals();
+  int signal = 0;
+  while (sigwait(&signals, &signal) != 0) {
+  }
+  if (ending_) return;
+  signal_ = signal;
+  source_.request_stop();
+  wait_for_end();
+}
+
+/// Ends the process unless it comes to its end by itself.
+void Interrupt::wait_for_end() const {
   using Clock = std::chrono::steady_clock;
   const sigset_t signals = watched_signals();
-  Clock::time_point first;
-  for (;;) {
-    int signal = 0;
-    if (sigwait(&signals, &signal) != 0) continue;
-    if (ending_) return;
-    if (signal_ == 0) {
-      signal_ = signal;
-      first = Clock::now();
-      source_.request_stop();
-    } else if (Clock::now() - first >= std::chrono::seconds(1)) {
-      std::_Exit(static_cast<int>(exit_code_of(signal)));
+  const Clock::time_point last = Clock::now() + patience;
+  while (!ending_) {
+    const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(last - Clock::now());
+    if (left.count() <= 0) {
+      std::fputs("taut: interrupted\n", stderr);
+      exit_without_output(static_cast<int>(exit_code()));
     }
+    const timespec time = {0, static_cast<long>(left.count())};
+    sigtimedwait(&signals, nullptr, &time);  // the destructor's ends it; others change nothing
   }
 }
 

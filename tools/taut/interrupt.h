@@ -11,8 +11,8 @@ namespace taut::tool {
 /// Turns SIGINT and SIGTERM into a stop request while it lives.
 ///
 /// The signals are blocked in all threads and taken by a thread of its own, which may therefore
-/// call what a signal handler may not. A signal that comes again a second or more after the first
-/// ends the process at once, whatever it is doing.
+/// call what a signal handler may not. What has not stopped shortly after the request, as it is in
+/// a library or writes a large file, is ended by that thread; no file is left half-written.
 ///
 /// Construct it before any other thread starts: threads inherit the blocked signals.
 class Interrupt {
@@ -28,6 +28,7 @@ class Interrupt {
 
  private:
   void watch();
+  void wait_for_end() const;
 
   std::stop_source source_;
   std::atomic<int> signal_ = 0;

@@ -11,6 +11,7 @@
 
 #include "exit_code.h"
 #include "taut/io/formats.h"
+#include "taut/io/output_file.h"
 #include "taut/io/write_project.h"
 #include "text.h"
 
@@ -109,24 +110,17 @@ void check_outputs(const std::vector<std::string>& hulls, const std::string& std
 
 void write_text(const std::string& path, std::string_view text) {
   std::error_code error;
-  const bool in_place = fs::exists(path, error) && !fs::is_regular_file(path, error);
-  const std::string name =
-      in_place ? path : path + ".tmp-" + std::to_string(static_cast<long>(getpid()));
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "wb"),
-                                                       &std::fclose);
-  if (!file) throw IoError(path + ": cannot be written: " + reason());
-  try {
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"),
+                                                               &std::fclose);
+    if (!file) throw IoError(path + ": cannot be written: " + reason());
     write_whole(file.get(), path, text);
-    if (std::fclose(file.release()) != 0) {
-      throw IoError(path + ": cannot be written: " + reason());
-    }
-    if (!in_place && std::rename(name.c_str(), path.c_str()) != 0) {
-      throw IoError(path + ": cannot be written: " + reason());
-    }
-  } catch (const IoError&) {
-    if (!in_place) std::remove(name.c_str());
-    throw;
+    return;
   }
+  OutputFile file(path);
+  file.text(text);
+  file.finish();
+  file.publish();
 }
 
 void write_stdout(std::string_view text) { write_whole(stdout, "standard output", text); }
