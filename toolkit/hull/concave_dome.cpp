@@ -20,7 +20,7 @@ constexpr double coarse = 0.5;
 /// and nothing so narrow is divided to find it curved one way.
 constexpr double fine = 1.0 / 32;
 /// Pieces of the surface after which a disc is given up.
-constexpr std::size_t piece_limit = 4096;
+constexpr std::size_t piece_limit = 512;
 /// Share of the radius that is kept clear of the border, far more than rounding.
 constexpr double clearance = 1e-6;
 const double diagonal = std::sqrt(0.5);

@@ -46,10 +46,13 @@ constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too, and how many more a sample and a
-/// refined cell may take: ten times what generic models take and more, some seconds.
-constexpr long least_cells = 3'000'000;
-constexpr long cells_a_sample = 500;
-constexpr long cells_a_refined_cell = 2'000;
+/// refined cell may take: hundreds of times what generic models take, some seconds.
+constexpr long least_cells = 5'000'000;
+constexpr long cells_a_sample = 2'000;
+/// Likewise how many more a query may take, twice what it does on the worst models that came out
+/// whole: where queries cost more there is next to nothing that parts contacts from each other.
+constexpr long first_cells = 2'000'000;
+constexpr long cells_a_query = 500;
 /// Culled cells, at least, the sides of which are looked at together.
 constexpr std::ptrdiff_t cells_at_a_time = 1024;
 constexpr int depth_limit = 40;
@@ -151,7 +154,8 @@ class GraphTracer {
   SupportQuery& query_;
   const Progress& progress_;
   GraphBuilder built_;
-  long first_cells_ = 0;
+  long cells_before_ = 0;  // of the query, before
+  long queries_before_ = 0;
   long cell_limit_ = 0;
   bool exhausted_ = false;
   long cells_searched_ = 0;
@@ -168,7 +172,9 @@ class GraphTracer {
 /// support queries, so that the same is given up each time.
 bool GraphTracer::given_up() {
   if (exhausted_ || built_.graph().unresolved.size() + failed_.size() >= failure_limit) return true;
-  if (query_.cells() - first_cells_ <= cell_limit_) return false;
+  const long cells = query_.cells() - cells_before_;
+  const long queries = query_.queries() - queries_before_;
+  if (cells <= std::min(cell_limit_, first_cells + cells_a_query * queries)) return false;
   built_.fail(dvec3(0.0),
               "the search for separating curves was given up: contact along curves or areas");
   exhausted_ = true;
@@ -414,7 +420,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
     progress_.check();
     const std::size_t count = left.size();
     left = built_.uncrossed(refinement.refined(left), refined_margin);
-    cell_limit_ += cells_a_refined_cell * long(left.size());
+    cell_limit_ += cells_a_sample * long(left.size());
     part_cells(left);
     left = built_.uncrossed(left, refined_margin);
     fewer = left.size() < count;
@@ -541,7 +547,7 @@ void GraphTracer::trace_waiting() {
   while (!waiting_.empty() && !given_up()) {
     const int node = waiting_.back();
     waiting_.pop_back();
-    for (std::size_t i = 0; i < built_.node(node).contacts.size(); ++i) {
+    for (std::size_t i = 0; i < built_.node(node).contacts.size() && !given_up(); ++i) {
       const FacetNode& own = built_.node(node);
       if (own.slots[i].arc < 0 && !own.is_curved(i)) trace_from(node, i);
     }
@@ -578,7 +584,8 @@ void GraphTracer::trace_from(int node, std::size_t side) {
 
 SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
-  first_cells_ = query_.cells();
+  cells_before_ = query_.cells();
+  queries_before_ = query_.queries();
   cell_limit_ = least_cells + cells_a_sample * long(samples.size());
   find_settled(cells);
   stretches_ = touched_stretches(geometry_, query_, cells);
