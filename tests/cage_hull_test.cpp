@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <set>
@@ -441,6 +442,38 @@ void expect_whole(const char* file, double accuracy, std::optional<Scheme> schem
   const std::optional<Model> model = model_from_elsewhere(file, scheme, accuracy);
   if (!model) GTEST_SKIP() << "TAUT_MODELS names no folder with " << file;
   expect_verified(*model, whole_hull(*model, file), file);
+}
+
+/// Two rings of quads about a pole, where they have a corner twice.
+ControlCage bowl(int sides) {
+  ControlCage cage;
+  for (const dvec2& ring : {dvec2(1, -0.78), dvec2(0.3, -1)}) {
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      cage.points.emplace_back(ring.x * std::cos(angle), ring.y, ring.x * std::sin(angle));
+    }
+  }
+  cage.points.emplace_back(0, -1, 0);
+  for (int k = 0; k < sides; ++k) {
+    const int next = (k + 1) % sides;
+    cage.faces.push_back({k, next, sides + next, sides + k});
+    cage.faces.push_back({sides + k, sides + next, 2 * sides, 2 * sides});
+  }
+  return cage;
+}
+
+// Needles about a pole support all but equally: the search for what parts them is given up.
+TEST(CageHull, OfAPoleOfNeedles) {
+  const Model model = cage_model(bowl(12));
+  const HullOptions options{.relative = 1e-3, .progress = {}};
+  const Hull hull = convex_hull(model, options);
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_TRUE(hull.boundary->exhausted);
+  EXPECT_FALSE(hull.boundary->unresolved.empty());
+  EXPECT_LT(hull.statistics.support_queries, 50'000);
+  EXPECT_EQ(hull.kind, HullKind::solid);
+  EXPECT_LE(hull.distance_bound, tolerance_for(options, Scene(model).diagonal()));
+  for (const auto edge : hull.mesh.halfedges()) EXPECT_FALSE(hull.mesh.is_boundary(edge));
 }
 
 TEST(CageHull, OfSheetsWithCornersAndBoundary) {

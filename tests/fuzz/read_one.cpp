@@ -75,7 +75,7 @@ class Listener {
       outcome_.warnings.emplace_back(text);
       require(outcome_.warnings.size() < 1000, "too many warnings");
     };
-    progress.report = [this](std::string_view, double share) {
+    progress.report = [](std::string_view, double share) {
       require(0 <= share && share <= 1, "a share of " + std::to_string(share) + " is done");
     };
     return progress;
