@@ -224,6 +224,7 @@ std::vector<std::pair<int, int>> Connector::sorted_ends() const {
 void Connector::place_vertices() {
   std::vector<bool> has_vertex(4 * patches_.size() + 2 * to_size(free_piece_count_));
   for (int side = 0; side < to_int(sides_.size()); ++side) {
+    progress_.check();
     if (sides_[to_size(side)].collapsed && !smoothness_.is_pole(side)) {
       has_vertex[to_size(points_.find(side_points(side)[0]))] = true;
     }
