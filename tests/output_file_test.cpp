@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "taut/io/whole_file.h"
 #include "temporary_folder.h"
 
 namespace taut {
@@ -35,10 +36,7 @@ TEST_F(OutputFileTest, AppearsWholeOrNotAtAll) {
 TEST_F(OutputFileTest, IsRemovedWhereTheProcessEnds) {
   std::ofstream(path("before.txt")) << "before";
   const auto write_and_exit = [&] {
-    OutputFile published(path("published.txt"));
-    published.text("published");
-    published.finish();
-    published.publish();
+    write_whole_file(path("published.txt"), "published");
     OutputFile before(path("before.txt"));
     before.text("after");
     OutputFile finished(path("finished.txt"));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "taut/core/error.h"
+#include "taut/io/whole_file.h"
 
 namespace taut {
 namespace {
@@ -40,6 +41,13 @@ void exit_without_output(int code) {
     std::filesystem::remove(*file, ignored);
   }
   std::_Exit(code);
+}
+
+void write_whole_file(const std::filesystem::path& path, std::string_view content) {
+  OutputFile file(path);
+  file.text(content);
+  file.finish();
+  file.publish();
 }
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {

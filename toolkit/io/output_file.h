@@ -10,10 +10,6 @@
 
 namespace taut {
 
-/// Ends the process at once, as std::_Exit(), but removes the files that are not yet published;
-/// from any thread, whatever others are doing.
-[[noreturn]] void exit_without_output(int code);
-
 /// A file that appears whole or not at all: it is written under a temporary name beside the target
 /// and takes the target's name when published. Without that the destructor removes it, or
 /// exit_without_output().

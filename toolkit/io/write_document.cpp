@@ -7,7 +7,7 @@
 #include "taut/io/formats.h"
 #include "taut/io/joined_pieces.h"
 #include "taut/io/model_document.h"
-#include "taut/io/output_file.h"
+#include "taut/io/whole_file.h"
 
 namespace taut {
 namespace {
@@ -378,12 +378,8 @@ void write_model(const std::filesystem::path& path, const Model& model) {
   if (kind != ".taut.json" && kind != ".taut.cbor") {
     throw IoError(path.string() + ": a model is written as .taut.json or .taut.cbor only");
   }
-  const std::string document =
-      to_document(model, kind == ".taut.json" ? DocumentEncoding::json : DocumentEncoding::cbor);
-  OutputFile file(path);
-  file.text(document);
-  file.finish();
-  file.publish();
+  write_whole_file(path, to_document(model, kind == ".taut.json" ? DocumentEncoding::json
+                                                                 : DocumentEncoding::cbor));
 }
 
 }  // namespace taut

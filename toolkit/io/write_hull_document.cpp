@@ -3,7 +3,7 @@
 #include "taut/io/formats.h"
 #include "taut/io/hull_document.h"
 #include "taut/io/hull_document_format.h"
-#include "taut/io/output_file.h"
+#include "taut/io/whole_file.h"
 
 namespace taut {
 namespace {
@@ -264,12 +264,8 @@ void write_hull(const std::filesystem::path& path, const HullDocument& hull) {
   if (kind != ".hull.json" && kind != ".hull.cbor") {
     throw IoError(path.string() + ": an exact hull is written as .hull.json or .hull.cbor only");
   }
-  const std::string document =
-      to_document(hull, kind == ".hull.json" ? DocumentEncoding::json : DocumentEncoding::cbor);
-  OutputFile file(path);
-  file.text(document);
-  file.finish();
-  file.publish();
+  write_whole_file(path, to_document(hull, kind == ".hull.json" ? DocumentEncoding::json
+                                                                : DocumentEncoding::cbor));
 }
 
 }  // namespace taut

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <ctime>
 
-#include "taut/io/output_file.h"
+#include "taut/io/whole_file.h"
 
 namespace taut::tool {
 namespace {

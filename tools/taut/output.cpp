@@ -11,7 +11,7 @@
 
 #include "exit_code.h"
 #include "taut/io/formats.h"
-#include "taut/io/output_file.h"
+#include "taut/io/whole_file.h"
 #include "taut/io/write_project.h"
 #include "text.h"
 
@@ -117,10 +117,7 @@ void write_text(const std::string& path, std::string_view text) {
     write_whole(file.get(), path, text);
     return;
   }
-  OutputFile file(path);
-  file.text(text);
-  file.finish();
-  file.publish();
+  write_whole_file(path, text);
 }
 
 void write_stdout(std::string_view text) { write_whole(stdout, "standard output", text); }
