@@ -91,6 +91,9 @@ TEST(Gluings, OfTwoFacesAreReadOrRefused) {
   }
 }
 
+// The third of contacts in line was asked for where it no longer was.
+TEST(RandomModels, ThatHaveCrashed) { expect_no_finding(random_surfaces(3319)); }
+
 TEST(RandomModels, AreReadOrRefused) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     expect_no_finding(random_cage(seed));

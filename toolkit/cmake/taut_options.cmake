@@ -28,4 +28,6 @@ if(TAUT_SANITIZE)
   target_compile_options(taut_options INTERFACE -fsanitize=${TAUT_SANITIZE} -fno-omit-frame-pointer
                                                 -fno-sanitize-recover=all)
   target_link_options(taut_options INTERFACE -fsanitize=${TAUT_SANITIZE})
+  # Indices and optionals of the standard library are checked too.
+  target_compile_definitions(taut_options INTERFACE _GLIBCXX_ASSERTIONS)
 endif()

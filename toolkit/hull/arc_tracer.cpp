@@ -427,19 +427,22 @@ std::optional<Trace::Pace> Trace::near_merging() {
 bool Trace::ends_in_line(const Contact& winner) {
   const std::optional<Contact> third = between_in_line(geometry_, point_.at, winner);
   if (!third) return false;
-  const auto stays = [&](const CommonSupport& s) {
-    const std::optional<Contact> c = between_in_line(geometry_, s, *third);
-    return c && same_element(*c, *third);
-  };
   CommonSupport last = point_.at;
+  Contact between = *third;  // at the last one
   double low = 0;
   double high = step_;
   for (int k = 0; k < bisection_limit && high - low > margin_slack; ++k) {
     const double middle = 0.5 * (low + high);
     const std::optional<CommonSupport> s = point_.stepped(middle);
     if (!s) return false;
-    if (stays(*s)) last = *s;
-    (stays(*s) ? low : high) = middle;
+    const std::optional<Contact> there = between_in_line(geometry_, *s, *third);
+    if (there && same_element(*there, *third)) {
+      low = middle;
+      last = *s;
+      between = *there;
+    } else {
+      high = middle;
+    }
   }
   // It surpasses them from within its element, or what it changes into has done so before.
   if (high == step_ || !point_.supports(last)) return false;
@@ -447,9 +450,10 @@ bool Trace::ends_in_line(const Contact& winner) {
     push(last.ruling());
   } else {  // where the trace stands already
     last = point_.at;
+    between = *third;
   }
   arc_.n = last.n;
-  arc_.contacts = {last.contact[0], last.contact[1], *between_in_line(geometry_, last, *third)};
+  arc_.contacts = {last.contact[0], last.contact[1], between};
   return true;
 }
 

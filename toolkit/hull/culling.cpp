@@ -48,8 +48,8 @@ constexpr std::size_t tasks = 64;
 /// k cells away.
 constexpr int widest_surrounding = 8;
 
-/// Cells that a task's queries may look at, and how many more each of them: a hundred times what is
-/// usual. Where much of a model is as high but for little, as about a pole of hundreds of needles,
+/// Cells that a task's queries may look at, and how many more each of them: ten times what is
+/// usual, and more. Where much of a model is as high but for little, as about a pole of needles,
 /// they take thousands, and decide next to nothing; such cells are left to be traced.
 constexpr long cells_a_task = 5'000;
 constexpr long cells_a_query = 200;

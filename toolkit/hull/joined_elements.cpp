@@ -69,9 +69,10 @@ void move_together(const ContactGeometry& geometry, Contact& a, Contact& b) {
     return false;
   };
   if (moved(a, b) || moved(b, a)) return;
-  if (const std::optional<Contact> corner = common_corner(geometry, a, b)) {
+  const std::optional<Contact> corner = common_corner(geometry, a, b);
+  if (const auto there = corner ? expressed_in(geometry, *corner, b) : std::nullopt) {
     a = *corner;
-    b = *expressed_in(geometry, a, b);
+    b = *there;
     return;
   }
   // Two edges that end in one vertex.
