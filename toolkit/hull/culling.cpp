@@ -50,7 +50,7 @@ constexpr int widest_surrounding = 8;
 
 /// Cells that a task's queries may look at, and how many more each of them: ten times what is
 /// usual, and more. Where much of a model is as high but for little, as about a pole of needles,
-/// they take thousands, and decide next to nothing; such cells are left to be traced.
+/// they take thousands, and decide next to nothing; the most of such cells are left to be traced.
 constexpr long cells_a_task = 5'000;
 constexpr long cells_a_query = 200;
 
@@ -139,10 +139,15 @@ struct PatchResult {
 struct Tools {
   Tools(const Scene& scene, ConcaveSurroundings& with, std::stop_token stop = {})
       : query(scene, stop), reach(scene, std::move(stop)), surroundings(with) {}
-  bool may_ask() const { return query.cells() < cells_a_task + cells_a_query * query.queries(); }
+  /// To be asked before each query; those that are not made count too.
+  bool may_ask() {
+    ++asked;
+    return query.cells() < cells_a_task + cells_a_query * asked;
+  }
   SupportQuery query;
   ReachTest reach;
   ConcaveSurroundings& surroundings;
+  long asked = 0;
   std::vector<std::array<CellNets, 4>> quarters;  // per level
 };
 

@@ -154,7 +154,7 @@ struct HullBoundary {
   std::vector<HullFace> faces;
   std::vector<HullCurve> curves;
   std::vector<Unresolved> unresolved;
-  /// What was found until the search was given up since it took too long; `unresolved` says so.
+  /// What was found until the search was given up as too costly; `unresolved` says so.
   bool exhausted = false;
 
   int count(FaceKind kind) const {

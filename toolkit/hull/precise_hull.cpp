@@ -94,6 +94,8 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
         statistics += hull.statistics;
         continue;
       }
+      // Of a search that was given up they tell nothing new.
+      if (boundary->exhausted) strays.clear();
       for (const Sample& s : strays) {
         boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
       }

@@ -45,13 +45,13 @@ constexpr double vertex_slope = 1e-10;
 constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
-/// Cells of support queries after which it is given up, too, and how many more a sample and a
-/// refined cell may take: hundreds of times what generic models take, some seconds.
+/// Cells of support queries after which it is given up, too; how many more a sample and a refined
+/// cell may take, hundreds of times what generic models do, some seconds;
 constexpr long least_cells = 5'000'000;
 constexpr long cells_a_sample = 2'000;
-/// Likewise how many more a query may take, twice what it does on the worst models that came out
-/// whole: where queries cost more there is next to nothing that parts contacts from each other.
-constexpr long first_cells = 2'000'000;
+/// and likewise by queries, each twice what it takes on the worst models that came out whole: where
+/// they cost more there is next to nothing that parts contacts from each other.
+constexpr long first_cells = 3'000'000;
 constexpr long cells_a_query = 500;
 /// Culled cells, at least, the sides of which are looked at together.
 constexpr std::ptrdiff_t cells_at_a_time = 1024;
@@ -157,7 +157,8 @@ class GraphTracer {
   long cells_before_ = 0;  // of the query, before
   long queries_before_ = 0;
   long cell_limit_ = 0;
-  bool exhausted_ = false;
+  bool given_up_ = false;
+  bool exhausted_ = false;  // and therefore given up
   long cells_searched_ = 0;
   std::set<std::pair<int, int>> settled_;  // instances and patches
   std::vector<TouchedStretch> stretches_;
@@ -171,14 +172,16 @@ class GraphTracer {
 /// Whether there is too much that cannot be resolved, or it costs too much. Counted in the cells of
 /// support queries, so that the same is given up each time.
 bool GraphTracer::given_up() {
-  if (exhausted_ || built_.graph().unresolved.size() + failed_.size() >= failure_limit) return true;
+  if (given_up_) return true;
   const long cells = query_.cells() - cells_before_;
   const long queries = query_.queries() - queries_before_;
-  if (cells <= std::min(cell_limit_, first_cells + cells_a_query * queries)) return false;
-  built_.fail(dvec3(0.0),
-              "the search for separating curves was given up: contact along curves or areas");
-  exhausted_ = true;
-  return true;
+  exhausted_ = cells > std::min(cell_limit_, first_cells + cells_a_query * queries);
+  if (exhausted_) {
+    built_.fail(dvec3(0.0),
+                "the search for separating curves was given up, as too many contacts all but tie");
+  }
+  given_up_ = exhausted_ || built_.graph().unresolved.size() + failed_.size() >= failure_limit;
+  return given_up_;
 }
 
 /// Planes with contact along whole curves.
@@ -307,6 +310,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
 
 /// Finds and traces the curves between every two neighbours on the samples' polytope.
 void GraphTracer::part_samples(const std::vector<Sample>& samples) {
+  if (given_up()) return;
   std::vector<Sighting> sightings;
   std::vector<dvec3> points;
   Box box;
@@ -333,6 +337,7 @@ void GraphTracer::part_samples(const std::vector<Sample>& samples) {
 
 /// Finds and traces the curves that begin in a pole: they cross a small circle about its normal.
 void GraphTracer::part_about(const SupportingPole& pole) {
+  if (given_up()) return;
   const std::array<dvec3, 2> frame = tangent_frame(pole.n);
   std::vector<Sighting> circle;
   circle.reserve(circle_samples);
@@ -350,7 +355,7 @@ void GraphTracer::part_about(const SupportingPole& pole) {
 /// Halfway between two whose contacts are farther apart than to first order, the two branches may
 /// be there only near the curve: a climb from farther off would lead from the one to the other.
 void GraphTracer::part_closely(const Sighting& a, const Sighting& b, int depth) {
-  if (depth == 0 || (is_near(geometry_, a, b) && is_near(geometry_, b, a))) {
+  if (depth == 0 || given_up() || (is_near(geometry_, a, b) && is_near(geometry_, b, a))) {
     part(a, b, 0);
     return;
   }
@@ -373,7 +378,7 @@ void GraphTracer::part_cells(const std::vector<CulledCell>& cells) {
   }
 }
 
-/// Of these cells. @pre none of others are of their patches
+/// Of these cells. @pre all cells of their patches are among them
 void GraphTracer::part_sides(std::span<const CulledCell> cells) {
   for (const SupportChange& change : support_changes(geometry_, query_, cells)) {
     if (given_up()) break;
@@ -619,6 +624,10 @@ void GraphTracer::tell_failures() {
     for (std::size_t k = 0; k < own.slots.size(); ++k) {
       if (own.slots[k].arc < 0 && !own.is_curved(k)) built_.fail(own.n, reason);
     }
+  }
+  if (given_up_ && built_.graph().unresolved.empty()) {
+    built_.fail(dvec3(0.0),
+                "the search for separating curves was given up after too many that were not found");
   }
 }
 

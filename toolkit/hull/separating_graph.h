@@ -43,8 +43,8 @@ struct SeparatingGraph {
   /// Cells, of the finest that were looked at, which are neither proven on nor off and which no
   /// known contact accounts for; in them curves were sought in vain.
   long cells_searched = 0;
-  /// The search took too many cells of support queries and was given up, as `unresolved` tells:
-  /// there may be much that it has not come to.
+  /// The search was given up since it took too many cells of support queries, as `unresolved` tells
+  /// (not since too much of it failed): there may be much that it has not come to.
   bool exhausted = false;
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
+#include <chrono>
 #include <mutex>
 #include <system_error>
 #include <utility>
@@ -16,9 +16,9 @@ namespace {
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-/// What exit_without_output() removes.
+/// What abandon_files() removes.
 struct Unpublished {
-  std::mutex mutex;  // held while files come and go
+  std::timed_mutex mutex;  // held while files come and go
   std::vector<const std::filesystem::path*> files;
 
   void remove(const std::filesystem::path& file) {
@@ -34,13 +34,13 @@ Unpublished& unpublished() {
 
 }  // namespace
 
-void exit_without_output(int code) {
-  unpublished().mutex.lock();  // for good: nothing is published any more
+void abandon_files() {
+  // For good: nothing is published any more.
+  if (!unpublished().mutex.try_lock_for(std::chrono::seconds(1))) return;
   for (const std::filesystem::path* file : unpublished().files) {
     std::error_code ignored;
     std::filesystem::remove(*file, ignored);
   }
-  std::_Exit(code);
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view content) {
@@ -54,6 +54,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   // Opened only where no file is, so that two writers and what a crash left do not meet.
   constexpr int attempts = 1000;
   const std::lock_guard lock(unpublished().mutex);
+  unpublished().files.reserve(unpublished().files.size() + 1);  // no file stays if there is no room
   for (int i = 0; i < attempts && !file_; ++i) {
     temporary_ = path_;
     temporary_ += ".tmp" + std::to_string(i);

@@ -12,7 +12,7 @@ namespace taut {
 
 /// A file that appears whole or not at all: it is written under a temporary name beside the target
 /// and takes the target's name when published. Without that the destructor removes it, or
-/// exit_without_output().
+/// abandon_files().
 class OutputFile : public OutputBuffer {
  public:
   /// @throws IoError if the folder cannot be written to, as do all that follow where they fail

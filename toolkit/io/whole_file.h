@@ -9,8 +9,10 @@ namespace taut {
 /// at all. @throws IoError
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
-/// Ends the process at once, as std::_Exit(), but removes the files that are being written under
-/// temporary names, here or by another function of Taut; from any thread, whatever others do.
-[[noreturn]] void exit_without_output(int code);
+/// Removes the files that stand under temporary names, of this function and others of Taut, and
+/// lets none be published any more: for a process that is to end at once. From any thread, whatever
+/// others do; they wait where they would open or publish a file. Does nothing if a folder does not
+/// answer for a second.
+void abandon_files();
 
 }  // namespace taut

@@ -59,11 +59,16 @@ double distance_from_hull_bound(const dvec3& p, const PointTree& points, double 
   const dvec3 nearest = points.nearest(p);
   Corral corral{{nearest - p}, {1.0}};
   dvec3 x = corral.sum();
-  const double rounding = 16 * rounding_unit * (glm::length(p) + glm::length(nearest));
+  const auto rounding_of = [&](const dvec3& q) {
+    return 16 * rounding_unit * (glm::length(p) + glm::length(q));
+  };
+  double rounding = rounding_of(nearest);
   double best = glm::length(x);
   for (int step = 0; step < step_limit && best > 0 && best + rounding > enough; ++step) {
-    const dvec3 q = points.lowest(x) - p;
+    const dvec3 lowest = points.lowest(x);
+    const dvec3 q = lowest - p;
     if (glm::dot(q, x) >= glm::dot(x, x) * (1 - 64 * rounding_unit)) break;
+    rounding = std::max(rounding, rounding_of(lowest));
     corral.points.push_back(q);
     corral.weights.push_back(0);
     while (corral.points.size() > 1 && corral.step_towards(corral.affine_minimizer())) {

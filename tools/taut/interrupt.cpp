@@ -1,11 +1,14 @@
 #include "interrupt.h"
 
+#include <poll.h>
 #include <pthread.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
+#include <cstdlib>
 #include <ctime>
+#include <string_view>
 
 #include "taut/io/whole_file.h"
 
@@ -14,6 +17,7 @@ namespace {
 
 /// What hears a request to stop needs less.
 constexpr std::chrono::milliseconds patience(100);
+static_assert(patience < std::chrono::seconds(1), "a timespec's nanoseconds are fewer");
 
 sigset_t watched_signals() {
   sigset_t signals;
@@ -21,6 +25,16 @@ sigset_t watched_signals() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   return signals;
+}
+
+/// Not through stdio, which others may hold, and only where it does not have to wait.
+void tell_end() {
+  pollfd ready = {STDERR_FILENO, POLLOUT, 0};
+  if (poll(&ready, 1, 0) <= 0) return;
+  // Over a progress bar.
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  const std::string_view text = terminal ? "\r\x1b[Ktaut: interrupted\n" : "taut: interrupted\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
 }
 
 ExitCode exit_code_of(int signal) {
@@ -65,8 +79,9 @@ void Interrupt::wait_for_end() const {
   while (!ending_) {
     const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(last - Clock::now());
     if (left.count() <= 0) {
-      std::fputs("taut: interrupted\n", stderr);
-      exit_without_output(static_cast<int>(exit_code()));
+      abandon_files();
+      tell_end();
+      std::_Exit(static_cast<int>(exit_code()));
     }
     const timespec time = {0, static_cast<long>(left.count())};
     sigtimedwait(&signals, nullptr, &time);  // the destructor's ends it; others change nothing

@@ -16,7 +16,7 @@ std::size_t read_some(int descriptor, std::span<char> buffer, const std::string&
   for (;;) {
     if (stop.stop_requested()) throw Cancelled();
     pollfd wait = {descriptor, POLLIN, 0};
-    if (poll(&wait, 1, 100) == 0) continue;
+    if (poll(&wait, 1, 25) == 0) continue;
     const ssize_t count = read(descriptor, buffer.data(), buffer.size());
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count < 0) {
