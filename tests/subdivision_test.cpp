@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cages.h"
+#include "error_checks.h"
 #include "models.h"
 #include "refined_cage.h"
 #include "taut/bounds/scene.h"
@@ -689,6 +690,25 @@ TEST(SubTriangle, IsTheSamePatch) {
       EXPECT_LE(glm::distance(value_of_triangle(net, at), triangle_at(net, degree, at)), 1e-14);
     }
   }
+}
+
+// Two quads that share two edges, the vertex between them inner.
+TEST(AddCage, RefusesADartOfTwoFaces) {
+  ControlCage cage;
+  cage.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0}, {1, 1, -0.2}};
+  cage.faces = {{0, 1, 2, 3}, {0, 3, 4, 1}};
+  const auto add = [&](double sharpness, double other) {
+    cage.creases = {{{0, 1}, sharpness}, {{0, 3}, other}};
+    Part part;
+    add_cage(part, cage, "c");
+  };
+  EXPECT_EQ(message_of<InvalidInput>([&] { add(infinite_sharpness, 2.5); }),
+            "vertex 0 of the cage has two faces that share two edges, of which one is infinitely "
+            "sharp: OpenSubdiv has no limit surface there");
+  EXPECT_THROW(add(0, infinite_sharpness), InvalidInput);
+  EXPECT_NO_THROW(add(0, 0));
+  EXPECT_NO_THROW(add(2.5, 0));
+  EXPECT_NO_THROW(add(infinite_sharpness, infinite_sharpness));
 }
 
 TEST(HullDistance, OfSimplePolytopes) {

@@ -29,8 +29,8 @@ struct CageOptions {
 /// one orientation, vertices about which faces are no fan, and faces with repeated vertices.
 /// `place` begins the warnings: what of which the cage is, as "FILE". Errors tell of the cage
 /// alone.
-/// @throws InvalidInput if the cage is not valid or the part's extent would overflow, BackendError
-/// if OpenSubdiv does not take it, Cancelled
+/// @throws InvalidInput if the cage is not valid, has a dart of two faces or the part's extent
+/// would overflow, BackendError if OpenSubdiv does not take it, Cancelled
 void add_cage(Part& part, const ControlCage& cage, const std::string& place,
               const CageOptions& options = {});
 

@@ -140,6 +140,16 @@ struct CageLevel::Topology {
            base.GetVertexFaces(vertex).size() <= (scheme == CageScheme::loop ? 3 : 2);
   }
 
+  /// An inner vertex of two faces of which one of the two edges is infinitely sharp: a dart, at
+  /// latest when others have become smooth. OpenSubdiv (3.5) writes past the end of its caps.
+  bool is_dart_of_two_faces(int vertex) const {
+    const Far::TopologyLevel base = level();
+    if (base.IsVertexBoundary(vertex) || base.IsVertexInfSharp(vertex)) return false;
+    const auto edges = base.GetVertexEdges(vertex);
+    return base.GetVertexFaces(vertex).size() == 2 && edges.size() == 2 &&
+           base.IsEdgeInfSharp(edges[0]) != base.IsEdgeInfSharp(edges[1]);
+  }
+
   /// OpenSubdiv (3.5) makes the rows of a cap's matrix too short, and writes past its end, where
   /// the infinitely sharp edge at a dart leads to an irregular vertex; it makes them too long, and
   /// leaves in them what was there, where an edge leads to one from an inner vertex of two faces
@@ -295,6 +305,12 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
     topology_->build(sheets.description());
   }
   const Far::TopologyLevel base = topology_->level();
+  for (int v = 0; v < base.GetNumVertices(); ++v) {
+    if (!topology_->is_dart_of_two_faces(v)) continue;
+    throw InvalidInput("vertex " + std::to_string(topology_->numbers[to_size(v)]) +
+                       " of the cage has two faces that share two edges, of which one is "
+                       "infinitely sharp: OpenSubdiv has no limit surface there");
+  }
   cells_.reserve(cage.faces.size());
   for (int f = 0; f < base.GetNumFaces(); ++f) {
     if (!base.IsFaceHole(f)) cells_.push_back({f, f, -1});

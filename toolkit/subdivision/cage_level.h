@@ -53,7 +53,8 @@ struct CellPatch {
 class CageLevel {
  public:
   /// The control cage itself: its faces but the holes, and those without surface at its boundary.
-  /// @throws BackendError if OpenSubdiv does not take the cage
+  /// @throws BackendError if OpenSubdiv does not take the cage; InvalidInput where it has no limit
+  /// surface: at an inner vertex of two faces with one infinitely sharp edge
   explicit CageLevel(const ControlCage& cage);
   ~CageLevel();
   CageLevel(CageLevel&&) noexcept;

@@ -48,7 +48,7 @@ struct LimitSurface {
 ///
 /// The bound: limit surface and end cap lie within the convex hull of the control points and the
 /// cap's, no farther than that from the convex hull of known points of the surface around.
-/// @pre validate() passes @throws BackendError, Cancelled
+/// @pre validate() passes @throws BackendError, InvalidInput (CageLevel), Cancelled
 LimitSurface limit_patches(const ControlCage& cage, const LimitOptions& options = {});
 
 }  // namespace taut
