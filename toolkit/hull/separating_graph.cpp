@@ -49,12 +49,12 @@ constexpr std::size_t failure_limit = 64;
 /// cell may take, hundreds of times what generic models do, some seconds;
 constexpr long least_cells = 5'000'000;
 constexpr long cells_a_sample = 2'000;
-/// and likewise by queries, each twice what it takes on the worst models that came out whole: where
-/// they cost more there is next to nothing that parts contacts from each other.
-constexpr long first_cells = 3'000'000;
-constexpr long cells_a_query = 500;
+/// and likewise by queries, each half as many again as it takes on the worst models that came out
+/// whole: where they cost more there is next to nothing that parts contacts from each other.
+constexpr long first_cells = 2'000'000;
+constexpr long cells_a_query = 400;
 /// Culled cells, at least, the sides of which are looked at together.
-constexpr std::ptrdiff_t cells_at_a_time = 1024;
+constexpr std::ptrdiff_t cells_at_a_time = 128;
 constexpr int depth_limit = 40;
 /// The circle about a pole's normal on which curves are sought.
 constexpr double circle_radius = 2e-4;
