@@ -47,11 +47,12 @@ constexpr double end_step = 1e-3;
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too; how many more a sample and a refined
 /// cell may take, hundreds of times what generic models do, some seconds;
-constexpr long least_cells = 5'000'000;
+constexpr long cells_of_search = 5'000'000;
 constexpr long cells_a_sample = 2'000;
 /// and likewise by queries, each half as many again as it takes on the worst models that came out
-/// whole: where they cost more there is next to nothing that parts contacts from each other.
-constexpr long first_cells = 2'000'000;
+/// whole, once so many are spent: where they cost more there is next to nothing that parts contacts
+/// from each other.
+constexpr long cells_before_rate = 2'000'000;
 constexpr long cells_a_query = 400;
 /// Culled cells, at least, the sides of which are looked at together.
 constexpr std::ptrdiff_t cells_at_a_time = 128;
@@ -175,7 +176,7 @@ bool GraphTracer::given_up() {
   if (given_up_) return true;
   const long cells = query_.cells() - cells_before_;
   const long queries = query_.queries() - queries_before_;
-  exhausted_ = cells > std::min(cell_limit_, first_cells + cells_a_query * queries);
+  exhausted_ = cells > std::min(cell_limit_, cells_before_rate + cells_a_query * queries);
   if (exhausted_) {
     built_.fail(dvec3(0.0),
                 "the search for separating curves was given up, as too many contacts all but tie");
@@ -591,7 +592,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
   cells_before_ = query_.cells();
   queries_before_ = query_.queries();
-  cell_limit_ = least_cells + cells_a_sample * long(samples.size());
+  cell_limit_ = cells_of_search + cells_a_sample * long(samples.size());
   find_settled(cells);
   stretches_ = touched_stretches(geometry_, query_, cells);
   find_planes();

@@ -91,6 +91,9 @@ std::vector<int> child_numbers(const Far::TopologyLevel& level, const Far::Topol
   return result;
 }
 
+/// Where OpenSubdiv's caps at a vertex can be relied on.
+enum class SoundCaps { here, on_refined_levels, on_no_level };
+
 }  // namespace
 
 struct CageLevel::Topology {
@@ -141,7 +144,7 @@ struct CageLevel::Topology {
   }
 
   /// An inner vertex of two faces of which one of the two edges is infinitely sharp: a dart, at
-  /// latest when others have become smooth. OpenSubdiv (3.5) writes past the end of its caps.
+  /// latest when others have become smooth.
   bool is_dart_of_two_faces(int vertex) const {
     const Far::TopologyLevel base = level();
     if (base.IsVertexBoundary(vertex) || base.IsVertexInfSharp(vertex)) return false;
@@ -150,15 +153,21 @@ struct CageLevel::Topology {
            base.IsEdgeInfSharp(edges[0]) != base.IsEdgeInfSharp(edges[1]);
   }
 
-  /// OpenSubdiv (3.5) makes the rows of a cap's matrix too short, and writes past its end, where
-  /// the infinitely sharp edge at a dart leads to an irregular vertex; it makes them too long, and
-  /// leaves in them what was there, where an edge leads to one from an inner vertex of two faces
-  /// or, of a Loop cage, of three. Only the control cage has such edges.
+  /// Where OpenSubdiv (3.5) makes sound caps at a vertex. It makes the rows of a cap's matrix too
+  /// short, and writes past its end, where the infinitely sharp edge at a dart leads to an
+  /// irregular vertex; it makes them too long, and leaves in them what was there, where an edge
+  /// leads to one from an inner vertex of two faces or, of a Loop cage, of three. Only the control
+  /// cage has such edges; but at a dart of two faces it writes past the end on every level.
+  SoundCaps sound_caps(int vertex) const {
+    if (is_dart_of_two_faces(vertex)) return SoundCaps::on_no_level;
+    const bool unsound = is_dart(vertex) || is_inner_with_few_faces(vertex);
+    return unsound && !is_refined ? SoundCaps::on_refined_levels : SoundCaps::here;
+  }
+
   bool has_patch(int face) const {
-    if (is_refined) return true;
     const auto vertices = level().GetFaceVertices(face);
-    return std::none_of(vertices.begin(), vertices.end(),
-                        [&](int v) { return is_dart(v) || is_inner_with_few_faces(v); });
+    return std::all_of(vertices.begin(), vertices.end(),
+                       [&](int v) { return sound_caps(v) == SoundCaps::here; });
   }
 
   /// Of some faces, one at least.
@@ -306,7 +315,7 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
   }
   const Far::TopologyLevel base = topology_->level();
   for (int v = 0; v < base.GetNumVertices(); ++v) {
-    if (!topology_->is_dart_of_two_faces(v)) continue;
+    if (topology_->sound_caps(v) != SoundCaps::on_no_level) continue;
     throw InvalidInput("vertex " + std::to_string(topology_->numbers[to_size(v)]) +
                        " of the cage has two faces that share two edges, of which one is "
                        "infinitely sharp: OpenSubdiv has no limit surface there");

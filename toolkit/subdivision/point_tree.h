@@ -7,7 +7,8 @@
 
 namespace taut {
 
-/// Points in a tree of boxes, halved at medians, for searches in logarithmic time.
+/// Points in a tree of boxes, halved at medians, for searches in logarithmic time. The boxes are
+/// along the points' principal axes, thin where the points lie about a plane, however it is turned.
 class PointTree {
  public:
   PointTree() = default;
@@ -31,6 +32,7 @@ class PointTree {
     bool is_leaf() const;
   };
 
+  dvec3 to_frame(const dvec3& p) const { return (p - centre_) * axes_; }
   void build(const Range& range);
   template <typename OfBox, typename OfPoint>
   void search(const Range& range, const OfBox& of_box, const OfPoint& of_point, double& least,
@@ -39,7 +41,9 @@ class PointTree {
   dvec3 least(const OfBox& of_box, const OfPoint& of_point) const;
 
   std::vector<dvec3> points_;
-  std::vector<Box> boxes_;  // of nodes
+  dvec3 centre_ = dvec3(0.0);
+  dmat3 axes_ = dmat3(1.0);  // as columns
+  std::vector<Box> boxes_;   // of nodes, in the frame of these
 };
 
 }  // namespace taut

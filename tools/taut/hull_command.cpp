@@ -85,10 +85,16 @@ double tolerance(const HullArguments& arguments, double diagonal) {
   return tolerance;
 }
 
-/// The hull within the tolerance asked for or, where `failure` is set, the best that was found.
+/// What of the tolerance is the mesh's, where patches stand for others: what these miss is left to
+/// them, unless that were next to nothing.
+double mesh_tolerance(double tolerance, double deviation) {
+  return std::max(tolerance - deviation, tolerance / 2);
+}
+
+/// The hull within the tolerance asked for or, with the reason, the best that was found.
 struct Outcome {
   std::shared_ptr<const Hull> hull;
-  std::optional<HullNotConverged> failure;
+  std::optional<std::string> failure;
 };
 
 Hull hull_of_images(const Scene& scene, int size, const HullOptions& options) {
@@ -111,8 +117,16 @@ Outcome compute(Input& input, const HullArguments& arguments, const HullOptions&
                                              : sampled_hull(input.scene(), options);
     return {std::make_shared<const Hull>(std::move(hull)), {}};
   } catch (const HullNotConverged& failure) {
-    return {failure.best, failure};
+    return {failure.best, failure.what()};
   }
+}
+
+/// The same of the model that is meant, whose surfaces the input's patches may only stand for.
+std::optional<std::string> failure_of_cages(double bound, double deviation, double tolerance) {
+  if (deviation == 0 || bound <= tolerance) return {};
+  return "the tolerance " + number(tolerance, 3) +
+         " was not reached: the limit surfaces of the cages are known to " + number(deviation, 3) +
+         " only";
 }
 
 /// Warns that the exact hull is not complete: how many spots of it, and the first reasons.
@@ -377,20 +391,25 @@ void bring_up_to_date(Report& report, const Outcome& outcome, const Console& con
   report.seconds.total = console.seconds();
   report.peak_bytes = peak_bytes();
   report.warnings = console.warnings();
-  if (outcome.failure) report.warnings.push_back({"not-converged", outcome.failure->what()});
+  if (outcome.failure) report.warnings.push_back({"not-converged", *outcome.failure});
 }
 
 ExitCode run(const HullArguments& arguments, Console& console) {
   check(arguments, console.options().json);
   Input input(arguments.inputs, console);
   HullOptions options;
-  options.tolerance = tolerance(arguments, input.diagonal());
+  const double wanted = tolerance(arguments, input.diagonal());
+  const double deviation = input.model().deviation_bound();
+  options.tolerance = mesh_tolerance(wanted, deviation);
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
-  const Outcome outcome = compute(input, arguments, options);
+  Outcome outcome = compute(input, arguments, options);
 
-  Report report = make_report(input, *outcome.hull, arguments, options.tolerance, console);
+  Report report = make_report(input, *outcome.hull, arguments, wanted, console);
+  if (!outcome.failure) {
+    outcome.failure = failure_of_cages(report.mesh.distance_bound, deviation, wanted);
+  }
   bring_up_to_date(report, outcome, console);
   const Stopwatch writing;
   write_outputs(arguments, input, *outcome.hull, report, console);
@@ -411,10 +430,9 @@ ExitCode run(const HullArguments& arguments, Console& console) {
     console.print(summary(report, written));
   }
   if (!outcome.failure) return ExitCode::done;
-  throw NotConverged(std::string(outcome.failure->what()) + "; the hull " +
-                         (written.empty() ? "found" : "written") + " is within " +
-                         number(report.mesh.distance_bound, 3),
-                     outcome.failure->reached);
+  throw NotConverged(*outcome.failure + "; the hull " + (written.empty() ? "found" : "written") +
+                         " is within " + number(report.mesh.distance_bound, 3),
+                     report.mesh.distance_bound);
 }
 
 }  // namespace
