@@ -312,6 +312,23 @@ TEST_F(Cli, ToleranceOutOfReachExitsWithFiveAndTheBestResult) {
   EXPECT_EQ(run("verify a.ply " + teapot_).exit_code, 1);
 }
 
+TEST_F(Cli, CagesKnownToLessThanTheToleranceExitWithFiveToo) {
+  const std::string cube = plant("cube.obj",
+                                 "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\n"
+                                 "v 0 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n"
+                                 "f 4 1 5 8\n");
+  const std::string hull = "hull " + cube + " --scheme catmark -o a.ply --report r.json ";
+  for (const auto& [accuracy, expected] :
+       {std::pair("1e-2", 5), std::pair("1e-3", 5), std::pair("1e-4", 0), std::pair("1e-9", 0)}) {
+    const Result result = run(hull + "--relative 1e-4 --cage-accuracy " + accuracy);
+    EXPECT_EQ(result.exit_code, expected) << accuracy << result.err;
+    const Json report = Json::parse(content(path("r.json")));
+    const Json& mesh = report["mesh"];
+    EXPECT_EQ(mesh["distance_bound"] > mesh["tolerance"], expected == 5) << accuracy;
+    EXPECT_EQ(report["warnings"].empty(), expected == 0) << accuracy;
+  }
+}
+
 TEST_F(Cli, MemoryLimitExitsWithSix) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer needs more address space";

@@ -22,10 +22,24 @@ struct Plane {
   std::size_t pieces;
 };
 
+/// The same with samples and without.
 std::vector<ContactPlane> planes_of(const Scene& scene) {
   const ContactGeometry geometry(scene);
   SupportQuery query(scene);
-  return contact_planes(geometry, query);
+  std::vector<ContactPlane> planes = contact_planes(geometry, query);
+  Random random(7);
+  std::vector<Sample> samples;
+  for (int k = 0; k < 100; ++k) {
+    const dvec3 n = random_direction(random);
+    samples.push_back({n, query(n).contact});
+  }
+  const std::vector<ContactPlane> same = contact_planes(geometry, query, samples);
+  EXPECT_EQ(planes.size(), same.size());
+  for (std::size_t k = 0; k < std::min(planes.size(), same.size()); ++k) {
+    EXPECT_EQ(planes[k].n, same[k].n);
+    EXPECT_EQ(planes[k].pieces.size(), same[k].pieces.size());
+  }
+  return planes;
 }
 
 /// The pieces of a plane lie in it, are told once each and repeat none, and it supports.

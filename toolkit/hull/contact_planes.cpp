@@ -75,8 +75,11 @@ struct Candidate {
 
 class PlaneFinder {
  public:
-  PlaneFinder(const ContactGeometry& geometry, SupportQuery& query)
-      : geometry_(geometry), query_(query) {}
+  PlaneFinder(const ContactGeometry& geometry, SupportQuery& query,
+              const std::vector<Sample>& samples)
+      : geometry_(geometry), query_(query) {
+    for (const Sample& s : samples) sampled_.push_back(geometry.point(s.contact));
+  }
 
   std::vector<ContactPlane> run();
 
@@ -88,11 +91,16 @@ class PlaneFinder {
   /// How far rounding may have turned a plane.
   double turn(const FittedPlane& plane) const { return geometry_.tie() / plane.width; }
   bool supports(const Candidate& c, double slack) {
-    return query_(c.n(), c.pieces.front()).h <= c.offset() + geometry_.tie() + slack;
+    const dvec3 n = c.n();
+    const double highest = c.offset() + geometry_.tie() + slack;
+    const bool is_below = std::any_of(sampled_.begin(), sampled_.end(),
+                                      [&](const dvec3& x) { return glm::dot(x, n) > highest; });
+    return !is_below && query_(n, c.pieces.front()).h <= highest;
   }
 
   const ContactGeometry& geometry_;
   SupportQuery& query_;
+  std::vector<dvec3> sampled_;
   std::vector<Candidate> pieces_;  // one each
   std::vector<Candidate> planes_;
 };
@@ -170,8 +178,9 @@ std::vector<ContactPlane> PlaneFinder::run() {
 
 }  // namespace
 
-std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query) {
-  return PlaneFinder(geometry, query).run();
+std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query,
+                                         const std::vector<Sample>& samples) {
+  return PlaneFinder(geometry, query, samples).run();
 }
 
 }  // namespace taut

@@ -4,6 +4,7 @@
 
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact_geometry.h"
+#include "taut/hull/sample.h"
 
 namespace taut {
 
@@ -16,7 +17,9 @@ struct ContactPlane {
 };
 
 /// All planes that support the scene and contain plane pieces of edges that are not straight, to
-/// within ContactGeometry::tie(): in their directions the whole curve supports.
-std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query);
+/// within ContactGeometry::tie(): in their directions the whole curve supports. The samples change
+/// nothing but the time: of planes that are below one of them the query is not asked.
+std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query,
+                                         const std::vector<Sample>& samples = {});
 
 }  // namespace taut

@@ -45,13 +45,15 @@ constexpr double vertex_slope = 1e-10;
 constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
-/// Cells of support queries after which it is given up, too; how many more a sample and a refined
-/// cell may take, hundreds of times what generic models do, some seconds;
+/// Cells of support queries after which it is given up, too; how many more a sample may take,
+/// hundreds of times what generic models do, some seconds; and for how many a query counts,
+/// whatever it takes itself, for what is done with its contact.
 constexpr long cells_of_search = 5'000'000;
 constexpr long cells_a_sample = 2'000;
-/// and likewise by queries, each half as many again as it takes on the worst models that came out
-/// whole, once so many are spent: where they cost more there is next to nothing that parts contacts
-/// from each other.
+constexpr long cells_a_contact = 100;
+/// Once so many are spent, not more than so many a query, half as many again as it takes on the
+/// worst models that came out whole: where they cost more there is next to nothing that parts
+/// contacts from each other.
 constexpr long cells_before_rate = 2'000'000;
 constexpr long cells_a_query = 400;
 /// Culled cells, at least, the sides of which are looked at together.
@@ -123,7 +125,7 @@ class GraphTracer {
 
  private:
   static constexpr int no_node = -2;
-  void find_planes();
+  void find_planes(const std::vector<Sample>& samples);
   void find_poles();
   void find_touches(const std::vector<CulledCell>& cells);
   void add_landmark(const Landmark& landmark);
@@ -176,7 +178,8 @@ bool GraphTracer::given_up() {
   if (given_up_) return true;
   const long cells = query_.cells() - cells_before_;
   const long queries = query_.queries() - queries_before_;
-  exhausted_ = cells > std::min(cell_limit_, cells_before_rate + cells_a_query * queries);
+  exhausted_ = cells + cells_a_contact * queries > cell_limit_ ||
+               cells > cells_before_rate + cells_a_query * queries;
   if (exhausted_) {
     built_.fail(dvec3(0.0),
                 "the search for separating curves was given up, as too many contacts all but tie");
@@ -186,8 +189,8 @@ bool GraphTracer::given_up() {
 }
 
 /// Planes with contact along whole curves.
-void GraphTracer::find_planes() {
-  for (const ContactPlane& plane : contact_planes(geometry_, query_)) {
+void GraphTracer::find_planes(const std::vector<Sample>& samples) {
+  for (const ContactPlane& plane : contact_planes(geometry_, query_, samples)) {
     std::optional<FacetContacts> f = facet_contacts(geometry_, query_, plane.n, {}, plane.pieces);
     if (!f || !f->is_facet()) {
       built_.fail(plane.n, "the outline of a facet with curved sides is not found");
@@ -595,7 +598,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   cell_limit_ = cells_of_search + cells_a_sample * long(samples.size());
   find_settled(cells);
   stretches_ = touched_stretches(geometry_, query_, cells);
-  find_planes();
+  find_planes(samples);
   find_poles();
   find_touches(cells);
   trace_waiting();

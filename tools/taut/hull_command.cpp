@@ -86,9 +86,9 @@ double tolerance(const HullArguments& arguments, double diagonal) {
 }
 
 /// What of the tolerance is the mesh's, where patches stand for others: what these miss is left to
-/// them, unless that were next to nothing.
+/// them, unless it is too much for both.
 double mesh_tolerance(double tolerance, double deviation) {
-  return std::max(tolerance - deviation, tolerance / 2);
+  return deviation <= tolerance / 2 ? tolerance - deviation : tolerance;
 }
 
 /// The hull within the tolerance asked for or, with the reason, the best that was found.
