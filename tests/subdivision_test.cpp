@@ -711,6 +711,41 @@ TEST(AddCage, RefusesADartOfTwoFaces) {
   EXPECT_NO_THROW(add(infinite_sharpness, infinite_sharpness));
 }
 
+/// Quads about a square with a hole, to which a slit leads: the ring is one face.
+ControlCage slit_ring(bool filled) {
+  ControlCage cage;
+  cage.points = {{0, 0, 0},   {3, 0, 0},   {3, 3, 0},   {0, 3, 0},  {1, 1, 0.5}, {2, 1, 0.5},
+                 {2, 2, 0.5}, {1, 2, 0.5}, {-1, -1, 0}, {4, -1, 0}, {-1, 4, 0}};
+  cage.faces = {{0, 1, 2, 3, 0, 4, 7, 6, 5, 4}, {1, 0, 8, 9}, {0, 3, 10, 8}};
+  if (filled) cage.faces.push_back({4, 5, 6, 7});
+  return cage;
+}
+
+// OpenSubdiv read past the end of the faces about a vertex that one of them has twice, not in
+// succession.
+TEST(AddCage, TakesFacesThatMeetThemselves) {
+  const auto warnings_of = [](const ControlCage& cage) {
+    std::vector<std::string> codes;
+    CageOptions options;
+    options.progress.warn = [&](std::string_view code, std::string_view) {
+      codes.emplace_back(code);
+    };
+    Part part;
+    add_cage(part, cage, "c", options);
+    return codes;
+  };
+  ControlCage spur;
+  spur.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {2, 1, 0}};
+  spur.faces = {{1, 0, 2, 1, 3}};
+  EXPECT_EQ(warnings_of(spur), (std::vector<std::string>{"non-manifold-cage", "degenerate-cage"}));
+  spur.faces.push_back({0, 1, 2});  // about whose vertices the first one goes
+  EXPECT_EQ(warnings_of(spur), (std::vector<std::string>{"non-manifold-cage", "degenerate-cage"}));
+  for (const bool filled : {false, true}) {
+    EXPECT_EQ(warnings_of(slit_ring(filled)),
+              (std::vector<std::string>{"non-manifold-cage", "degenerate-cage"}));
+  }
+}
+
 TEST(HullDistance, OfSimplePolytopes) {
   const PointTree cube(cube_cage().points);
   EXPECT_LE(distance_from_hull_bound({0.1, 0.2, -0.3}, cube), 1e-14);

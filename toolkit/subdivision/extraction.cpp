@@ -105,14 +105,17 @@ std::vector<Extraction::Corner> Extraction::corners(int vertex) const {
   return result;
 }
 
-/// In the level's order they may begin elsewhere, and are in none where it was no manifold.
+/// In the level's order they may begin elsewhere, and are in none where it was no manifold. About a
+/// vertex that a face has more than once OpenSubdiv finds the face's corners only where the vertex
+/// is no manifold.
 void Extraction::add_vertex(int vertex) {
   std::vector<int> faces = extracted(level_.GetVertexFaces(vertex), face_number_);
+  const bool repeats = std::adjacent_find(faces.begin(), faces.end()) != faces.end();
   std::vector<int> edges = extracted(level_.GetVertexEdges(vertex), edge_number_);
   std::vector<Corner> fan = corners(vertex);
-  const bool manifold = std::all_of(edges.begin(), edges.end(),
-                                    [&](int e) { return is_manifold_edge(to_size(e)); }) &&
-                        order(fan);
+  const bool manifold = !repeats && std::all_of(edges.begin(), edges.end(), [&](int e) {
+    return is_manifold_edge(to_size(e));
+  }) && order(fan);
   if (manifold) {
     for (std::size_t i = 0; i < fan.size(); ++i) {
       faces[i] = fan[i].face;
