@@ -45,12 +45,10 @@ constexpr double vertex_slope = 1e-10;
 constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
-/// Cells of support queries after which it is given up, too; how many more a sample may take,
-/// hundreds of times what generic models do, some seconds; and for how many a query counts,
-/// whatever it takes itself, for what is done with its contact.
+/// Cells of support queries after which it is given up, too, and how many more a sample and a
+/// refined cell may take, hundreds of times what generic models do, some seconds.
 constexpr long cells_of_search = 5'000'000;
 constexpr long cells_a_sample = 2'000;
-constexpr long cells_a_contact = 100;
 /// Once so many are spent, not more than so many a query, half as many again as it takes on the
 /// worst models that came out whole: where they cost more there is next to nothing that parts
 /// contacts from each other.
@@ -178,8 +176,7 @@ bool GraphTracer::given_up() {
   if (given_up_) return true;
   const long cells = query_.cells() - cells_before_;
   const long queries = query_.queries() - queries_before_;
-  exhausted_ = cells + cells_a_contact * queries > cell_limit_ ||
-               cells > cells_before_rate + cells_a_query * queries;
+  exhausted_ = cells > std::min(cell_limit_, cells_before_rate + cells_a_query * queries);
   if (exhausted_) {
     built_.fail(dvec3(0.0),
                 "the search for separating curves was given up, as too many contacts all but tie");

@@ -103,25 +103,18 @@ EuclideanDerivatives<Order> quotient(const Derivatives<Order>& d) {
   return S;
 }
 
-/// Of homogeneous derivatives that points with these weights have.
 template <int Order>
-EuclideanDerivatives<Order> euclidean_derivatives(const Derivatives<Order>& d,
-                                                  const std::vector<dvec4>& points) {
-  if (!is_polynomial(points)) return quotient<Order>(d);
+EuclideanDerivatives<Order> euclidean_derivatives(const BezierPatch& patch, double u, double v) {
+  const Derivatives<Order> d = patch.degree_u == 3 && patch.degree_v == 3
+                                   ? homogeneous_derivatives<Order, 3, 3>(patch, u, v)
+                                   : homogeneous_derivatives<Order>(patch, u, v);
+  if (!is_polynomial(patch.points)) return quotient<Order>(d);
   EuclideanDerivatives<Order> S;
-  const double w = points.front().w;
+  const double w = patch.points.front().w;
   for (int k = 0; k <= Order; ++k) {
     for (int l = 0; k + l <= Order; ++l) S[k][l] = dvec3(d[k][l]) / w;
   }
   return S;
-}
-
-template <int Order>
-EuclideanDerivatives<Order> euclidean_derivatives(const BezierPatch& patch, double u, double v) {
-  return euclidean_derivatives<Order>(patch.degree_u == 3 && patch.degree_v == 3
-                                          ? homogeneous_derivatives<Order, 3, 3>(patch, u, v)
-                                          : homogeneous_derivatives<Order>(patch, u, v),
-                                      patch.points);
 }
 
 /// Control points of the part over [0, t] by de Casteljau, in place.
@@ -274,7 +267,7 @@ CurveJet jet(const BezierCurve& curve, double t) {
   for (int i = 0; i <= curve.degree(); ++i) {
     for (int k = 0; k <= 3; ++k) d[k][0] += b.value[k][i] * curve.points[std::size_t(i)];
   }
-  const auto c = euclidean_derivatives<3>(d, curve.points);
+  const auto c = quotient<3>(d);
   return {c[0][0], c[1][0], c[2][0], c[3][0]};
 }
 
