@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +23,10 @@
 #include "taut/subdivision/add_cage.h"
 #include "taut/subdivision/conforming.h"
 #include "taut/subdivision/dart_limit.h"
+#include "taut/subdivision/extraction.h"
 #include "taut/subdivision/hull_distance.h"
 #include "taut/subdivision/limit_patches.h"
+#include "taut/subdivision/refiner.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/touch_test.h"
 #include "taut/subdivision/triangle_points.h"
@@ -711,39 +714,30 @@ TEST(AddCage, RefusesADartOfTwoFaces) {
   EXPECT_NO_THROW(add(infinite_sharpness, infinite_sharpness));
 }
 
-/// Quads about a square with a hole, to which a slit leads: the ring is one face.
-ControlCage slit_ring(bool filled) {
-  ControlCage cage;
-  cage.points = {{0, 0, 0},   {3, 0, 0},   {3, 3, 0},   {0, 3, 0},  {1, 1, 0.5}, {2, 1, 0.5},
-                 {2, 2, 0.5}, {1, 2, 0.5}, {-1, -1, 0}, {4, -1, 0}, {-1, 4, 0}};
-  cage.faces = {{0, 1, 2, 3, 0, 4, 7, 6, 5, 4}, {1, 0, 8, 9}, {0, 3, 10, 8}};
-  if (filled) cage.faces.push_back({4, 5, 6, 7});
-  return cage;
-}
-
-// OpenSubdiv read past the end of the faces about a vertex that one of them has twice, not in
-// succession.
-TEST(AddCage, TakesFacesThatMeetThemselves) {
-  const auto warnings_of = [](const ControlCage& cage) {
-    std::vector<std::string> codes;
-    CageOptions options;
-    options.progress.warn = [&](std::string_view code, std::string_view) {
-      codes.emplace_back(code);
-    };
-    Part part;
-    add_cage(part, cage, "c", options);
-    return codes;
-  };
-  ControlCage spur;
-  spur.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {2, 1, 0}};
-  spur.faces = {{1, 0, 2, 1, 3}};
-  EXPECT_EQ(warnings_of(spur), (std::vector<std::string>{"non-manifold-cage", "degenerate-cage"}));
-  spur.faces.push_back({0, 1, 2});  // about whose vertices the first one goes
-  EXPECT_EQ(warnings_of(spur), (std::vector<std::string>{"non-manifold-cage", "degenerate-cage"}));
-  for (const bool filled : {false, true}) {
-    EXPECT_EQ(warnings_of(slit_ring(filled)),
-              (std::vector<std::string>{"non-manifold-cage", "degenerate-cage"}));
+/// A vertex is in each of its faces where OpenSubdiv takes it to be, in each place once. It took
+/// the first of them for all, and read on past the faces, where a face has a vertex more than once,
+/// not in succession, and others between.
+TEST(Extraction, KeepsThePlacesOfVertices) {
+  Description faces;
+  faces.sizes = {4, 5};
+  faces.vertices = {0, 1, 2, 2, 1, 0, 2, 1, 3};
+  faces.point_count = 4;
+  OpenSubdiv::Sdc::Options options;
+  options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+  const auto whole = make_refiner(faces, CageScheme::catmark, options);
+  const auto refiner =
+      make_refiner(Extraction(whole->GetLevel(0), {0, 1}, 2), CageScheme::catmark, options);
+  const OpenSubdiv::Far::TopologyLevel level = refiner->GetLevel(0);
+  std::set<std::pair<int, int>> met;  // faces and places
+  for (int v = 0; v < level.GetNumVertices(); ++v) {
+    const auto around = level.GetVertexFaces(v);
+    const auto places = level.GetVertexFaceLocalIndices(v);
+    for (int k = 0; k < around.size(); ++k) {
+      EXPECT_EQ(level.GetFaceVertices(around[k])[places[k]], v);
+      EXPECT_TRUE(met.emplace(around[k], int(places[k])).second) << "vertex " << v;
+    }
   }
+  EXPECT_EQ(met.size(), faces.vertices.size());
 }
 
 TEST(HullDistance, OfSimplePolytopes) {
