@@ -86,9 +86,10 @@ double tolerance(const HullArguments& arguments, double diagonal) {
 }
 
 /// What of the tolerance is the mesh's, where patches stand for others: what these miss is left to
-/// them, unless it is too much for both.
+/// them, rounded so that the sum is within it, unless it is too much for both.
 double mesh_tolerance(double tolerance, double deviation) {
-  return deviation <= tolerance / 2 ? tolerance - deviation : tolerance;
+  if (deviation == 0 || deviation > tolerance / 2) return tolerance;
+  return std::nextafter(tolerance - deviation, 0.0);
 }
 
 /// The hull within the tolerance asked for or, with the reason, the best that was found.
@@ -121,7 +122,8 @@ Outcome compute(Input& input, const HullArguments& arguments, const HullOptions&
   }
 }
 
-/// The same of the model that is meant, whose surfaces the input's patches may only stand for.
+/// Why a mesh within its own tolerance is not within the one asked for: the patches of cages miss
+/// too much of their limit surfaces. `bound`: the distance of the mesh, with that.
 std::optional<std::string> failure_of_cages(double bound, double deviation, double tolerance) {
   if (deviation == 0 || bound <= tolerance) return {};
   return "the tolerance " + number(tolerance, 3) +
