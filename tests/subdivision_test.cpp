@@ -741,19 +741,19 @@ TEST(Extraction, KeepsThePlacesOfVertices) {
 }
 
 TEST(HullDistance, OfSimplePolytopes) {
-  const PointTree cube(cube_cage().points);
-  EXPECT_LE(distance_from_hull_bound({0.1, 0.2, -0.3}, cube), 1e-14);
-  EXPECT_NEAR(distance_from_hull_bound({0.1, 0.2, 3}, cube), 2, 1e-13);
-  EXPECT_NEAR(distance_from_hull_bound({2, 2, 0.5}, cube), std::sqrt(2.0), 1e-13);
-  EXPECT_NEAR(distance_from_hull_bound({2, 2, 2}, cube), std::sqrt(3.0), 1e-13);
-  EXPECT_NEAR(distance_from_hull_bound({1, 2, 3}, PointTree({{1, 2, 2}})), 1, 1e-13);
+  HullDistance cube(cube_cage().points);
+  EXPECT_LE(cube.bound({0.1, 0.2, -0.3}), 1e-14);
+  EXPECT_NEAR(cube.bound({0.1, 0.2, 3}), 2, 1e-13);
+  EXPECT_NEAR(cube.bound({2, 2, 0.5}), std::sqrt(2.0), 1e-13);
+  EXPECT_NEAR(cube.bound({2, 2, 2}), std::sqrt(3.0), 1e-13);
+  EXPECT_NEAR(HullDistance({{1, 2, 2}}).bound({1, 2, 3}), 1, 1e-13);
   Random random(5);
   std::vector<dvec3> points;
   for (int i = 0; i < 40; ++i) points.push_back(random_direction(random));
-  const PointTree tree(points);
+  HullDistance hull(points);
   for (int i = 0; i < 200; ++i) {
     const dvec3 p = 1.5 * random_point(random);
-    const double bound = distance_from_hull_bound(p, tree);
+    const double bound = hull.bound(p);
     // Any supporting plane gives a lower bound.
     double lower = 0;
     for (int k = 0; k < 2000; ++k) {
@@ -765,9 +765,9 @@ TEST(HullDistance, OfSimplePolytopes) {
     EXPECT_GE(bound, lower - 1e-14);
     EXPECT_LE(bound, lower * 1.05 + 5e-2);
     for (const double enough : {0.01, 0.1, 1.0}) {
-      const double perhaps = distance_from_hull_bound(p, tree, enough);
+      const double perhaps = hull.bound(p, enough);
       EXPECT_GE(perhaps, lower - 1e-14);
-      EXPECT_LE(perhaps, std::max(bound, enough));
+      EXPECT_LE(perhaps, std::max(bound, enough) + 1e-14);  // from another start
     }
   }
 }
@@ -785,7 +785,27 @@ TEST(HullDistance, OfNearPoints) {
     const dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     const double height = 1e-11 * size;
     const dvec3 p = (triangle[0] + triangle[1] + triangle[2]) / 3.0 + height * unit(across);
-    EXPECT_NEAR(distance_from_hull_bound(p, PointTree(triangle)), height, 1e-13 * size);
+    EXPECT_NEAR(HullDistance(triangle).bound(p), height, 1e-13 * size);
+  }
+}
+
+/// The last distance's points are a start, and no more: the next one is the same as without.
+TEST(HullDistance, OfPointsInTurn) {
+  Random random(17);
+  std::vector<dvec3> points;
+  for (int i = 0; i < 2000; ++i) {
+    const dvec3 d = random_direction(random);
+    points.push_back(d * dvec3(1, 2, 1e-4) + dvec3(3, 0, 0));
+  }
+  HullDistance hull(points);
+  dvec3 p(0.0);
+  for (int i = 0; i < 500; ++i) {
+    // In small steps, far off at times, and a known point at times.
+    p = i % 50 == 0   ? dvec3(3, 0, 0) + 10.0 * random_direction(random)
+        : i % 50 < 25 ? p + 1e-3 * random_direction(random)
+                      : dvec3(3, 0, 0) + random_direction(random) * dvec3(1, 2, 2e-4);
+    if (i % 49 == 0) p = points[std::size_t(i)];
+    EXPECT_NEAR(hull.bound(p), HullDistance(points).bound(p), 1e-11) << i;
   }
 }
 

@@ -9,7 +9,6 @@
 
 #include "taut/subdivision/edge_middles.h"
 #include "taut/subdivision/hull_distance.h"
-#include "taut/subdivision/point_tree.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 #include "taut/surface/bezier.h"
@@ -41,7 +40,7 @@ class Bound {
 
   void know(const dvec3& p) {
     known_.push_back(p);
-    tree_.reset();
+    hull_.reset();
   }
   void meet(const dvec3& p) {
     if (!is_over()) value_ = std::max(value_, distance(p, value_));
@@ -55,12 +54,12 @@ class Bound {
  private:
   double distance(const dvec3& p, double enough) {
     progress_.check();
-    if (!tree_) tree_.emplace(known_);
-    return distance_from_hull_bound(p, *tree_, enough);
+    if (!hull_) hull_.emplace(known_);
+    return hull_->bound(p, enough);
   }
 
   std::vector<dvec3> known_;
-  std::optional<PointTree> tree_;  // of the known points, once it is asked
+  std::optional<HullDistance> hull_;  // of the known points, once it is asked
   double limit_;
   const Progress& progress_;
   double value_ = 0;
