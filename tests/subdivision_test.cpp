@@ -740,17 +740,17 @@ TEST(Extraction, KeepsThePlacesOfVertices) {
   EXPECT_EQ(met.size(), faces.vertices.size());
 }
 
-TEST(HullDistance, OfSimplePolytopes) {
-  HullDistance cube(cube_cage().points);
+TEST(PointHullDistance, OfSimplePolytopes) {
+  PointHullDistance cube(cube_cage().points);
   EXPECT_LE(cube.bound({0.1, 0.2, -0.3}), 1e-14);
   EXPECT_NEAR(cube.bound({0.1, 0.2, 3}), 2, 1e-13);
   EXPECT_NEAR(cube.bound({2, 2, 0.5}), std::sqrt(2.0), 1e-13);
   EXPECT_NEAR(cube.bound({2, 2, 2}), std::sqrt(3.0), 1e-13);
-  EXPECT_NEAR(HullDistance({{1, 2, 2}}).bound({1, 2, 3}), 1, 1e-13);
+  EXPECT_NEAR(PointHullDistance({{1, 2, 2}}).bound({1, 2, 3}), 1, 1e-13);
   Random random(5);
   std::vector<dvec3> points;
   for (int i = 0; i < 40; ++i) points.push_back(random_direction(random));
-  HullDistance hull(points);
+  PointHullDistance hull(points);
   for (int i = 0; i < 200; ++i) {
     const dvec3 p = 1.5 * random_point(random);
     const double bound = hull.bound(p);
@@ -774,7 +774,7 @@ TEST(HullDistance, OfSimplePolytopes) {
 
 /// Far below the root of rounding, on slender triangles, large and small, that are not
 /// axis-parallel.
-TEST(HullDistance, OfNearPoints) {
+TEST(PointHullDistance, OfNearPoints) {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
     const double size = std::pow(10.0, -(i % 6));
@@ -785,19 +785,19 @@ TEST(HullDistance, OfNearPoints) {
     const dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     const double height = 1e-11 * size;
     const dvec3 p = (triangle[0] + triangle[1] + triangle[2]) / 3.0 + height * unit(across);
-    EXPECT_NEAR(HullDistance(triangle).bound(p), height, 1e-13 * size);
+    EXPECT_NEAR(PointHullDistance(triangle).bound(p), height, 1e-13 * size);
   }
 }
 
 /// The last distance's points are a start, and no more: the next one is the same as without.
-TEST(HullDistance, OfPointsInTurn) {
+TEST(PointHullDistance, OfPointsInTurn) {
   Random random(17);
   std::vector<dvec3> points;
   for (int i = 0; i < 2000; ++i) {
     const dvec3 d = random_direction(random);
     points.push_back(d * dvec3(1, 2, 1e-4) + dvec3(3, 0, 0));
   }
-  HullDistance hull(points);
+  PointHullDistance hull(points);
   dvec3 p(0.0);
   for (int i = 0; i < 500; ++i) {
     // In small steps, far off at times, and a known point at times.
@@ -805,7 +805,7 @@ TEST(HullDistance, OfPointsInTurn) {
         : i % 50 < 25 ? p + 1e-3 * random_direction(random)
                       : dvec3(3, 0, 0) + random_direction(random) * dvec3(1, 2, 2e-4);
     if (i % 49 == 0) p = points[std::size_t(i)];
-    EXPECT_NEAR(hull.bound(p), HullDistance(points).bound(p), 1e-11) << i;
+    EXPECT_NEAR(hull.bound(p), PointHullDistance(points).bound(p), 1e-11) << i;
   }
 }
 

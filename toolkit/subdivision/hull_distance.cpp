@@ -64,7 +64,7 @@ bool descends(const dvec3& p, const dvec3& x, const dvec3& q) {
 
 }  // namespace
 
-double HullDistance::bound(const dvec3& p, double enough) {
+double PointHullDistance::bound(const dvec3& p, double enough) {
   constexpr int step_limit = 64;
   constexpr std::size_t most_recent = 24;
   const dvec3 nearest = points_.nearest(p);

@@ -10,10 +10,10 @@ namespace taut {
 
 /// Distances of points from the convex hull of others. Those that recent searches among all have
 /// found are looked at first: points that are asked for in turn are near each other mostly.
-class HullDistance {
+class PointHullDistance {
  public:
   /// @pre not empty
-  explicit HullDistance(std::vector<dvec3> points) : points_(std::move(points)) {}
+  explicit PointHullDistance(std::vector<dvec3> points) : points_(std::move(points)) {}
 
   /// Upper bound of the distance, that of a point of the hull that is nearest up to rounding (Wolfe
   /// 1976, "Finding the nearest point in a polytope"); no nearer one is sought once it is no more

@@ -59,7 +59,7 @@ class Bound {
   }
 
   std::vector<dvec3> known_;
-  std::optional<HullDistance> hull_;  // of the known points, once it is asked
+  std::optional<PointHullDistance> hull_;  // of the known points, once it is asked
   double limit_;
   const Progress& progress_;
   double value_ = 0;
