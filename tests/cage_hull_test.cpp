@@ -476,6 +476,33 @@ TEST(CageHull, OfAPoleOfNeedles) {
   for (const auto edge : hull.mesh.halfedges()) EXPECT_FALSE(hull.mesh.is_boundary(edge));
 }
 
+/// A unit cube with a corner as far off as a slip of a digit brings it, turned and rounded to
+/// float.
+ControlCage cube_with_far_corner() {
+  ControlCage cage = cube_cage();
+  for (dvec3& p : cage.points) p = (p + dvec3(1.0)) / 2.0;
+  cage.points[7].x = 4.2e9;
+  const dmat3 turn(0.8, 0.6, 0, -0.36, 0.48, 0.8, 0.48, -0.64, 0.6);
+  for (dvec3& p : cage.points) p = dvec3(glm::vec3(turn * p));
+  cage.creases = {{{0, 1}, 2.5}};
+  cage.corners = {{6, 3}};
+  return cage;
+}
+
+// Next to the far corner the others are one point to rounding: what parts them is not sought long.
+TEST(CageHull, OfACubeWithAFarCorner) {
+  const HullOptions options{.relative = 1e-3, .progress = {}};
+  Hull hull;
+  try {
+    hull = convex_hull(cage_model(cube_with_far_corner()), options);
+  } catch (const HullNotConverged& failure) {
+    hull = *failure.best;
+  }
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_FALSE(hull.boundary->unresolved.empty());
+  EXPECT_LT(hull.statistics.support_queries, 30'000);
+}
+
 TEST(CageHull, OfSheetsWithCornersAndBoundary) {
   expect_whole("A16_osd_edgecorner_boundary.obj", 1e-9, Scheme::catmark);
 }

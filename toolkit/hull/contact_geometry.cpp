@@ -321,8 +321,13 @@ dvec3 ContactGeometry::to_frame(int instance, const dvec3& direction) const {
   return own.rotated ? own.rotation * direction : direction;
 }
 
-ContactJet ContactGeometry::jet(const Contact& c) const {
+void ContactGeometry::start_evaluation() const {
   check_stop(stop_);
+  evaluations_.fetch_add(1, std::memory_order_relaxed);
+}
+
+ContactJet ContactGeometry::jet(const Contact& c) const {
+  start_evaluation();
   const PartElements& own = elements(c);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   ContactJet result;
@@ -348,7 +353,7 @@ ContactJet ContactGeometry::jet(const Contact& c) const {
 }
 
 PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
-  check_stop(stop_);
+  start_evaluation();
   PatchJet3 j = jet3(own_of(elements(c).patches, c, SourceKind::face), c.u, c.v);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {
@@ -362,7 +367,7 @@ PatchJet3 ContactGeometry::patch_jet(const Contact& c) const {
 }
 
 CurveJet ContactGeometry::curve_jet(const Contact& c) const {
-  check_stop(stop_);
+  start_evaluation();
   CurveJet j = taut::jet(own_of(elements(c).pieces, c, SourceKind::edge), c.u);
   const SceneInstance& instance = scene_.content().instances[std::size_t(c.instance)];
   if (instance.rotated) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <limits>
 #include <map>
 #include <optional>
@@ -59,6 +60,8 @@ class ContactGeometry {
   /// slopes at joins of surfaces, in the scene's frame (coordinate_rounding).
   double rounding() const { return rounding_; }
   const Part& part(const Contact& c) const;
+  /// Jets asked for so far, by all threads: what work on contacts costs.
+  long evaluations() const { return evaluations_; }
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little @throws Cancelled, as the
   /// next two do
@@ -132,6 +135,7 @@ class ContactGeometry {
     std::vector<std::vector<PieceEnd>> ends;          // per vertex
   };
   const PartElements& elements(const Contact& c) const;
+  void start_evaluation() const;
   PlacedElement placed(const Contact& c) const;
   void find_straight(const Part& part, PartElements& own) const;
   void find_coincidences();
@@ -140,6 +144,7 @@ class ContactGeometry {
 
   const Scene& scene_;
   std::stop_token stop_;
+  mutable std::atomic<long> evaluations_ = 0;
   double rounding_ = 0;
   double tie_ = 0;
   std::vector<PartElements> parts_;

@@ -48,11 +48,14 @@ constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too, and how many more a sample and a
 /// refined cell may take, hundreds of times what generic models do, some seconds.
 constexpr long cells_of_search = 5'000'000;
-constexpr long cells_a_sample = 2'000;
+constexpr long cells_a_place = 2'000;
+/// The same of jets of contacts: of those that came out whole none took 900 a sample.
+constexpr long jets_of_search = 1'000'000;
+constexpr long jets_a_place = 2'000;
 /// Once so many are spent, not more than so many a query, half as many again as it takes on the
 /// worst models that came out whole: where they cost more there is next to nothing that parts
 /// contacts from each other.
-constexpr long cells_before_rate = 2'000'000;
+constexpr long cells_before_rate = 1'000'000;
 constexpr long cells_a_query = 400;
 /// Culled cells, at least, the sides of which are looked at together.
 constexpr std::ptrdiff_t cells_at_a_time = 128;
@@ -157,7 +160,8 @@ class GraphTracer {
   GraphBuilder built_;
   long cells_before_ = 0;  // of the query, before
   long queries_before_ = 0;
-  long cell_limit_ = 0;
+  long jets_before_ = 0;
+  long places_ = 0;  // samples and refined cells
   bool given_up_ = false;
   bool exhausted_ = false;  // and therefore given up
   long cells_searched_ = 0;
@@ -171,12 +175,15 @@ class GraphTracer {
 };
 
 /// Whether there is too much that cannot be resolved, or it costs too much. Counted in the cells of
-/// support queries, so that the same is given up each time.
+/// support queries and in jets, so that the same is given up each time.
 bool GraphTracer::given_up() {
   if (given_up_) return true;
   const long cells = query_.cells() - cells_before_;
   const long queries = query_.queries() - queries_before_;
-  exhausted_ = cells > std::min(cell_limit_, cells_before_rate + cells_a_query * queries);
+  const long jets = geometry_.evaluations() - jets_before_;
+  exhausted_ = cells > std::min(cells_of_search + cells_a_place * places_,
+                                cells_before_rate + cells_a_query * queries) ||
+               jets > jets_of_search + jets_a_place * places_;
   if (exhausted_) {
     built_.fail(dvec3(0.0),
                 "the search for separating curves was given up, as too many contacts all but tie");
@@ -426,7 +433,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
     progress_.check();
     const std::size_t count = left.size();
     left = built_.uncrossed(refinement.refined(left), refined_margin);
-    cell_limit_ += cells_a_sample * long(left.size());
+    places_ += long(left.size());
     part_cells(left);
     left = built_.uncrossed(left, refined_margin);
     fewer = left.size() < count;
@@ -592,7 +599,8 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
                                  const std::vector<CulledCell>& cells) {
   cells_before_ = query_.cells();
   queries_before_ = query_.queries();
-  cell_limit_ = cells_of_search + cells_a_sample * long(samples.size());
+  jets_before_ = geometry_.evaluations();
+  places_ = long(samples.size());
   find_settled(cells);
   stretches_ = touched_stretches(geometry_, query_, cells);
   find_planes(samples);
