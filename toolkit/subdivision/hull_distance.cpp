@@ -68,7 +68,7 @@ double PointHullDistance::bound(const dvec3& p, double enough) {
   constexpr int step_limit = 64;
   constexpr std::size_t most_recent = 24;
   const dvec3 nearest = points_.nearest(p);
-  std::vector<dvec3> untried = recent_;
+  std::vector<dvec3> untried = recent_;  // each once: it may seem to descend by rounding
   std::erase(untried, nearest);
   Corral corral{p, {nearest}, {1.0}};
   dvec3 x = corral.sum();
