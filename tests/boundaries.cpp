@@ -67,16 +67,16 @@ KnownBoundary tetrahedron_boundary(const dvec3& shift) {
 
 namespace {
 
-constexpr int steps = 16;                 ///< of a quarter, less than 0.1 apart
-constexpr double height = (1 - 0.5) / 3;  ///< of the scroll's normals
+constexpr int steps = 16;                        ///< of a quarter, less than 0.1 apart
+constexpr double scroll_height = (1 - 0.5) / 3;  ///< of the scroll's normals
 
 /// The ruling at an angle about the axis, in the terms of the quarter's patches.
 Ruling ruling_at(const ContactSystem& system, const dmat3& rotation, int quarter, int step) {
   const double angle = (quarter + double(step) / steps) * std::numbers::pi / 2;
-  const double radius = std::sqrt(1 - height * height);
+  const double radius = std::sqrt(1 - scroll_height * scroll_height);
   const dvec3 across = rotation * dvec3(-std::sin(angle), std::cos(angle), 0);
   CommonSupport s;
-  s.n = rotation * dvec3(radius * std::cos(angle), radius * std::sin(angle), height);
+  s.n = rotation * dvec3(radius * std::cos(angle), radius * std::sin(angle), scroll_height);
   for (const int first : {0, 8}) {
     s.add(system.geometry(), {0, SourceKind::face, first + 2 * quarter, double(step) / steps, 0.9});
   }
@@ -148,7 +148,8 @@ void list_outlines(const ContactGeometry& geometry, HullBoundary& boundary) {
     std::vector<FaceStretch> left = stretches_of(geometry, boundary, face);
     for (const auto& loop : face.loops) {
       std::vector<StretchPlace>& outline = face.outlines.emplace_back();
-      for (const auto& [curve, sense] : loop) {
+      for (const auto& [own, sense] : loop) {
+        const int curve = own;  // for the lambdas
         const std::vector<dvec3>& points = boundary.curves[std::size_t(curve)].points;
         dvec3 at = sense > 0 ? points.front() : points.back();
         const auto count = std::count_if(left.begin(), left.end(),

@@ -38,7 +38,7 @@ std::shared_ptr<HullBoundary> whole_surface(const ContactGeometry& geometry, con
 class TwoSpheres {
  public:
   TwoSpheres(const Scene& scene, double r, double s, double d)
-      : geometry_(scene), system_(geometry_), scene_(scene), height_((r - s) / d) {
+      : geometry_(scene), system_(geometry_), height_((r - s) / d) {
     centers_ = {scene.frame().to_frame({0, 0, 0}), scene.frame().to_frame({0, 0, d})};
     make_arc();
     make_faces();
@@ -148,7 +148,6 @@ class TwoSpheres {
 
   ContactGeometry geometry_;
   ContactSystem system_;
-  const Scene& scene_;
   double height_;
   std::array<dvec3, 2> centers_;
 };

@@ -148,8 +148,10 @@ Tie random_tie(const Group& group, Random& random) {
   // Planes through both centres' line cut the curve.
   const dvec3 towards = dvec3(3, 0.4, -0.1) - dvec3(0.1, -0.2, 0.3);
   const dvec3 along = glm::normalize(glm::cross(towards, random_direction(random)));
-  const auto [e1, e2] = tangent_frame(along);
-  const auto at = [&](double angle) { return std::cos(angle) * e1 + std::sin(angle) * e2; };
+  const auto frame = tangent_frame(along);
+  const auto at = [&](double angle) {
+    return std::cos(angle) * frame[0] + std::sin(angle) * frame[1];
+  };
   const auto gap = [&](double angle) { return group.h(0, at(angle)) - group.h(1, at(angle)); };
   double lower = 0;
   double step = 0.01;
