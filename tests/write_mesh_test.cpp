@@ -559,7 +559,7 @@ TEST_F(WriteMesh, StlHoldsTrianglesOnly) {
       {hull_of({{1e9, 1e9, 0}, {1e9, 1e9 + 1, 0}, {1e9 + 1, 1e9, 0}}), "a point in floats"},
       {HullMesh(), "empty"}};
   for (const auto& [mesh, what] : cases) {
-    EXPECT_EQ(message_of<IoError>([&] { taut::write_mesh(path("a.stl"), mesh); }),
+    EXPECT_EQ(message_of<IoError>([&, &mesh = mesh] { taut::write_mesh(path("a.stl"), mesh); }),
               path("a.stl").string() + ": an STL file holds triangles only, and the hull is " +
                   what + "; .ply holds it");
   }
@@ -742,7 +742,7 @@ TEST_F(WriteMesh, FullDiskKeepsTheOldFileAndLeavesNothing) {
       std::string what;
       {
         const FileSizeLimit limit(bytes);
-        what = message_of<IoError>([&] { taut::write_mesh(path(name), mesh); });
+        what = message_of<IoError>([&, &mesh = mesh] { taut::write_mesh(path(name), mesh); });
       }
       EXPECT_EQ(what, path(name).string() + ": cannot be written: File too large");
       EXPECT_EQ(content(path(name)), "the old file");
