@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "taut/subdivision/edge_middles.h"
-#include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/point_hull_distance.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 #include "taut/surface/bezier.h"

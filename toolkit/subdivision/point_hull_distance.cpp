@@ -1,4 +1,4 @@
-#include "taut/subdivision/hull_distance.h"
+#include "taut/subdivision/point_hull_distance.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
