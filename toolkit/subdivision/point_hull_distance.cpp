@@ -87,6 +87,7 @@ double PointHullDistance::bound(const dvec3& p, double enough) {
     if (known) {
       untried.erase(lowest);
     } else {
+      std::erase(recent_, q);
       if (recent_.size() == most_recent) recent_.erase(recent_.begin());
       recent_.push_back(q);
     }
