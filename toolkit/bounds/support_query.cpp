@@ -33,6 +33,9 @@ constexpr int stop_interval = 256;
 /// the evaluation that would complete it.
 constexpr double hopeless_bound = 0.01;
 
+/// Weights of a cell within this factor add little to the rounding of its proof.
+constexpr double narrow_weights = 4;
+
 }  // namespace
 
 /// Depth-first search, the higher bound first: with the good first value that a hint or the first
@@ -145,6 +148,12 @@ class SupportQuery::Search {
     const double averages = -p * std::log2(cell.size_u) - q * std::log2(cell.size_v);
     return 2 * (4 + averages + p * p + q * q + 3 * p * q) * rounding_unit * e.reach * weight.upper /
            weight.lower;
+  }
+  /// Whether it is the spread of the weights, which falls as cells are halved, that makes the
+  /// rounding of a proof exceed the slack.
+  bool halves_know_better(const SceneElement& e, const NetCell& cell, const Interval& weight) const {
+    return weight.upper > narrow_weights * weight.lower &&
+           certificate_rounding(e, cell, weight) > support_slack;
   }
   template <class Net>
   void split(const Net& net, const SceneElement& e, NetCell cell, bool along_u);
@@ -399,12 +408,13 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
       }
     }
     const SecondOrderBound b = second_order_bound(jet, curvature, u, v);
-    if (b.bound <= support_slack * weight.lower) {
+    const bool proven = b.bound <= support_slack * weight.lower;
+    if (proven && !halves_know_better(e, cell, weight)) {
       proof_rounding_ = std::max(proof_rounding_, certificate_rounding(e, cell, weight));
       return true;
     }
     choose_split(curvature, b);
-    if (inside && converged_) return false;
+    if (proven || (inside && converged_)) return false;
     const double u_before = u;
     const double v_before = v;
     ++newton_iterations;

@@ -38,9 +38,9 @@ class SupportQuery {
   SupportQuery(SupportQuery&&) noexcept;
 
   /// The support in direction n. h_bound - h is about 2^-43 of the scene's size and what rounding
-  /// may amount to, in all below 1e-12 for degrees up to 9 and weights within a factor of 30; more
-  /// for higher degrees, for models turned far from the origin, and where the search met its limit
-  /// of cells. It is proven in any case.
+  /// may amount to, in all below 1e-12 for degrees up to 9, whatever the weights; more for higher
+  /// degrees, for models turned far from the origin, and where the search met its limit of cells.
+  /// It is proven in any case.
   ///
   /// `hint`: a contact near the answer, usually that of a nearby direction; makes the query faster,
   /// never different in h beyond h_bound - h.
