@@ -65,8 +65,8 @@ Scene scattered(unsigned seed, double at) {
   Part part;
   const dvec3 shift = at * random_direction(random);
   for (int k = 0; k < 6; ++k) {
-    Shape shape = of_patch(random_patch(random, pick(random, 1, 5), pick(random, 1, 5),
-                                        k % 2 == 0 ? 1 : log_uniform(random, 1.1, 20)));
+    Shape shape =
+        of_patch(random_patch(random, {1, 5}, k % 2 == 0 ? 1 : log_uniform(random, 1.1, 20)));
     shape.curves.push_back(as_nurbs(random_curve(random, pick(random, 1, 5), 1 + k % 2)));
     shape = shifted(shape, shift + random_point(random));
     part.add_surface(shape.surfaces[0], "face");

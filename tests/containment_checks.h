@@ -72,7 +72,7 @@ inline std::vector<BoundaryPoint> boundary_points(const taut::Scene& scene, Rand
   std::vector<BoundaryPoint> points;
   for (int k = 0; k < count; ++k) {
     dvec3 n = random_direction(random);
-    if (k % 4 == 1) n = dvec3(pick(random, -1, 1), pick(random, -1, 1), pick(random, -1, 1));
+    if (k % 4 == 1) n = dvec3{pick(random, -1, 1), pick(random, -1, 1), pick(random, -1, 1)};
     if (n == dvec3(0.0)) n = dvec3(0, 0, 1);
     if (k % 8 == 1) n += log_uniform(random, 1e-15, 1e-3) * random_direction(random);
     n = taut::unit(n);

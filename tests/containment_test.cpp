@@ -40,8 +40,8 @@ TEST(HullContainment, DistancesAgreeWithClosedForms) {
     const Box& box = scene.box();
     std::vector<dvec3> points;
     for (int k = 0; k < 300; ++k) {
-      const dvec3 share(uniform(random, -0.5, 1.5), uniform(random, -0.5, 1.5),
-                        uniform(random, -0.5, 1.5));
+      const dvec3 share{uniform(random, -0.5, 1.5), uniform(random, -0.5, 1.5),
+                        uniform(random, -0.5, 1.5)};
       points.push_back(box.lower + share * (box.upper - box.lower));
     }
     for (const BoundaryPoint& p : boundary_points(scene, random, 200)) {

@@ -152,7 +152,7 @@ TEST(CoonsBvh, DenseSamplesOfRationalPatchesNeverViolateBounds) {
   Random random(3);
   for (int k = 0; k < 40; ++k) {
     const double weights = log_uniform(random, 1.01, 30);
-    const BezierPatch patch = random_patch(random, pick(random, 1, 7), pick(random, 1, 7), weights);
+    const BezierPatch patch = random_patch(random, {1, 7}, weights);
     const double tolerance = log_uniform(random, 1e-3, 10);
     expect_bounded(patch, tolerance, 4, random, label(patch, weights, tolerance));
   }
@@ -162,7 +162,7 @@ TEST(CoonsBvh, ExtremeWeightsStayBounded) {
   Random random(4);
   for (int k = 0; k < 8; ++k) {
     const double weights = log_uniform(random, 100, 1e6);
-    const BezierPatch patch = random_patch(random, pick(random, 1, 3), pick(random, 1, 3), weights);
+    const BezierPatch patch = random_patch(random, {1, 3}, weights);
     expect_bounded(patch, 10, 3, random, label(patch, weights, 10));
   }
 }
@@ -171,7 +171,7 @@ TEST(CoonsBvh, CollapsedPatchesStayBounded) {
   Random random(5);
   for (int k = 0; k < 40; ++k) {
     const double weights = k % 2 == 0 ? 1 : 5;
-    BezierPatch patch = random_patch(random, pick(random, 1, 5), pick(random, 1, 5), weights);
+    BezierPatch patch = random_patch(random, {1, 5}, weights);
     collapse(random, patch);
     const double tolerance = log_uniform(random, 1e-3, 1);
     expect_bounded(patch, tolerance, 4, random, "collapsed " + label(patch, weights, tolerance));
@@ -181,7 +181,7 @@ TEST(CoonsBvh, CollapsedPatchesStayBounded) {
 TEST(CoonsBvh, PatchesFarFromTheOriginStayBounded) {
   Random random(6);
   for (int k = 0; k < 20; ++k) {
-    BezierPatch patch = random_patch(random, pick(random, 1, 5), pick(random, 1, 5), 3);
+    BezierPatch patch = random_patch(random, {1, 5}, 3);
     const double far = log_uniform(random, 10, 1e8);
     for (dvec4& p : patch.points) p = homogeneous(euclidean(p) + dvec3(far, -far, far / 3), p.w);
     expect_bounded(patch, 0.01, 4, random, "far " + std::to_string(far));
@@ -200,8 +200,7 @@ TEST(CoonsBvh, SizesFromSmallToLarge) {
 TEST(CoonsBvh, DeviationFallsByFourPerLevel) {
   Random random(8);
   for (int k = 0; k < 3; ++k) {
-    const BezierPatch patch =
-        random_patch(random, pick(random, 2, 3), pick(random, 2, 3), k % 2 == 0 ? 1 : 3);
+    const BezierPatch patch = random_patch(random, {2, 3}, k % 2 == 0 ? 1 : 3);
     // Explicit levels.
     const CoonsBvh fine(patch, 1e-9);
     CoonsCell cell = fine.root();
@@ -225,8 +224,7 @@ TEST(CoonsBvh, DeviationFallsByFourPerLevel) {
 TEST(CoonsBvh, CoonsDistanceFallsBySixteenPerLevel) {
   Random random(9);
   for (int k = 0; k < 20; ++k) {
-    const BezierPatch patch =
-        random_patch(random, pick(random, 2, 5), pick(random, 2, 5), k % 2 == 0 ? 1 : 2);
+    const BezierPatch patch = random_patch(random, {2, 5}, k % 2 == 0 ? 1 : 2);
     const double u = uniform(random, 0, 0.9);
     const double v = uniform(random, 0, 0.9);
     const auto distance = [&](double size) {

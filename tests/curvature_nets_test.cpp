@@ -71,7 +71,7 @@ TEST(CurvatureNets, HoldForRandomPatches) {
   int told = 0;
   for (int k = 0; k < 100; ++k) {
     const double weights = k % 2 == 0 ? 1 : log_uniform(random, 1.01, 10);
-    const BezierPatch patch = random_patch(random, pick(random, 1, 5), pick(random, 1, 5), weights);
+    const BezierPatch patch = random_patch(random, {1, 5}, weights);
     told += check(patch, no_poles, std::to_string(k), random, 20);
   }
   EXPECT_GE(told, 100);

@@ -271,7 +271,7 @@ TEST(DevelopableFaces, RulingsRunFromBorderToBorder) {
     SCOPED_TRACE(name);
     Random random(5);
     for (int k = 0; k < 100; ++k) {
-      const dvec2 uv(uniform(random, 0.02, 0.98), uniform(random, 0.02, 0.98));
+      const dvec2 uv{uniform(random, 0.02, 0.98), uniform(random, 0.02, 0.98)};
       const auto ends = ruling_ends(patch, uv);
       ASSERT_TRUE(ends);
       const dvec3 x = point(patch, uv.x, uv.y);

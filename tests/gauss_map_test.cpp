@@ -235,7 +235,7 @@ TEST(GaussMap, PyramidsHoldAllNormalsOfRandomPatches) {
   long with = 0;
   for (int k = 0; k < 60; ++k) {
     const double weights = k % 2 == 0 ? 1 : log_uniform(random, 1.01, 10);
-    BezierPatch patch = random_patch(random, pick(random, 1, 4), pick(random, 1, 4), weights);
+    BezierPatch patch = random_patch(random, {1, 4}, weights);
     // A gentle patch over the plane, to have pyramids at the upper levels too.
     const double bend = log_uniform(random, 1e-3, 1);
     for (int i = 0; i <= patch.degree_u; ++i) {
@@ -261,7 +261,7 @@ TEST(SecondForm, BoundsTheSecondDerivatives) {
   int tested = 0;
   for (int k = 0; k < 300; ++k) {
     const double weights = k % 3 == 0 ? 1 : log_uniform(random, 1.01, 10);
-    const BezierPatch patch = random_patch(random, pick(random, 1, 4), pick(random, 1, 4), weights);
+    const BezierPatch patch = random_patch(random, {1, 4}, weights);
     const double size = log_uniform(random, 1e-3, 0.3);
     const double u0 = uniform(random, 0, 1 - size);
     const double v0 = uniform(random, 0, 1 - size);

@@ -48,8 +48,8 @@ void check_points(const Scene& scene, const std::function<real(const rvec3&)>& t
   std::vector<dvec3> points;
   const auto& patches = scene.model().parts()[0].patches();
   for (int k = 0; k < count; ++k) {
-    const dvec3 share(uniform(random, -0.2, 1.2), uniform(random, -0.2, 1.2),
-                      uniform(random, -0.2, 1.2));
+    const dvec3 share{uniform(random, -0.2, 1.2), uniform(random, -0.2, 1.2),
+                      uniform(random, -0.2, 1.2)};
     points.push_back(scene.box().lower + share * (scene.box().upper - scene.box().lower));
     const BezierPatch& patch =
         patches[std::size_t(pick(random, 0, int(patches.size()) - 1))].bezier;
@@ -134,7 +134,7 @@ void check_winding(const Scene& scene, const ModelContainment& containment) {
   const int grid = scene.model().patch_count() > 500 ? 2 : 6;
   int inside = 0;
   for (int k = 0; k < 12; ++k) {
-    const dvec3 share(uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1));
+    const dvec3 share{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1)};
     const dvec3 x = scene.box().lower + share * (scene.box().upper - scene.box().lower);
     if (std::abs(containment.distance(x).value) < 0.03 * diagonal) continue;
     const real winding = std::abs(winding_number(scene.model(), x, grid));
@@ -248,7 +248,7 @@ TEST(ModelContainment, PolygonsAreExact) {
   const ModelContainment cube(scene);
   Random random(4);
   for (int k = 0; k < 500; ++k) {
-    dvec3 x(uniform(random, 0, 1), uniform(random, 0, 1), pick(random, 0, 1));
+    dvec3 x{uniform(random, 0, 1), uniform(random, 0, 1), pick(random, 0, 1)};
     const double d = log_uniform(random, 1e-12, 0.1) * (k % 2 == 0 ? 1 : -1);
     x.z += x.z > 0.5 ? d : -d;
     EXPECT_EQ(cube.locate(x), d > 0 ? Location::outside : Location::inside) << d;
@@ -274,7 +274,7 @@ TEST(ModelContainment, CracksDoNotLeak) {
   EXPECT_LT(containment.on_tolerance(), 1e-8);
   for (int k = 0; k < 3'000; ++k) {
     // Next to an edge, inside or outside.
-    dvec3 x(pick(random, 0, 1), pick(random, 0, 1), pick(random, 0, 1));
+    dvec3 x{pick(random, 0, 1), pick(random, 0, 1), pick(random, 0, 1)};
     x[k % 3] = uniform(random, 0, 1);
     const double d = log_uniform(random, 1e-8, 1e-2);
     for (const int axis : {(k + 1) % 3, (k + 2) % 3}) {

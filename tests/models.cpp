@@ -133,13 +133,13 @@ Shape blob(unsigned seed) {
     const auto row = std::size_t(sign > 0 ? 0 : down + 2);
     const auto ring = std::size_t(sign > 0 ? 1 : down + 1);
     const double r = uniform(random, 0.7, 1);
-    const dvec3 pole(uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1), sign * r);
+    const dvec3 pole{uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1), sign * r};
     // Two vectors that span the tangent plane, not quite orthogonal nor level.
     const auto off = [&] { return uniform(random, -0.08, 0.08); };
     const double x = uniform(random, 0.3, 0.45);
     const double y = uniform(random, 0.3, 0.45);
-    const dvec3 a(x, off(), off());
-    const dvec3 b(off(), y, off());
+    const dvec3 a{x, off(), off()};
+    const dvec3 b{off(), y, off()};
     for (int i = 0; i < around; ++i) {
       net[std::size_t(i)][row] = pole;
       net[std::size_t(i)][ring] = pole + std::cos(angle(i)) * a + std::sin(angle(i)) * b;
@@ -155,7 +155,8 @@ Shape blob(unsigned seed) {
       surface.points.push_back(taut::homogeneous(p));
     }
   }
-  return mapped({{surface}, {}, {}}, random_rotation(random), 0.3 * random_point(random));
+  const dmat3 rotation = random_rotation(random);
+  return mapped({{surface}, {}, {}}, rotation, 0.3 * random_point(random));
 }
 
 BezierPatch random_patch(Random& random, int degree_u, int degree_v, double weight_range) {
@@ -165,6 +166,12 @@ BezierPatch random_patch(Random& random, int degree_u, int degree_v, double weig
     patch.points.push_back(taut::homogeneous(random_point(random), w));
   }
   return patch;
+}
+
+BezierPatch random_patch(Random& random, DegreeRange degrees, double weight_range) {
+  const int degree_u = pick(random, degrees.lower, degrees.upper);
+  const int degree_v = pick(random, degrees.lower, degrees.upper);
+  return random_patch(random, degree_u, degree_v, weight_range);
 }
 
 BezierCurve random_curve(Random& random, int degree, double weight_range) {

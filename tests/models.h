@@ -48,9 +48,16 @@ Model posed_teapots(unsigned seed, int count);
 Shape blob(unsigned seed);
 
 /// @name Random geometry of size about one
+/// Draws stand in braces or in statements of their own: the order in which compilers evaluate
+/// arguments differs, and all are to try the same models.
 /// @{
+struct DegreeRange {
+  int lower, upper;
+};
 /// Weights are log-uniform in [1 / weight_range, weight_range]; polynomial if it is one.
 BezierPatch random_patch(Random& random, int degree_u, int degree_v, double weight_range);
+/// Each of the degrees picked from the range.
+BezierPatch random_patch(Random& random, DegreeRange degrees, double weight_range);
 BezierCurve random_curve(Random& random, int degree, double weight_range);
 /// @}
 

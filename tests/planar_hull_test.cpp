@@ -353,7 +353,7 @@ Curve wiggly(Random& random, int degree) {
   curve.reserve(std::size_t(degree) + 1);
   for (int i = 0; i <= degree; ++i) {
     const double w = log_uniform(random, 0.5, 2);
-    const dvec2 x(uniform(random, -1, 1), uniform(random, -1, 1));
+    const dvec2 x{uniform(random, -1, 1), uniform(random, -1, 1)};
     curve.emplace_back(w * x, w);
   }
   return curve;
@@ -390,7 +390,7 @@ TEST(PlanarHull, Invariance) {
     const PlanarHull hull = planar_hull({}, curves);
     const double scale = log_uniform(random, 1e-3, 1);
     const double angle = uniform(random, 0, 6);
-    const dvec2 shift(uniform(random, -1, 1), uniform(random, -1, 1));
+    const dvec2 shift{uniform(random, -1, 1), uniform(random, -1, 1)};
     const auto moved = [&](const dvec2& p) {
       return shift + scale * dvec2(std::cos(angle) * p.x - std::sin(angle) * p.y,
                                    std::sin(angle) * p.x + std::cos(angle) * p.y);
@@ -412,7 +412,7 @@ TEST(PlanarHull, HundredsOfCurves) {
   Curves curves;
   for (int k = 0; k < 400; ++k) {
     const double a = uniform(random, 0, 6);
-    const dvec2 center(uniform(random, -1, 1), uniform(random, -1, 1));
+    const dvec2 center{uniform(random, -1, 1), uniform(random, -1, 1)};
     curves.push_back(circular(center, log_uniform(random, 1e-3, 0.3), a, a + 1.5));
   }
   expect_hull(planar_hull({}, curves), {}, curves, 20);

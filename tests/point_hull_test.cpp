@@ -310,8 +310,8 @@ TEST(PointHull, ManyPointsOnEdgesAndFaces) {
   std::vector<dvec3> points = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8},
                                {8, 8, 0}, {8, 0, 8}, {0, 8, 8}, {8, 8, 8}};
   for (int k = 0; k < 600; ++k) {
-    dvec3 p(pick(random, 0, 1024) / 128.0, pick(random, 0, 1024) / 128.0,
-            pick(random, 0, 1024) / 128.0);
+    dvec3 p{pick(random, 0, 1024) / 128.0, pick(random, 0, 1024) / 128.0,
+            pick(random, 0, 1024) / 128.0};
     p[pick(random, 0, 2)] = 8.0 * pick(random, 0, 1);
     if (k % 2 == 0) p[pick(random, 0, 2)] = 8.0 * pick(random, 0, 1);
     points.push_back(p);
@@ -351,8 +351,8 @@ TEST(PointHull, PointsOneUlpApart) {
     const int size = pick(random, 1, 3);
     std::vector<dvec3> points;
     for (int k = 0; k < 40; ++k) {
-      points.push_back(dvec3(1) + ulp * dvec3(pick(random, 0, size), pick(random, 0, size),
-                                              pick(random, 0, size)));
+      points.push_back(dvec3(1) + ulp * dvec3{pick(random, 0, size), pick(random, 0, size),
+                                              pick(random, 0, size)});
     }
     if (hull_of(points).dimension() == 3) expect_hull(points);
     // Such clusters at the corners of a cube.
@@ -434,7 +434,7 @@ TEST(PointHull, AddInPortions) {
     for (int k = 0; k < 200; ++k) {
       points.push_back(repeat % 2 == 0
                            ? random_point(random)
-                           : dvec3(pick(random, 0, 5), pick(random, 0, 5), pick(random, 0, 5)));
+                           : dvec3{pick(random, 0, 5), pick(random, 0, 5), pick(random, 0, 5)});
     }
     PointHull hull(box_of(points));
     const std::span<const dvec3> all(points);

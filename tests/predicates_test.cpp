@@ -185,7 +185,7 @@ std::vector<Sweep> sweeps() {
       {"nearly coplanar, stretched axes", 1000,
        [](Random& r) {
          Tetrahedron t = nearly_coplanar(r);
-         const dvec3 s(log_uniform(r, -90, 90), log_uniform(r, -90, 90), log_uniform(r, -90, 90));
+         const dvec3 s{log_uniform(r, -90, 90), log_uniform(r, -90, 90), log_uniform(r, -90, 90)};
          for (dvec3& p : t) p *= s;
          return t;
        }},

@@ -118,9 +118,8 @@ TEST(SupportQuery, ExtremeWeights) {
   Random random(11);
   for (int k = 0; k < 40; ++k) {
     const double weights = log_uniform(random, 1e2, k % 2 == 0 ? 1e3 : 1e6);
-    const int degree_u = pick(random, 1, 9);
-    const int degree_v = pick(random, 1, 9);
-    const Scene scene = make_scene(of_patch(random_patch(random, degree_u, degree_v, weights)));
+    const BezierPatch patch = random_patch(random, {1, 9}, weights);
+    const Scene scene = make_scene(of_patch(patch));
     expect_support(scene, reference(scene), random_directions(random, 5),
                    "weights up to " + std::to_string(weights));
   }

@@ -151,7 +151,8 @@ class SupportQuery::Search {
   }
   /// Whether it is the spread of the weights, which falls as cells are halved, that makes the
   /// rounding of a proof exceed the slack.
-  bool halves_know_better(const SceneElement& e, const NetCell& cell, const Interval& weight) const {
+  bool halves_know_better(const SceneElement& e, const NetCell& cell,
+                          const Interval& weight) const {
     return weight.upper > narrow_weights * weight.lower &&
            certificate_rounding(e, cell, weight) > support_slack;
   }
