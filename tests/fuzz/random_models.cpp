@@ -327,6 +327,33 @@ void repeat_one(Dice& dice, std::vector<BezierPatch>& patches) {
   patches.push_back(copy);
 }
 
+/// Borders of a patch that shrink to a point, each to its own or all to one, or meet the one
+/// across.
+void close_one(Dice& dice, std::vector<BezierPatch>& patches) {
+  if (!dice.one_in(3)) return;
+  BezierPatch& patch = patches[std::size_t(dice.below(int(patches.size())))];
+  const bool at_one_point = dice.one_in(2);
+  const dvec4 point = patch.points.front();
+  for (const Side side : all_sides) {
+    const int way = dice.below(3);
+    const int count = along_v(side) ? patch.degree_v : patch.degree_u;
+    const auto entry = [&](bool upper, int k) -> dvec4& {
+      const int across = upper ? (along_v(side) ? patch.degree_u : patch.degree_v) : 0;
+      return patch.points[along_v(side) ? patch.index(across, k) : patch.index(k, across)];
+    };
+    const bool upper = at_upper_end(side);
+    for (int k = 0; k <= count; ++k) {
+      if (at_one_point) {
+        entry(upper, k) = point;
+      } else if (way == 1) {
+        entry(upper, k) = entry(upper, 0);
+      } else if (way == 2) {
+        entry(upper, k) = entry(!upper, k);
+      }
+    }
+  }
+}
+
 double rounded(double x, int decimals) {
   const double unit = std::pow(10.0, -decimals);
   return unit * std::round(x / unit);
@@ -353,6 +380,7 @@ RandomModel random_cage(std::uint64_t seed) {
 RandomModel random_surfaces(std::uint64_t seed) {
   Dice dice(seed);
   std::vector<BezierPatch> patches = some_patches(dice, body(dice));
+  close_one(dice, patches);
   repeat_one(dice, patches);
   const dmat3 turn = dice.one_in(3) ? dmat3(1.0) : rotation(dice);
   const double size = std::pow(10.0, dice.pick(-1, 3));

@@ -222,7 +222,8 @@ class Walk {
     const bool inside = farthest(net) <= radius_;
     const double size = width(net);
     const bool small = inside || size <= coarse * radius_ || are_apart(net, inner * radius_);
-    if (!small) return divided;
+    const Found halves = surface.level(node) < level_limit ? divided : failed;
+    if (!small) return halves;
     if (surface.is_concave(node, axis_)) {
       if (pieces_.size() == piece_limit) return failed;
       return add({patch, &surface, node, std::move(net), inside, {}});
@@ -231,7 +232,7 @@ class Walk {
     for (const dvec2& p : probes) {
       if (bends_at(surface, {cell.u.at(p.x), cell.v.at(p.y)}, map_, radius_)) return failed;
     }
-    return size > fine * radius_ && surface.level(node) < level_limit ? divided : failed;
+    return size > fine * radius_ ? halves : failed;
   }
 
   /// All of the cell itself: where it fails, it does so soon.

@@ -69,18 +69,31 @@ int ConcavePatch::child(int node, int k) {
   return nodes_[std::size_t(node)].first_child + k;
 }
 
-void ConcavePatch::halve(int node) {
+/// That of the longest row of control points: of their legs, for the ends of a row may coincide.
+Direction ConcavePatch::longer_side(int node) {
   const std::vector<dvec3>& net = points(node);
-  const auto length = [&](int i, int j, int k, int l) {
-    return glm::distance(net[bezier_.index(i, j)], net[bezier_.index(k, l)]);
-  };
   const int p = bezier_.degree_u;
   const int q = bezier_.degree_v;
-  double length_u = 0;
-  double length_v = 0;
-  for (int j = 0; j <= q; ++j) length_u = std::max(length_u, length(0, j, p, j));
-  for (int i = 0; i <= p; ++i) length_v = std::max(length_v, length(i, 0, i, q));
-  const Direction direction = length_u >= length_v ? Direction::u : Direction::v;
+  const auto leg = [&](int i, int j, int k, int l) {
+    return glm::distance(net[bezier_.index(i, j)], net[bezier_.index(k, l)]);
+  };
+  double longest_u = 0;
+  double longest_v = 0;
+  for (int j = 0; j <= q; ++j) {
+    double length = 0;
+    for (int i = 0; i < p; ++i) length += leg(i, j, i + 1, j);
+    longest_u = std::max(longest_u, length);
+  }
+  for (int i = 0; i <= p; ++i) {
+    double length = 0;
+    for (int j = 0; j < q; ++j) length += leg(i, j, i, j + 1);
+    longest_v = std::max(longest_v, length);
+  }
+  return longest_u >= longest_v ? Direction::u : Direction::v;
+}
+
+void ConcavePatch::halve(int node) {
+  const Direction direction = longer_side(node);
   Node lower;
   lower.cell = cell(node);
   lower.level = level(node) + 1;

@@ -73,6 +73,7 @@ class ConcavePatch {
   bool faces(int node, const dvec3& m);
   void look(int node);
   double sign(int node, int depth);
+  Direction longer_side(int node);
   void halve(int node);
 
   BezierPatch bezier_;
