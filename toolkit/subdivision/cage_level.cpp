@@ -23,6 +23,9 @@ namespace Sdc = OpenSubdiv::Sdc;
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 int to_int(std::size_t n) { return static_cast<int>(n); }
 
+/// Weights of caps that OpenSubdiv makes at a time: some tens of megabytes.
+constexpr std::size_t most_weights = std::size_t{1} << 17U;
+
 /// A point as OpenSubdiv combines it.
 struct Primvar {
   dvec3 x = dvec3(0.0);
@@ -89,6 +92,44 @@ std::vector<int> child_numbers(const Far::TopologyLevel& level, const Far::Topol
     }
   }
   return result;
+}
+
+/// The bicubic net of a table's patch, of the points that the table counts.
+std::vector<dvec3> quad_net(const Far::PatchTable& table, int array, int patch,
+                            const std::vector<Primvar>& points) {
+  const auto vertices = table.GetPatchVertices(array, patch);
+  std::array<dvec3, 16> net;
+  for (int k = 0; k < 16; ++k) {
+    net[to_size(k)] = vertices[k] < 0 ? dvec3(0.0) : at(points, vertices[k]).x;
+  }
+  return bezier_net(net, table.GetPatchParam(array, patch).GetBoundary());
+}
+
+/// The quartic net of a table's patch. `regular`: which of its corners are; `known`: matrices for
+/// kinds of boundary, to which others are added.
+std::vector<dvec3> triangle_net(const Far::PatchTable& table, int array, int patch,
+                                const std::vector<Primvar>& points,
+                                const std::array<bool, 3>& regular,
+                                std::map<int, LoopMatrix>& known) {
+  const auto vertices = table.GetPatchVertices(array, patch);
+  if (vertices.size() == gregory_points) {
+    std::array<dvec3, gregory_points> net;
+    for (int k = 0; k < gregory_points; ++k) net[to_size(k)] = at(points, vertices[k]).x;
+    return quartic_of_gregory(net, regular);
+  }
+  const int boundary = table.GetPatchParam(array, patch).GetBoundary();
+  auto matrix = known.find(boundary);
+  if (matrix == known.end()) {
+    const Far::PatchTable::PatchHandle handle{array, patch, patch * loop_points};
+    matrix = known.emplace(boundary, loop_to_bezier(table, handle)).first;
+  }
+  std::vector<dvec3> net(quartic_points, dvec3(0.0));
+  for (int r = 0; r < quartic_points; ++r) {
+    for (int k = 0; k < loop_points; ++k) {
+      net[to_size(r)] += matrix->second[to_size(r)][to_size(k)] * at(points, vertices[k]).x;
+    }
+  }
+  return net;
 }
 
 /// Where OpenSubdiv's caps at a vertex can be relied on.
@@ -170,8 +211,18 @@ struct CageLevel::Topology {
                        [&](int v) { return sound_caps(v) == SoundCaps::here; });
   }
 
+  /// Faces at a face's vertices, for each of which a point of the face's cap has two weights at
+  /// most.
+  std::size_t weights(int face) const {
+    const Far::TopologyLevel base = level();
+    const auto vertices = base.GetFaceVertices(face);
+    return std::accumulate(
+        vertices.begin(), vertices.end(), std::size_t{0},
+        [&](std::size_t sum, int v) { return sum + to_size(base.GetVertexFaces(v).size()); });
+  }
+
   /// Of some faces, one at least.
-  std::unique_ptr<Far::PatchTable> patch_table(const std::vector<int>& faces) const {
+  std::unique_ptr<Far::PatchTable> patch_table(std::span<const int> faces) const {
     Far::PatchTableFactory::Options patches(0);
     patches.SetEndCapType(scheme == CageScheme::loop
                               ? Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS
@@ -346,47 +397,30 @@ std::vector<CellPatch> CageLevel::patches() const {
     cell_of[to_size(own)] = to_int(c);
     faces.push_back(own);
   }
-  if (faces.empty()) return result;
-  const std::unique_ptr<Far::PatchTable> table = topology.patch_table(faces);
-  const std::vector<Primvar> points = topology.patch_points(*table);
   const std::vector<int> face_of = topology.faces_of_parameters();
-
   std::map<int, LoopMatrix> loop_matrices;
-  for (int array = 0; array < table->GetNumPatchArrays(); ++array) {
-    for (int i = 0; i < table->GetNumPatches(array); ++i) {
-      const Far::PatchParam param = table->GetPatchParam(array, i);
-      const int face = face_of[to_size(param.GetFaceId())];
-      CellPatch& patch = result[to_size(cell_of[to_size(face)])];
-      patch.semi_sharp = topology.is_near_semi_sharp(face);
-      const bool exact = param.IsRegular() && !patch.semi_sharp;
-      patch.kind = exact ? CellPatch::Kind::regular : CellPatch::Kind::cap;
-      const auto vertices = table->GetPatchVertices(array, i);
-      if (topology.scheme == CageScheme::catmark) {
-        std::array<dvec3, 16> net;
-        for (int k = 0; k < 16; ++k) {
-          net[to_size(k)] = vertices[k] < 0 ? dvec3(0.0) : at(points, vertices[k]).x;
-        }
-        patch.points = bezier_net(net, param.GetBoundary());
-        continue;
-      }
-      if (vertices.size() == gregory_points) {
-        std::array<dvec3, gregory_points> net;
-        for (int k = 0; k < gregory_points; ++k) net[to_size(k)] = at(points, vertices[k]).x;
-        patch.points = quartic_of_gregory(net, topology.regular_corners(face));
-        patch.degree = 4;
-        continue;
-      }
-      const Far::PatchTable::PatchHandle handle{array, i, i * loop_points};
-      auto known = loop_matrices.find(param.GetBoundary());
-      if (known == loop_matrices.end()) {
-        known = loop_matrices.emplace(param.GetBoundary(), loop_to_bezier(*table, handle)).first;
-      }
-      patch.points.assign(quartic_points, dvec3(0.0));
-      patch.degree = 4;
-      for (int r = 0; r < quartic_points; ++r) {
-        for (int k = 0; k < loop_points; ++k) {
-          patch.points[to_size(r)] +=
-              known->second[to_size(r)][to_size(k)] * at(points, vertices[k]).x;
+  // A few at a time where many are about one vertex: all of these count for each of them.
+  for (std::size_t first = 0, end = 0; first < faces.size(); first = end) {
+    for (std::size_t weights = 0; end < faces.size() && weights < most_weights; ++end) {
+      weights += topology.weights(faces[end]);
+    }
+    const std::span<const int> some = std::span(faces).subspan(first, end - first);
+    const std::unique_ptr<Far::PatchTable> table = topology.patch_table(some);
+    const std::vector<Primvar> points = topology.patch_points(*table);
+    for (int array = 0; array < table->GetNumPatchArrays(); ++array) {
+      for (int i = 0; i < table->GetNumPatches(array); ++i) {
+        const Far::PatchParam param = table->GetPatchParam(array, i);
+        const int face = face_of[to_size(param.GetFaceId())];
+        CellPatch& patch = result[to_size(cell_of[to_size(face)])];
+        patch.semi_sharp = topology.is_near_semi_sharp(face);
+        const bool exact = param.IsRegular() && !patch.semi_sharp;
+        patch.kind = exact ? CellPatch::Kind::regular : CellPatch::Kind::cap;
+        if (topology.scheme == CageScheme::catmark) {
+          patch.points = quad_net(*table, array, i, points);
+        } else {
+          patch.points =
+              triangle_net(*table, array, i, points, topology.regular_corners(face), loop_matrices);
+          patch.degree = 4;
         }
       }
     }
@@ -394,15 +428,20 @@ std::vector<CellPatch> CageLevel::patches() const {
   return result;
 }
 
-void CageLevel::enclosure(std::size_t cell, std::vector<dvec3>& points) const {
+std::vector<dvec3> CageLevel::enclosure(std::span<const std::size_t> cells) const {
   const Far::TopologyLevel base = topology_->level();
-  points.clear();
-  const std::vector<int> faces = with_surroundings(base, {cells_[cell].face});
-  for (const int f : faces) {
-    const auto vertices = base.GetFaceVertices(f);
-    for (int k = 0; k < vertices.size(); ++k)
-      points.push_back(topology_->points[to_size(vertices[k])]);
+  std::vector<int> faces;
+  for (const std::size_t c : cells) faces.push_back(cells_[c].face);
+  std::vector<int> vertices;
+  for (const int f : with_surroundings(base, std::move(faces))) {
+    const auto own = base.GetFaceVertices(f);
+    vertices.insert(vertices.end(), own.begin(), own.end());
   }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<dvec3> points;
+  for (const int v : vertices) points.push_back(topology_->points[to_size(v)]);
+  return points;
 }
 
 std::span<const int> CageLevel::vertices(std::size_t cell) const {

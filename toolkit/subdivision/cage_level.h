@@ -66,8 +66,8 @@ class CageLevel {
   /// The patches of all cells.
   std::vector<CellPatch> patches() const;
 
-  /// The control points of a cell: the convex hull of them contains its limit surface.
-  void enclosure(std::size_t cell, std::vector<dvec3>& points) const;
+  /// The control points of cells, each once: the convex hull of them contains their limit surface.
+  std::vector<dvec3> enclosure(std::span<const std::size_t> cells) const;
   /// The vertices of a cell in their order, numbers of this level.
   std::span<const int> vertices(std::size_t cell) const;
   /// The cell beyond the side from a corner to the next. None where there is no cell, or more than

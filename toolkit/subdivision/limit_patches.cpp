@@ -31,6 +31,10 @@ constexpr std::size_t levels_around = 3;
 /// How many diameters of a region such points are away at most.
 constexpr double sizes_around = 16;
 
+/// How many such points a level has at most: those of all regions about a vertex of many faces, of
+/// which each is near all others, would grow with their number squared.
+constexpr std::size_t most_around = 256;
+
 /// Levels after which a region is left as it is: it halves at least every other one.
 constexpr int level_limit = 96;
 
@@ -300,12 +304,11 @@ void Refinement::sort_out() {
   refined_.clear();
   stand_ins_.clear();
   std::vector<std::size_t> touching;
-  std::vector<dvec3> points;
   for (std::size_t c = 0; c < patches_.size(); ++c) {
     const CellPatch& patch = patches_[c];
     if (patch.kind == CellPatch::Kind::regular) continue;
     if (patch.kind == CellPatch::Kind::cap) {
-      level_.enclosure(c, points);
+      std::vector<dvec3> points = level_.enclosure({&c, 1});
       points.insert(points.end(), patch.points.begin(), patch.points.end());
       if (!touch_.may_touch(points)) {
         stand_ins_.push_back(c);
@@ -383,27 +386,28 @@ double Refinement::bound_of(const std::vector<std::size_t>& region, bool fit, bo
     return region_bound(level_, region, patches_, known, tolerance_, options_.progress, least);
   }
   Box box;
-  std::vector<dvec3> points;
-  for (const std::size_t c : region) {
-    level_.enclosure(c, points);
-    for (const dvec3& p : points) box.include(p);
-  }
+  for (const dvec3& p : level_.enclosure(region)) box.include(p);
   return diagonal(box);
 }
 
-/// Those of the points that are near a region, as its own size goes.
+/// Those of the points that are near a region, as its own size goes; the nearest of many.
 Surroundings Refinement::near(const std::vector<std::size_t>& region,
                               const Surroundings& surroundings) const {
   Box box;
   for (const std::size_t c : region) {
     for (const dvec3& p : corners(patches_[c])) box.include(p);
   }
+  const auto away = [&](const dvec3& p) { return glm::distance(p, box.center()); };
   const double reach = sizes_around * diagonal(box);
   Surroundings result(surroundings.size());
   for (std::size_t i = 0; i < surroundings.size(); ++i) {
     for (const dvec3& p : surroundings[i]) {
-      if (glm::distance(p, box.center()) <= reach) result[i].push_back(p);
+      if (away(p) <= reach) result[i].push_back(p);
     }
+    if (result[i].size() <= most_around) continue;
+    std::nth_element(result[i].begin(), result[i].begin() + most_around, result[i].end(),
+                     [&](const dvec3& a, const dvec3& b) { return away(a) < away(b); });
+    result[i].resize(most_around);
   }
   return result;
 }

@@ -213,17 +213,6 @@ double side_gap(const CageLevel& level, std::span<const std::size_t> cells,
   return gap;
 }
 
-/// The cells' limit surface is within the convex hull of these.
-std::vector<dvec3> enclosures(const CageLevel& level, std::span<const std::size_t> cells) {
-  std::vector<dvec3> result;
-  std::vector<dvec3> points;
-  for (const std::size_t c : cells) {
-    level.enclosure(c, points);
-    result.insert(result.end(), points.begin(), points.end());
-  }
-  return result;
-}
-
 /// How far the cells' limit surface is from the convex hull of points of the caps that stand for
 /// them, and the caps from that of points of the limit surface, both with what is known.
 class Comparison {
@@ -309,7 +298,7 @@ void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t>
       }
       for (const dvec3& p : lattice(piece, samples)) of_caps_.know(p);
     }
-    const std::vector<dvec3> rest = enclosures(below, left);
+    const std::vector<dvec3> rest = below.enclosure(left);
     const bool ends = depth + 1 == levels_below ||
                       std::all_of(rest.begin(), rest.end(),
                                   [&](const dvec3& p) { return of_limit_.is_within(p, small); });
@@ -348,7 +337,7 @@ double region_bound(const CageLevel& level, std::span<const std::size_t> region,
                     double enough, const Progress& progress, bool least) {
   const double limit = least ? std::numeric_limits<double>::infinity() : enough;
   Bound plain(known, limit, progress);
-  for (const dvec3& p : enclosures(level, region)) plain.meet(p);
+  for (const dvec3& p : level.enclosure(region)) plain.meet(p);
   for (const std::size_t c : region) {
     for (const dvec3& p : patches[c].points) plain.meet(p);
   }
