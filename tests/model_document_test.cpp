@@ -356,6 +356,7 @@ TEST(ModelDocument, SaysWhichNumberIsNoGeometry) {
   expect(with("[[0, 1, 2]]", "[[0, 1]]"), "cages[0].faces[0]: the polygon has fewer");
   expect(with("[[1, 2, 3]]", "[[1, 2, 3], [-1.7e308, 1.7e308, 0]]"), "extent overflows");
   expect(with("{\"part\": 0}", "{\"part\": 2}"), "f: instances[1].part: 2 is not in 0 .. 1");
+  expect(with("{\"part\": 0}", "{\"part\": 1e300}"), "f: instances[1].part: is not in 0 .. 1");
   expect(with("[0, -1, 0, 1, 0,", "[0, 1, 0, 1, 0,"), "f: instances[0]: instance 0: the rotation");
   expect(with("\"loops\": [[", "\"ulps\": [[6, 0, 0, 0]], \"loops\": [["), "6 is not in 0 .. 5");
   expect(with("\"loops\": [[", "\"ulps\": [[0, 9, 0, 0]], \"loops\": [["), "9 is not in -2 .. 2");

@@ -275,6 +275,9 @@ TEST_F(ReadMesh, PlyThatIsNoGeometry) {
             ":3: 1000000000 elements announced, more than the remaining 0 bytes can hold"},
            {ascii + ply_vertices + "end_header\n0 0 0\n",
             ":3: 5 of vertex announced, more than the remaining 6 bytes can hold"},
+           {ascii + ply_vertices + "element face 1\nproperty uchar vertex_indices\nend_header\n" +
+                ascii_points + "3\n",
+            ":7: faces have no list of vertex_indices"},
            {body + "4 0 1 2 5\n3 0 3 4\n", ":15: vertex index 5 is not below 5"},
            {body + "4 0 1 2 3\n3 0 -1 4\n", ":16: vertex index -1 is not below 5"},
            {body + "4 0 1 2 3\n2 0 3\n", ":16: a face has fewer than three vertices"},
@@ -353,6 +356,10 @@ TEST_F(ReadMesh, Obj) {
 TEST_F(ReadMesh, ObjMalformed) {
   EXPECT_EQ(message<IoError>("a.obj", "v 0 0\n"), ":1: v takes three coordinates");
   EXPECT_EQ(message<IoError>("a.obj", "v 0 0 0\nf 1 b 1\n"), ":2: a vertex expected, found \"b\"");
+  for (const std::string word : {"1///", "1/2/3/", "1/-", "1//-/3", "1/2-"}) {
+    const std::string expected = ":2: a vertex expected, found \"" + word + "\"";
+    EXPECT_EQ(message<IoError>("a.obj", "v 0 0 0\nf 1/ 1// " + word + " 1\n"), expected);
+  }
   EXPECT_EQ(message<InvalidInput>("a.obj", "v 0 0 inf\n"),
             ":1: a coordinate is not finite: \"inf\"");
   EXPECT_EQ(message<InvalidInput>("a.obj", "v 0 0 0\nf 1 1\n"),

@@ -69,18 +69,19 @@ double DocumentNode::number() const {
 }
 
 int DocumentNode::integer(int lower, int upper) const {
+  const auto range = [&] {
+    return "is not in " + std::to_string(lower) + " .. " + std::to_string(upper);
+  };
   std::int64_t value = 0;
   if (const auto* real = std::get_if<double>(&value_.value)) {
-    // What some writers make of an integer. Others come out of range or fail.
-    value = std::abs(*real) <= 0x1p53 ? std::int64_t(*real) : std::int64_t(upper) + 1;
-    if (std::abs(*real) <= 0x1p53 && double(value) != *real) fail("an integer expected");
+    // What some writers make of an integer.
+    if (!(std::abs(*real) <= 0x1p53)) refuse(range());
+    value = std::int64_t(*real);
+    if (double(value) != *real) fail("an integer expected");
   } else {
     value = get<std::int64_t>("an integer");
   }
-  if (value < lower || value > upper) {
-    refuse(std::to_string(value) + " is not in " + std::to_string(lower) + " .. " +
-           std::to_string(upper));
-  }
+  if (value < lower || value > upper) refuse(std::to_string(value) + " " + range());
   return int(value);
 }
 

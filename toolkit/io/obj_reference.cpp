@@ -6,7 +6,19 @@
 namespace taut {
 namespace {
 
-bool is_index_part(char c) { return ('0' <= c && c <= '9') || c == '-' || c == '/'; }
+/// "", "/vt", "//vn" or "/vt/vn", of whole numbers; some writers leave out the last ones.
+bool are_further_indices(std::string_view text) {
+  for (int k = 0; k < 2 && !text.empty(); ++k) {
+    if (text.front() != '/') return false;
+    text.remove_prefix(1);
+    const bool negative = text.starts_with('-');
+    if (negative) text.remove_prefix(1);
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    if (negative && digits == 0) return false;
+    text.remove_prefix(digits);
+  }
+  return text.empty();
+}
 
 std::string_view without_article(std::string_view kind) { return kind.substr(kind.find(' ') + 1); }
 
@@ -30,8 +42,7 @@ void ObjReferences::check(const TextScanner& scanner, std::size_t count) const {
 std::size_t obj_index(const TextScanner& scanner, const Word& word, std::size_t count,
                       std::string_view kind) {
   const std::size_t slash = std::min(word.text.find('/'), word.text.size());
-  const std::string_view rest = word.text.substr(slash);
-  if (!std::all_of(rest.begin(), rest.end(), is_index_part)) {
+  if (!are_further_indices(word.text.substr(slash))) {
     scanner.fail(word.line, std::string(kind) + " expected, found " + in_quotes(word.text));
   }
   const long number = scanner.integer({word.text.substr(0, slash), word.line}, kind);

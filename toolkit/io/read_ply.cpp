@@ -36,6 +36,10 @@ struct Property {
   std::optional<Type> length_type;
 };
 
+bool lists_vertices(const Property& p) {
+  return p.length_type && (p.name == "vertex_indices" || p.name == "vertex_index");
+}
+
 struct Element {
   std::string name;
   std::size_t count = 0;
@@ -62,6 +66,7 @@ class HeaderReader {
   Property property(const std::vector<Word>& line) const;
   std::vector<Word> words();
   void check_room();
+  void check_faces();
 
   TextScanner& scanner_;
   Header header_;
@@ -117,6 +122,7 @@ Header HeaderReader::read() {
   }
   if (!has_format_) scanner_.fail(scanner_.line() - 1, "the header has no format");
   check_room();
+  check_faces();
   return std::move(header_);
 }
 
@@ -206,6 +212,16 @@ void HeaderReader::check_room() {
   }
 }
 
+/// Refuses faces of which the vertices are not told, or not by lists.
+void HeaderReader::check_faces() {
+  for (const Element& element : header_.elements) {
+    if (element.name != "face" || element.count == 0) continue;
+    const bool told =
+        std::any_of(element.properties.begin(), element.properties.end(), lists_vertices);
+    if (!told) scanner_.refuse(element.line, "faces have no list of vertex_indices");
+  }
+}
+
 double BinaryValues::real(Type type) {
   const double value = type == Type::float64   ? scanner_.next<double>()
                        : type == Type::float32 ? static_cast<double>(scanner_.next<float>())
@@ -284,7 +300,7 @@ class ElementReader {
     if (!values_.can_hold(p.type, static_cast<std::size_t>(length))) {
       values_.refuse("a list of " + std::to_string(length) + " does not fit into the file");
     }
-    if (e.name == "face" && (p.name == "vertex_indices" || p.name == "vertex_index")) {
+    if (e.name == "face" && lists_vertices(p)) {
       read_polygon(p.type, static_cast<std::size_t>(length));
     } else {
       values_.skip(p.type, static_cast<std::size_t>(length));
