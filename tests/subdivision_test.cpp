@@ -5,8 +5,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,11 +20,14 @@
 #include "taut/bounds/scene.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
+#include "taut/core/progress.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/subdivision/add_cage.h"
+#include "taut/subdivision/cage_level.h"
 #include "taut/subdivision/conforming.h"
 #include "taut/subdivision/dart_limit.h"
+#include "taut/subdivision/edge_middles.h"
 #include "taut/subdivision/extraction.h"
 #include "taut/subdivision/limit_patches.h"
 #include "taut/subdivision/point_hull_distance.h"
@@ -54,6 +59,39 @@ class PointSet {
   const std::vector<LimitPoint>& points_;
   PointGrid grid_;
 };
+
+/// The caps about the middle of a polygon of so many sides that they are not made all at once.
+TEST(CageLevel, CapsOfARegularPolygonAreOneTurned) {
+  constexpr int sides = 500;
+  const auto turn = [&](int k) {
+    const double t = 2 * std::numbers::pi * k / sides;
+    return dmat3(std::cos(t), std::sin(t), 0, -std::sin(t), std::cos(t), 0, 0, 0, 1);
+  };
+  ControlCage cage;
+  std::vector<int>& face = cage.faces.emplace_back();
+  for (int k = 0; k < sides; ++k) {
+    face.push_back(k);
+    cage.points.push_back(turn(k) * dvec3(1, 0, 0));
+  }
+  EdgeMiddles middles(sides);
+  const CageLevel polygon(cage);
+  const std::vector<std::size_t> all = {0};
+  const CageLevel level = polygon.refined(all, middles);
+  const std::vector<CellPatch> patches = level.patches({});
+  ASSERT_EQ(patches.size(), std::size_t(sides));
+  for (int k = 0; k < sides; ++k) {
+    const CellPatch& patch = patches[std::size_t(k)];
+    ASSERT_EQ(patch.kind, CellPatch::Kind::cap);
+    for (std::size_t i = 0; i < patch.points.size(); ++i) {
+      EXPECT_LT(glm::distance(patch.points[i], turn(k) * patches[0].points[i]), 1e-13) << k;
+    }
+  }
+  std::stop_source stop;
+  stop.request_stop();
+  Progress stopped;
+  stopped.stop = stop.get_token();
+  EXPECT_THROW(level.patches(stopped), Cancelled);
+}
 
 /// Patches of few levels against limit masks at their corners, and where they are four times finer.
 TEST(LimitPatches, AreExactWhereTheySaySo) {

@@ -377,7 +377,7 @@ CageLevel::CageLevel(const ControlCage& cage) : CageLevel() {
   }
 }
 
-std::vector<CellPatch> CageLevel::patches() const {
+std::vector<CellPatch> CageLevel::patches(const Progress& progress) const {
   const Topology& topology = *topology_;
   std::vector<CellPatch> result(cells_.size());
   std::vector<int> cell_of(to_size(topology.level().GetNumFaces()), -1);
@@ -401,6 +401,7 @@ std::vector<CellPatch> CageLevel::patches() const {
   std::map<int, LoopMatrix> loop_matrices;
   // A few at a time where many are about one vertex: all of these count for each of them.
   for (std::size_t first = 0, end = 0; first < faces.size(); first = end) {
+    progress.check();
     for (std::size_t weights = 0; end < faces.size() && weights < most_weights; ++end) {
       weights += topology.weights(faces[end]);
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/progress.h"
 #include "taut/subdivision/edge_middles.h"
 #include "taut/surface/bezier.h"
 #include "taut/surface/control_cage.h"
@@ -63,8 +64,8 @@ class CageLevel {
   std::vector<CageCell>& cells() { return cells_; }
   const std::vector<CageCell>& cells() const { return cells_; }
 
-  /// The patches of all cells.
-  std::vector<CellPatch> patches() const;
+  /// The patches of all cells. @throws Cancelled
+  std::vector<CellPatch> patches(const Progress& progress) const;
 
   /// The control points of cells, each once: the convex hull of them contains their limit surface.
   std::vector<dvec3> enclosure(std::span<const std::size_t> cells) const;

@@ -235,7 +235,7 @@ class Refinement {
 LimitSurface Refinement::run() {
   while (!level_.cells().empty()) {
     options_.progress.check();
-    patches_ = level_.patches();
+    patches_ = level_.patches(options_.progress);
     take_regular();
     if (depth_ == 0) count_irregular();
     sort_out();

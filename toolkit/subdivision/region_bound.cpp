@@ -219,7 +219,10 @@ class Comparison {
  public:
   /// `creases`: they have the cells' sharp sides in common.
   Comparison(const std::vector<dvec3>& known, bool creases, double limit, const Progress& progress)
-      : of_limit_(known, limit, progress), of_caps_(known, limit, progress), creases_(creases) {}
+      : progress_(progress),
+        of_limit_(known, limit, progress),
+        of_caps_(known, limit, progress),
+        creases_(creases) {}
 
   /// Points of the caps are known to the limit surface.
   void take_caps(const CageLevel& level, std::span<const std::size_t> cells,
@@ -237,6 +240,7 @@ class Comparison {
     of_caps_.know(p);
   }
 
+  const Progress& progress_;
   Bound of_limit_;
   Bound of_caps_;
   bool creases_;
@@ -275,7 +279,7 @@ void Comparison::take_limit(const CageLevel& level, std::span<const std::size_t>
   int samples = cap_samples;
   for (int depth = 0; depth < levels_below && !of_limit_.is_over(); ++depth) {
     left.clear();
-    const std::vector<CellPatch> patches = below.patches();
+    const std::vector<CellPatch> patches = below.patches(progress_);
     std::vector<Piece> pieces;
     samples = std::max(samples / 2, 1);
     for (std::size_t c = 0; c < patches.size(); ++c) {
