@@ -115,6 +115,16 @@ TEST(HullContainment, TheMeshDecidesPointsFarFromTheBoundary) {
   }
 }
 
+/// Support points about the corner of a flat face are near each other, but not the same.
+TEST(HullContainment, ProvesPointsNextToTheCornerOfAFlatFace) {
+  const Scene scene = make_scene(filleted_box(3, 2, 1, 0.2));
+  const HullContainment containment(scene);
+  const SignedDistance d =
+      containment.distance({1.499999810039651, 0.79999991215084021, -0.29999996754693559});
+  EXPECT_NEAR(d.value, 1.499999810039651 - 1.5, 1e-15);
+  EXPECT_LE(d.upper, 0.99 * d.value);
+}
+
 TEST(HullContainment, FlatHullsHaveNoInside) {
   Shape disc;
   disc.curves = {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})};

@@ -133,13 +133,16 @@ Shape blob(unsigned seed) {
     const auto row = std::size_t(sign > 0 ? 0 : down + 2);
     const auto ring = std::size_t(sign > 0 ? 1 : down + 1);
     const double r = uniform(random, 0.7, 1);
-    const dvec3 pole{uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1), sign * r};
+    const double pole_y = uniform(random, -0.1, 0.1);
+    const dvec3 pole{uniform(random, -0.1, 0.1), pole_y, sign * r};
     // Two vectors that span the tangent plane, not quite orthogonal nor level.
     const auto off = [&] { return uniform(random, -0.08, 0.08); };
     const double x = uniform(random, 0.3, 0.45);
     const double y = uniform(random, 0.3, 0.45);
-    const dvec3 a{x, off(), off()};
-    const dvec3 b{off(), y, off()};
+    const double a_z = off();
+    const dvec3 a{x, off(), a_z};
+    const double b_z = off();
+    const dvec3 b{off(), y, b_z};
     for (int i = 0; i < around; ++i) {
       net[std::size_t(i)][row] = pole;
       net[std::size_t(i)][ring] = pole + std::cos(angle(i)) * a + std::sin(angle(i)) * b;
@@ -155,8 +158,8 @@ Shape blob(unsigned seed) {
       surface.points.push_back(taut::homogeneous(p));
     }
   }
-  const dmat3 rotation = random_rotation(random);
-  return mapped({{surface}, {}, {}}, rotation, 0.3 * random_point(random));
+  const dvec3 translation = 0.3 * random_point(random);
+  return mapped({{surface}, {}, {}}, random_rotation(random), translation);
 }
 
 BezierPatch random_patch(Random& random, int degree_u, int degree_v, double weight_range) {

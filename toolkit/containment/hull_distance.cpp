@@ -36,6 +36,9 @@ constexpr double same_start_point = 1e-7;
 /// Nearer to a vertex of the polytope, in the scene's frame, points make nothing but slivers.
 constexpr double sliver = 1e-12;
 
+/// So do those nearer to one than this share of the distance sought, which they change by less.
+constexpr double sliver_share = 0.01;
+
 /// Farther outside than that, in the scene's frame, projections are the better search.
 constexpr double next_to_boundary = 1e-6;
 
@@ -280,10 +283,11 @@ bool HullDistance::insert(const Sample& sample, const dvec3& point, int facet) {
 /// What the projection has found, and support points about the best direction as near to it as its
 /// distance asks for: a triangle of them is a facet between x and the boundary.
 void HullDistance::insert_seeds() {
+  const double least = std::max(sliver, sliver_share * std::min(std::abs(range_.value), 1.0));
   const auto insert_anywhere = [&](const Sample& sample, const dvec3& point) {
     const auto& points = polytope_.hull.points();
     const bool repeated = std::any_of(points.begin(), points.end(), [&](const dvec3& other) {
-      return glm::distance(other, point) < sliver;
+      return glm::distance(other, point) < least;
     });
     if (repeated) return;
     const auto& facets = polytope_.hull.facets();
