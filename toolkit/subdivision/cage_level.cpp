@@ -441,6 +441,7 @@ std::vector<dvec3> CageLevel::enclosure(std::span<const std::size_t> cells) cons
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   std::vector<dvec3> points;
+  points.reserve(vertices.size());
   for (const int v : vertices) points.push_back(topology_->points[to_size(v)]);
   return points;
 }
