@@ -9,7 +9,7 @@
 
 #include "models.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut_test {
 

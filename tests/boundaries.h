@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut_test {
 

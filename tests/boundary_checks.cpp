@@ -8,7 +8,7 @@
 
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut_test {
 namespace {

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "reference.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/convex_hull.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
 
 namespace taut_test {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/boundary_closure.h"
+#include "taut/hull/stitch/boundary_closure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "taut/hull/boundary_measures.h"
+#include "taut/hull/measure/boundary_measures.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "models.h"
 #include "reference.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 namespace {

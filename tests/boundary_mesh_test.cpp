@@ -1,4 +1,4 @@
-#include "taut/hull/boundary_mesh.h"
+#include "taut/hull/mesh/boundary_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,9 @@
 #include "boundaries.h"
 #include "boundary_checks.h"
 #include "hull_checks.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/polyhedral/polyhedral_hull.h"
+#include "taut/hull/sample/sampled_hull.h"
 
 namespace taut {
 namespace {

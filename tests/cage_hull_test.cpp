@@ -16,9 +16,9 @@
 #include "taut/bounds/scene.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/boundary_measures.h"
-#include "taut/hull/contact_geometry.h"
+#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/measure/boundary_measures.h"
 #include "taut/io/hull_document.h"
 #include "taut/io/verify_hull.h"
 

@@ -1,4 +1,4 @@
-#include "taut/hull/coincidences.h"
+#include "taut/hull/contact/coincidences.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "models.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_geometry.h"
+#include "taut/hull/contact/contact_geometry.h"
 
 namespace taut {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "freeform.h"
 #include "models.h"
-#include "taut/hull/cell_crossings.h"
-#include "taut/hull/separating_graph.h"
+#include "taut/hull/trace/cell_crossings.h"
+#include "taut/hull/trace/separating_graph.h"
 #include "truths.h"
 
 namespace taut {

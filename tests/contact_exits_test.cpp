@@ -1,4 +1,4 @@
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include "freeform.h"
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/joined_elements.h"
-#include "taut/hull/level_sides.h"
+#include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/contact/level_sides.h"
 
 namespace taut {
 namespace {

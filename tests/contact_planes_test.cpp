@@ -1,4 +1,4 @@
-#include "taut/hull/contact_planes.h"
+#include "taut/hull/contact/contact_planes.h"
 
 #include <gtest/gtest.h>
 

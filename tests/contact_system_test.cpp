@@ -1,4 +1,4 @@
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
 namespace {

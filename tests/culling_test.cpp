@@ -1,4 +1,4 @@
-#include "taut/hull/culling.h"
+#include "taut/hull/cull/culling.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "surface_checks.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
-#include "taut/hull/free_ends.h"
+#include "taut/hull/trace/free_ends.h"
 
 namespace taut {
 namespace {

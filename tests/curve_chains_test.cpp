@@ -1,4 +1,4 @@
-#include "taut/hull/curve_chains.h"
+#include "taut/hull/stitch/curve_chains.h"
 
 #include <gtest/gtest.h>
 

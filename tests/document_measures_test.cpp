@@ -9,8 +9,8 @@
 #include "boundaries.h"
 #include "cages.h"
 #include "models.h"
-#include "taut/hull/boundary_measures.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/measure/boundary_measures.h"
 
 namespace taut {
 namespace {

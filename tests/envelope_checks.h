@@ -13,7 +13,8 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
 #include "taut/envelope/envelope_map.h"
-#include "taut/hull/convex_hull.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
 
 namespace taut_test {
 

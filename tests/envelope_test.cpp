@@ -16,7 +16,7 @@
 #include "taut/envelope/envelope_hull.h"
 #include "taut/envelope/envelope_picture.h"
 #include "taut/envelope/offscreen_canvas.h"
-#include "taut/hull/contact_geometry.h"
+#include "taut/hull/contact/contact_geometry.h"
 
 namespace {
 

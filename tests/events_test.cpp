@@ -8,6 +8,7 @@
 
 #include "exact_checks.h"
 #include "freeform.h"
+#include "taut/hull/precise_hull.h"
 
 namespace taut {
 namespace {

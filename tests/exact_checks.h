@@ -7,8 +7,8 @@
 
 #include "boundary_checks.h"
 #include "models.h"
-#include "taut/hull/boundary_measures.h"
-#include "taut/hull/precise_hull.h"
+#include "taut/hull/exact_boundary.h"
+#include "taut/hull/measure/boundary_measures.h"
 
 namespace taut_test {
 

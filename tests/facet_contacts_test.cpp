@@ -1,4 +1,4 @@
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "models.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/contact_planes.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_planes.h"
 
 namespace taut {
 namespace {

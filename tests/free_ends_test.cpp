@@ -1,4 +1,4 @@
-#include "taut/hull/free_ends.h"
+#include "taut/hull/trace/free_ends.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "models.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/precise_hull.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/exact_boundary.h"
 #include "taut/subdivision/reparametrize.h"
 
 namespace taut {

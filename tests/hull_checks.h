@@ -10,8 +10,8 @@
 #include "models.h"
 #include "reference.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/measures.h"
+#include "taut/hull/result/measures.h"
+#include "taut/hull/sample/sampled_hull.h"
 
 namespace taut_test {
 

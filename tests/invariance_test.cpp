@@ -10,6 +10,8 @@
 #include "freeform.h"
 #include "hull_checks.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/precise_hull.h"
 #include "truths.h"
 
 namespace taut {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -29,6 +30,43 @@ const std::map<std::string, std::set<std::string>> layers = {
     {"io", {"core", "surface", "subdivision", "bounds", "hull"}},
 };
 
+/// The rooms of a layer, its folders, and those that each may include, and so all that these may.
+/// What lies beside the rooms may include all of them; no room includes it.
+using Rooms = std::map<std::string, std::set<std::string>>;
+
+const std::map<std::string, Rooms> rooms_of = {
+    {"hull",
+     {
+         {"result", {}},
+         {"polytope", {"result"}},
+         {"planar", {"polytope"}},
+         {"contact", {"planar"}},
+         {"cull", {"contact"}},
+         {"trace", {"cull"}},
+         {"stitch", {"trace"}},
+         {"sample", {"polytope"}},
+         {"mesh", {"sample", "stitch"}},
+         {"measure", {"stitch"}},
+         {"polyhedral", {"sample"}},
+     }},
+};
+
+/// The layers that may include some rooms of hull only.
+const std::map<std::string, std::set<std::string>> rooms_of_hull_for = {
+    {"envelope", {"result", "polytope", "sample"}},
+    {"containment", {"result", "polytope", "sample"}},
+};
+
+/// What breaks the rules today: to go, and none to come.
+const std::set<std::string> debts = {
+    "toolkit/envelope/contact_climb.h: taut/hull/contact/contact_geometry.h",
+    "toolkit/envelope/gauss_triangles.h: taut/hull/contact/contact_geometry.h",
+    "toolkit/envelope/gauss_triangles.h: taut/hull/cull/culling.h",
+    "toolkit/io/document_measures.cpp: taut/hull/measure/quadrature.h",
+    "toolkit/io/document_rulings.cpp: taut/hull/contact/contact_exits.h",
+    "toolkit/io/document_rulings.cpp: taut/hull/contact/level_sides.h",
+};
+
 /// A third-party library and the only folders, of toolkit/ and plugins/, that may include it.
 /// Tests and tools are free: they compare with other libraries.
 struct Home {
@@ -40,7 +78,7 @@ struct Home {
 const std::vector<Home> homes = {
     {"oneTBB", std::regex("(tbb|oneapi)/.*"), {"toolkit/core/"}},
     {"OpenSubdiv", std::regex("opensubdiv/.*"), {"toolkit/subdivision/"}},
-    {"OpenMesh", std::regex("OpenMesh/.*"), {"toolkit/hull/", "toolkit/io/"}},
+    {"OpenMesh", std::regex("OpenMesh/.*"), {"toolkit/hull/result/"}},
     {"OSMesa", std::regex("(GL|EGL|GLES[0-9])/.*|.*osmesa.*"), {"toolkit/envelope/"}},
     {"libpng", std::regex("(libpng.*/)?png(conf|libconf)?\\.h"), {"toolkit/envelope/"}},
     {"Embree", std::regex("embree.*"), {"toolkit/containment/"}},
@@ -80,16 +118,51 @@ std::vector<Include> includes(const fs::path& file) {
   return found;
 }
 
-/// What is wrong with a file of toolkit/LAYER/ including another file of this repository; else "".
-std::string direction_violation(const std::string& layer, const Include& include) {
-  static const std::regex toolkit_path("taut/([a-z_]+)/[^/]+");
-  std::smatch match;
-  if (!std::regex_match(include.path, match, toolkit_path)) {
-    return include.quoted || include.path.starts_with("taut/") ? "is no \"taut/LAYER/FILE\"" : "";
+/// Where a file of the toolkit lies. Room "": beside the layer's rooms, or it has none.
+struct Place {
+  std::string layer;
+  std::string room;
+
+  bool operator==(const Place&) const = default;
+  bool exists() const {
+    if (!layers.contains(layer)) return false;
+    return room.empty() || (rooms_of.contains(layer) && rooms_of.at(layer).contains(room));
   }
-  const std::string used = match[1];
-  if (used == layer || layers.at(layer).contains(used)) return "";
-  return "is not below layer " + layer;
+};
+
+/// Of LAYER/FILE or LAYER/ROOM/FILE.
+std::optional<Place> place_of(const std::string& path) {
+  static const std::regex pattern("([a-z_]+)/(?:([a-z_]+)/)?[^/]+");
+  std::smatch match;
+  if (!std::regex_match(path, match, pattern)) return std::nullopt;
+  return Place{match[1], match[2]};
+}
+
+/// Whether a room may include another one of its layer.
+bool is_below(const Rooms& rooms, const std::string& used, const std::string& room) {
+  const std::set<std::string>& below = rooms.at(room);
+  return below.contains(used) ||
+         std::any_of(below.begin(), below.end(),
+                     [&](const std::string& next) { return is_below(rooms, used, next); });
+}
+
+/// What is wrong with a file at a place of the toolkit including another file of this repository;
+/// else "".
+std::string direction_violation(const Place& from, const Include& include) {
+  const bool in_toolkit = include.path.starts_with("taut/");
+  if (!include.quoted && !in_toolkit) return "";
+  const auto used = in_toolkit ? place_of(include.path.substr(5)) : std::nullopt;
+  if (!used || !used->exists()) return "is no \"taut/LAYER/FILE\" or \"taut/LAYER/ROOM/FILE\"";
+  if (used->layer != from.layer) {
+    if (!layers.at(from.layer).contains(used->layer)) return "is not below layer " + from.layer;
+    const auto allowed = rooms_of_hull_for.find(from.layer);
+    if (used->layer != "hull" || used->room.empty() || allowed == rooms_of_hull_for.end())
+      return "";
+    return allowed->second.contains(used->room) ? "" : "is in no room for layer " + from.layer;
+  }
+  if (from.room.empty() || *used == from) return "";
+  if (!used->room.empty() && is_below(rooms_of.at(from.layer), used->room, from.room)) return "";
+  return "is not below room " + from.room;
 }
 
 /// What is wrong with a file including a third-party header; else "".
@@ -123,10 +196,14 @@ std::string header_violation(const std::string& file, const Include& include) {
   static const std::regex standard("[a-z_0-9]+");
   if (include.quoted || std::regex_match(include.path, standard)) return "";
   if (starts_with_any(include.path, {"taut/", "glm/"})) return "";
-  if (file == "toolkit/hull/hull_mesh.h" && include.path.starts_with("OpenMesh/")) return "";
+  if (file == "toolkit/hull/result/hull_mesh.h" && include.path.starts_with("OpenMesh/")) return "";
   const std::string included_as = "taut/" + file.substr(std::string("toolkit/").size());
   if (!public_headers().contains(included_as) && is_at_home(file, include)) return "";
   return "is third-party, in a header";
+}
+
+bool is_debt(const std::string& file, const Include& include) {
+  return debts.contains(file + ": " + include.path);
 }
 
 /// One line for each include below `root`/toolkit and `root`/plugins that breaks a rule:
@@ -141,20 +218,20 @@ std::vector<std::string> violations(const fs::path& root, int& files) {
       ++files;
       const fs::path relative = entry.path().lexically_relative(root);
       const std::string file = relative.generic_string();
-      const std::string layer = std::next(relative.begin())->string();
       const bool in_toolkit = file.starts_with("toolkit/");
-      if (in_toolkit && !layers.contains(layer)) {
-        found.push_back(file + ": is in no layer");
+      const auto place = in_toolkit ? place_of(file.substr(8)) : std::nullopt;
+      if (in_toolkit && (!place || !place->exists())) {
+        found.push_back(file + ": is in no layer, or no room of one");
         continue;
       }
       for (const Include& include : includes(entry.path())) {
         std::vector<std::string> faults = {home_violation(file, include)};
-        if (in_toolkit) faults.push_back(direction_violation(layer, include));
+        if (in_toolkit) faults.push_back(direction_violation(*place, include));
         if (in_toolkit && relative.extension() == ".h") {
           faults.push_back(header_violation(file, include));
         }
         for (const std::string& fault : faults) {
-          if (fault.empty()) continue;
+          if (fault.empty() || is_debt(file, include)) continue;
           found.push_back(file + ":" + std::to_string(include.line) + ": " + include.path + " " +
                           fault);
         }
@@ -165,8 +242,18 @@ std::vector<std::string> violations(const fs::path& root, int& files) {
   return found;
 }
 
+/// Where only public headers may be included: all of them in public headers, tools and plugins,
+/// those of hull in other layers.
+bool needs_public(const std::string& file, const Include& include,
+                  const std::set<std::string>& headers) {
+  if (!include.path.starts_with("taut/")) return false;
+  if (!file.starts_with("toolkit/")) return true;
+  if (headers.contains("taut/" + file.substr(8))) return true;
+  return include.path.starts_with("taut/hull/") && !file.starts_with("toolkit/hull/");
+}
+
 /// One line for each include of a header of the toolkit that is not public, where only public ones
-/// may be included: in public headers, tools and plugins.
+/// may be included.
 std::vector<std::string> uses_of_private_headers(const fs::path& root,
                                                  const std::set<std::string>& headers) {
   std::vector<std::string> found;
@@ -175,10 +262,9 @@ std::vector<std::string> uses_of_private_headers(const fs::path& root,
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       if (!entry.is_regular_file() || !is_source(entry.path())) continue;
       const std::string file = entry.path().lexically_relative(root).generic_string();
-      const std::string inside = entry.path().lexically_relative(root / folder).generic_string();
-      if (folder == std::string("toolkit") && !headers.contains("taut/" + inside)) continue;
       for (const Include& include : includes(entry.path())) {
-        if (!include.path.starts_with("taut/") || headers.contains(include.path)) continue;
+        if (headers.contains(include.path) || !needs_public(file, include, headers)) continue;
+        if (is_debt(file, include)) continue;
         found.push_back(file + ":" + std::to_string(include.line) + ": " + include.path +
                         " is none of its layer's PUBLIC_HEADERS");
       }
@@ -229,6 +315,47 @@ TEST_F(Layers, RepositoryKeepsDirections) {
   EXPECT_GT(files, 10);
 }
 
+TEST_F(Layers, DebtsAreStillOwed) {
+  for (const std::string& debt : debts) {
+    const std::size_t colon = debt.find(": ");
+    const std::vector<Include> found = includes(fs::path(TAUT_SOURCE_DIR) / debt.substr(0, colon));
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Include& include) {
+      return include.path == debt.substr(colon + 2);
+    })) << debt;
+  }
+}
+
+TEST_F(Layers, FindsPlantedDirectionBetweenRooms) {
+  for (const auto& [layer, rooms] : rooms_of) {
+    for (const auto& [room, below] : rooms) {
+      const std::string file = "toolkit/" + layer + "/" + room + "/a.cpp";
+      for (const auto& [used, unused] : rooms) {
+        const bool allowed = used == room || is_below(rooms, used, room);
+        EXPECT_EQ(violations_of(file, "\"taut/" + layer + "/" + used + "/b.h\""), allowed ? 0U : 1U)
+            << room << " includes " << used;
+        EXPECT_FALSE(used != room && allowed && is_below(rooms, room, used))
+            << room << ", " << used;
+      }
+      EXPECT_EQ(violations_of(file, "\"taut/" + layer + "/b.h\""), 1U) << room;
+      EXPECT_EQ(
+          violations_of("toolkit/" + layer + "/a.cpp", "\"taut/" + layer + "/" + room + "/b.h\""),
+          0U)
+          << room;
+    }
+  }
+  EXPECT_TRUE(is_below(rooms_of.at("hull"), "result", "trace"));
+  EXPECT_FALSE(is_below(rooms_of.at("hull"), "sample", "trace"));
+}
+
+TEST_F(Layers, FindsPlantedUseOfARoomFromAnotherLayer) {
+  EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/polytope/b.h\""), 0U);
+  EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/convex_hull.h\""), 0U);
+  EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/trace/b.h\""), 1U);
+  EXPECT_EQ(violations_of("toolkit/containment/a.cpp", "\"taut/hull/contact/b.h\""), 1U);
+  EXPECT_EQ(violations_of("toolkit/io/a.cpp", "\"taut/hull/contact/b.h\""), 0U);
+  EXPECT_EQ(violations_of("toolkit/core/a.cpp", "\"taut/hull/result/b.h\""), 1U);
+}
+
 TEST_F(Layers, FindsPlantedDirection) {
   for (const auto& [layer, below] : layers) {
     for (const auto& [used, unused] : layers) {
@@ -248,6 +375,9 @@ TEST_F(Layers, FindsPlantedEscapeFromToolkit) {
   EXPECT_EQ(violations_of("toolkit/io/a.cpp", "\"taut/hull/../../tools/a.h\""), 1U);
   EXPECT_EQ(violations_of("toolkit/io/a.cpp", "<taut/nothing/a.h>"), 1U);
   EXPECT_EQ(violations_of("toolkit/nothing/a.cpp", "<vector>"), 1U);
+  EXPECT_EQ(violations_of("toolkit/hull/nothing/a.cpp", "<vector>"), 1U);
+  EXPECT_EQ(violations_of("toolkit/core/nothing/a.cpp", "<vector>"), 1U);
+  EXPECT_EQ(violations_of("toolkit/io/a.cpp", "\"taut/hull/nothing/a.h\""), 1U);
   EXPECT_EQ(violations_of("plugins/occt/a.cpp", "\"read.h\""), 0U);
 }
 
@@ -255,7 +385,7 @@ TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
   const std::map<std::string, std::string> header_and_home = {
       {"<tbb/parallel_for.h>", "toolkit/core"},
       {"<opensubdiv/far/patchTable.h>", "toolkit/subdivision"},
-      {"<OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>", "toolkit/hull"},
+      {"<OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>", "toolkit/hull/result"},
       {"<GL/osmesa.h>", "toolkit/envelope"},
       {"<png.h>", "toolkit/envelope"},
       {"<embree3/rtcore.h>", "toolkit/containment"},
@@ -264,10 +394,12 @@ TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
   };
   std::vector<std::string> folders = {"plugins/occt", "plugins/irit"};
   for (const auto& [layer, below] : layers) folders.push_back("toolkit/" + layer);
+  for (const auto& [layer, rooms] : rooms_of) {
+    for (const auto& [room, below] : rooms) folders.push_back("toolkit/" + layer + "/" + room);
+  }
   for (const auto& [header, home] : header_and_home) {
     for (const std::string& folder : folders) {
-      const bool second_home = header.starts_with("<OpenMesh") && folder == "toolkit/io";
-      EXPECT_EQ(violations_of(folder + "/a.cpp", header), folder == home || second_home ? 0U : 1U)
+      EXPECT_EQ(violations_of(folder + "/a.cpp", header), folder == home ? 0U : 1U)
           << folder << " includes " << header;
     }
   }
@@ -277,8 +409,8 @@ TEST_F(Layers, FindsPlantedThirdPartyInPublicHeader) {
   EXPECT_EQ(violations_of("toolkit/subdivision/add_cage.h", "<opensubdiv/far/patchTable.h>"), 1U);
   EXPECT_EQ(violations_of("toolkit/subdivision/refiner.h", "<opensubdiv/far/patchTable.h>"), 0U);
   EXPECT_EQ(violations_of("toolkit/subdivision/refiner.h", "<Eigen/Core>"), 1U);
-  EXPECT_EQ(violations_of("toolkit/hull/verify.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 1U);
-  EXPECT_EQ(violations_of("toolkit/hull/hull_mesh.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 0U);
+  EXPECT_EQ(violations_of("toolkit/hull/result/measures.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 1U);
+  EXPECT_EQ(violations_of("toolkit/hull/result/hull_mesh.h", "<OpenMesh/Core/Mesh/Traits.hh>"), 0U);
   EXPECT_EQ(violations_of("toolkit/io/report.h", "<nlohmann/json.hpp>"), 1U);
   EXPECT_EQ(violations_of("toolkit/io/report.h", "<unistd.h>"), 1U);
   EXPECT_EQ(violations_of("toolkit/io/report.cpp", "<nlohmann/json.hpp>"), 0U);
@@ -300,12 +432,16 @@ TEST_F(Layers, FindsPlantedUseOfPrivateHeader) {
   plant("toolkit/hull/closed.h", "\"taut/core/closed.h\"");
   plant("toolkit/hull/open.cpp", "\"taut/core/closed.h\"");
   EXPECT_EQ(joined(uses_of_private_headers(root_, headers)), "");
+  plant("toolkit/io/a.cpp", "\"taut/core/closed.h\"");
+  EXPECT_EQ(joined(uses_of_private_headers(root_, headers)), "");
+  plant("toolkit/io/b.cpp", "\"taut/hull/closed.h\"");
   plant("toolkit/hull/open.h", "\"taut/hull/closed.h\"");
   plant("tools/taut/a.cpp", "\"taut/hull/closed.h\"");
   plant("plugins/irit/a.h", "\"taut/core/closed.h\"");
   EXPECT_EQ(joined(uses_of_private_headers(root_, headers)),
             "plugins/irit/a.h:1: taut/core/closed.h is none of its layer's PUBLIC_HEADERS\n"
             "toolkit/hull/open.h:2: taut/hull/closed.h is none of its layer's PUBLIC_HEADERS\n"
+            "toolkit/io/b.cpp:1: taut/hull/closed.h is none of its layer's PUBLIC_HEADERS\n"
             "tools/taut/a.cpp:1: taut/hull/closed.h is none of its layer's PUBLIC_HEADERS\n");
 }
 

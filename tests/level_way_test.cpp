@@ -1,4 +1,4 @@
-#include "taut/hull/level_way.h"
+#include "taut/hull/trace/level_way.h"
 
 #include <gtest/gtest.h>
 

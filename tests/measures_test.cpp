@@ -1,4 +1,4 @@
-#include "taut/hull/measures.h"
+#include "taut/hull/result/measures.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,8 @@
 
 #include "boundaries.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/hull/measures.h"
+#include "taut/hull/result/measures.h"
+#include "taut/hull/sample/sampled_hull.h"
 #include "taut/io/read_mesh.h"
 #include "taut/io/read_model.h"
 #include "taut/io/write_mesh.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_geometry.h"
+#include "taut/hull/contact/contact_geometry.h"
 
 namespace taut {
 namespace {

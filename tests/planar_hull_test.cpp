@@ -1,4 +1,4 @@
-#include "taut/hull/planar_hull.h"
+#include "taut/hull/planar/planar_hull.h"
 
 #include <gtest/gtest.h>
 

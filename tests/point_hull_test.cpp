@@ -1,4 +1,4 @@
-#include "taut/hull/point_hull.h"
+#include "taut/hull/polytope/point_hull.h"
 
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+#include "taut/hull/polyhedral/polyhedral_hull.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +9,8 @@
 #include "hull_checks.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/hull/sample/sampled_hull.h"
 
 namespace taut {
 namespace {

@@ -16,7 +16,8 @@
 #include "boundary_checks.h"
 #include "hull_checks.h"
 #include "taut/core/error.h"
-#include "taut/hull/boundary_measures.h"
+#include "taut/hull/exact_boundary.h"
+#include "taut/hull/measure/boundary_measures.h"
 #include "truths.h"
 
 namespace taut {

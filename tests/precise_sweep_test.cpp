@@ -8,10 +8,11 @@
 
 #include "boundary_checks.h"
 #include "hull_checks.h"
-#include "taut/hull/boundary_measures.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/free_ends.h"
+#include "taut/hull/cull/culling.h"
+#include "taut/hull/exact_boundary.h"
+#include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/precise_hull.h"
+#include "taut/hull/trace/free_ends.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/ruled_faces.h"
+#include "taut/hull/stitch/ruled_faces.h"
 
 #include <gtest/gtest.h>
 

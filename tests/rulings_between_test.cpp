@@ -1,4 +1,4 @@
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/rulings_between.h"
 
 #include <gtest/gtest.h>
 

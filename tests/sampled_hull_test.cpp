@@ -1,3 +1,5 @@
+#include "taut/hull/sample/sampled_hull.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

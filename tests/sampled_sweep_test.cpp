@@ -4,6 +4,7 @@
 
 #include "hull_checks.h"
 #include "support_checks.h"
+#include "taut/hull/sample/sampled_hull.h"
 
 namespace taut {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "taut/hull/boundary_measures.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/measure/boundary_measures.h"
 #include "taut/io/report.h"
 
 namespace taut_test {

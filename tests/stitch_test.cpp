@@ -1,4 +1,4 @@
-#include "taut/hull/stitch.h"
+#include "taut/hull/stitch/stitch.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "boundary_checks.h"
 #include "models.h"
-#include "taut/hull/separating_graph.h"
+#include "taut/hull/trace/separating_graph.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/surface_seeds.h"
+#include "taut/hull/trace/surface_seeds.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/separating_graph.h"
-#include "taut/hull/trim_loops.h"
+#include "taut/hull/cull/culling.h"
+#include "taut/hull/stitch/trim_loops.h"
+#include "taut/hull/trace/separating_graph.h"
 
 namespace taut_test {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/trim_loops.h"
+#include "taut/hull/stitch/trim_loops.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 
 #include "models.h"
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 #include "traced_scene.h"
 
 namespace taut {

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/measures.h"
+#include "taut/hull/result/measures.h"
+#include "taut/hull/sample/sampled_hull.h"
 #include "taut/hull/verify.h"
 
 namespace taut {

@@ -8,6 +8,7 @@
 
 #include "hull_checks.h"
 #include "taut/core/error.h"
+#include "taut/hull/sample/sampled_hull.h"
 
 namespace taut {
 namespace {

@@ -8,6 +8,7 @@
 #include "models.h"
 #include "taut/core/error.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/sample/sampled_hull.h"
 #include "taut/io/read_mesh.h"
 #include "taut/io/read_model.h"
 #include "temporary_folder.h"

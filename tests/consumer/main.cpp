@@ -1,5 +1,5 @@
 #include "taut/hull/convex_hull.h"
-#include "taut/hull/measures.h"
+#include "taut/hull/result/measures.h"
 #include "taut/io/read_model.h"
 
 /// consumer MODEL VOLUME: is the volume of the model's convex hull VOLUME, within one percent?

@@ -8,8 +8,8 @@
 #include "taut/bounds/support_query.h"
 #include "taut/containment/contact_curvature.h"
 #include "taut/containment/nearest_in_simplex.h"
-#include "taut/hull/point_hull.h"
-#include "taut/hull/sample.h"
+#include "taut/hull/polytope/point_hull.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <utility>
 
 namespace taut {
 
@@ -10,9 +11,15 @@ class Stopwatch {
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+  /// The seconds since the last lap, the first time since it was made.
+  double lap() {
+    const double now = seconds();
+    return now - std::exchange(last_, now);
+  }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double last_ = 0;
 };
 
 }  // namespace taut

@@ -9,8 +9,9 @@
 #include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
 #include "taut/envelope/envelope_content.h"
-#include "taut/hull/polytope_mesh.h"
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/sample/polytope_mesh.h"
+#include "taut/hull/sample/sampled_hull.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "taut/envelope/envelope_images.h"
 #include "taut/envelope/envelope_map.h"
-#include "taut/hull/convex_hull.h"
+#include "taut/hull/sample/sampled_hull.h"
 
 namespace taut {
 

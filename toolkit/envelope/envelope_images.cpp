@@ -9,7 +9,7 @@
 #include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
 #include "taut/envelope/envelope_content.h"
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {

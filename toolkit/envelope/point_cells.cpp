@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "taut/envelope/gauss_triangles.h"
-#include "taut/hull/point_hull.h"
+#include "taut/hull/polytope/point_hull.h"
 
 namespace taut {
 namespace {

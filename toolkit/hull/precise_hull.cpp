@@ -1,13 +1,11 @@
 #include "taut/hull/precise_hull.h"
 
-#include <cmath>
-#include <utility>
-
 #include "taut/core/stopwatch.h"
-#include "taut/hull/boundary_mesh.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/sampled_start.h"
-#include "taut/hull/stitch.h"
+#include "taut/hull/cull/culling.h"
+#include "taut/hull/exact_boundary.h"
+#include "taut/hull/mesh/boundary_mesh.h"
+#include "taut/hull/sample/sampled_hull.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {
@@ -21,51 +19,7 @@ bool wants_more(const HullBoundary& boundary) {
   return !boundary.exhausted && boundary.unresolved.size() <= few_unresolved;
 }
 
-/// The seconds since the last call, or the construction.
-class Lap {
- public:
-  double seconds() {
-    const double now = watch_.seconds();
-    return now - std::exchange(last_, now);
-  }
-
- private:
-  Stopwatch watch_;
-  double last_ = 0;
-};
-
 }  // namespace
-
-HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                            HullStatistics& statistics, const std::vector<Sample>& more) {
-  Lap lap;
-  options.progress.update("cull", 0);
-  Culling culling = cull(scene, map,
-                         {.levels = culling_levels(scene.model().patch_count()),
-                          .threads = options.threads,
-                          .progress = options.progress});
-  const auto finest = double(culling.levels.empty() ? 0 : culling.levels.size() - 1);
-  statistics.cells = std::lround(scene.model().patch_count() * std::exp2(2 * finest));
-  statistics.cells_kept = std::lround(double(statistics.cells) * (1 - culling.removed_share()));
-  statistics.seconds_cull += lap.seconds();
-
-  options.progress.update("trace", 0);
-  culling.samples.insert(culling.samples.end(), more.begin(), more.end());
-  const ContactGeometry geometry(scene, options.progress.stop);
-  SupportQuery query(scene, options.progress.stop);
-  SeparatingGraph graph =
-      trace_separating_curves(geometry, query, culling.samples, culling.cells, options.progress);
-  statistics.newton_iterations += graph.newton_iterations;
-  statistics.cells_searched = graph.cells_searched;
-  statistics.seconds_trace += lap.seconds();
-
-  options.progress.update("stitch", 0);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
-  statistics.seconds_stitch += lap.seconds();
-  statistics.support_queries += culling.support_queries + query.queries();
-  statistics.newton_iterations += query.newton_iterations();
-  return boundary;
-}
 
 Hull precise_hull(const Scene& scene, const HullOptions& options) {
   tolerance_for(options, scene.diagonal());  // what is wrong with it is told at once
@@ -75,11 +29,11 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   HullStatistics statistics;
   statistics.support_queries = query.queries();
   statistics.newton_iterations = query.newton_iterations();
-  Lap lap;
+  Stopwatch watch;
   const GaussMap map(scene, {.levels = culling_levels(scene.model().patch_count()),
                              .threads = options.threads,
                              .progress = options.progress});
-  statistics.seconds_gauss_map = lap.seconds();
+  statistics.seconds_gauss_map = watch.lap();
   const ContactGeometry geometry(scene, options.progress.stop);
   std::vector<Sample> found;
   for (int round = 0;; ++round) {

@@ -1,26 +1,19 @@
 #pragma once
 
-#include <vector>
-
-#include "taut/bounds/gauss_map.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/sample.h"
+#include "taut/bounds/scene.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
 
 namespace taut {
 
-/// The exact boundary of a scene's convex hull: sampled and culled over the Gauss map, its
-/// separating curves traced, stitched. Adds what it took to the statistics.
+/// Convex hull of a scene with its exact boundary (method `precise`): trimmed patches of the model,
+/// developable scrolls and flat facets in Hull::boundary, and a mesh of it.
 ///
-/// Every ruling and facet supports the model to within support_tie (1e-12) of the scene's size,
-/// more where coordinates are rounded to more (ContactGeometry::tie), by a support query each; so
-/// do the rulings of length zero in free ends, but where these are of no generic kind and
-/// extrapolated: there to within the third power of merge_distance (6e-8). Curves are sought
-/// between what culling samples and `more` samples. What could not be resolved is listed
-/// (HullBoundary::unresolved); a boundary without any is closed. Same result for any number of
-/// threads.
-/// @pre the map is the scene's; the scene spans space (tolerances.h says what is flat)
-/// @throws Cancelled
-HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                            HullStatistics& statistics, const std::vector<Sample>& more = {});
+/// The mesh is one as of sampled_hull(), with the same certificate, but its vertices lie on the
+/// boundary's curves too, and its faces are labelled by the boundary's faces. What of the boundary
+/// could not be resolved is listed there; the mesh is true all the same. A scene that is flat has
+/// no boundary: its hull is that of sampled_hull().
+/// @throws as sampled_hull()
+Hull precise_hull(const Scene& scene, const HullOptions& options = {});
 
 }  // namespace taut

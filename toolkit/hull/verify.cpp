@@ -13,9 +13,9 @@
 #include "taut/core/parallel.h"
 #include "taut/core/predicates.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/measures.h"
-#include "taut/hull/point_hull.h"
-#include "taut/hull/polytope_support.h"
+#include "taut/hull/polytope/point_hull.h"
+#include "taut/hull/polytope/polytope_support.h"
+#include "taut/hull/result/measures.h"
 
 namespace taut {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "taut/hull/quadrature.h"
+#include "taut/hull/measure/quadrature.h"
 #include "taut/io/closest_on_curve.h"
 
 namespace taut {

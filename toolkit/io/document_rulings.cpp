@@ -3,9 +3,9 @@
 #include <cmath>
 #include <optional>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
 namespace {

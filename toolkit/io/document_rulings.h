@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/io/document_geometry.h"
 
 namespace taut {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "taut/hull/hull_mesh.h"
+#include "taut/hull/result/hull_mesh.h"
 
 namespace taut {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "taut/hull/contact_geometry.h"
+#include "taut/hull/contact/contact_geometry.h"
 #include "taut/io/hull_sources.h"
 
 namespace taut {

@@ -9,7 +9,8 @@
 
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/result/hull_mesh.h"
 #include "taut/io/model_document.h"
 
 namespace taut {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "taut/core/geometry.h"
-#include "taut/hull/measures.h"
+#include "taut/hull/result/measures.h"
 
 namespace taut {
 

@@ -9,9 +9,9 @@
 
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/outline.h"
-#include "taut/hull/point_hull.h"
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/polytope/outline.h"
+#include "taut/hull/polytope/point_hull.h"
+#include "taut/hull/sample/polytope_mesh.h"
 
 namespace taut {
 namespace {

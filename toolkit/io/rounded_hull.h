@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/hull/hull_mesh.h"
+#include "taut/hull/result/hull_mesh.h"
 
 namespace taut {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "taut/hull/hull_mesh.h"
+#include "taut/hull/result/hull_mesh.h"
 
 namespace taut {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/hull/hull_boundary.h"
-#include "taut/hull/hull_mesh.h"
+#include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/result/hull_mesh.h"
 
 namespace taut {
 

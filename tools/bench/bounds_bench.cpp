@@ -9,7 +9,7 @@
 
 #include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/culling.h"
+#include "taut/hull/cull/culling.h"
 #include "teapot.h"
 
 namespace {

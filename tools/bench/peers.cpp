@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "taut/core/stopwatch.h"
-#include "taut/hull/point_hull.h"
+#include "taut/hull/polytope/point_hull.h"
 
 #ifdef TAUT_WITH_CGAL
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,4 +1,4 @@
-#include "taut/hull/coincidences.h"
+#include "taut/hull/contact/coincidences.h"
 
 #include <algorithm>
 #include <cmath>

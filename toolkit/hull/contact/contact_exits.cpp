@@ -1,12 +1,12 @@
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/joined_elements.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 

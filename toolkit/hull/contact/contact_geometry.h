@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/hull/coincidences.h"
+#include "taut/hull/contact/coincidences.h"
 
 namespace taut {
 

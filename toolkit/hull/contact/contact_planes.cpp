@@ -1,9 +1,9 @@
-#include "taut/hull/contact_planes.h"
+#include "taut/hull/contact/contact_planes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
 namespace {

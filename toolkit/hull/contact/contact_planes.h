@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/sample.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 #include <Eigen/Dense>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <limits>
 #include <optional>
 
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
 

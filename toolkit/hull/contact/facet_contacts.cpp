@@ -1,15 +1,15 @@
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/in_line_contacts.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/outline.h"
-#include "taut/hull/planar_hull.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/in_line_contacts.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/planar/planar_hull.h"
+#include "taut/hull/polytope/outline.h"
 
 namespace taut {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 

@@ -1,10 +1,10 @@
-#include "taut/hull/in_line_contacts.h"
+#include "taut/hull/contact/in_line_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
 namespace {

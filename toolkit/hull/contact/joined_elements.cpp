@@ -1,9 +1,9 @@
-#include "taut/hull/joined_elements.h"
+#include "taut/hull/contact/joined_elements.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 
 namespace taut {
 namespace {

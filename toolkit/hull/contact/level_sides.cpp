@@ -1,4 +1,4 @@
-#include "taut/hull/level_sides.h"
+#include "taut/hull/contact/level_sides.h"
 
 #include <algorithm>
 #include <cmath>

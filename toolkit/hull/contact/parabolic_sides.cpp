@@ -1,4 +1,4 @@
-#include "taut/hull/parabolic_sides.h"
+#include "taut/hull/contact/parabolic_sides.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/contact_bends.h"
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/contact_exits.h"
 
 namespace taut {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 #include <optional>
 
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/sign_changes.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/contact/sign_changes.h"
 
 namespace taut {
 

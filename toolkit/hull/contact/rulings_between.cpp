@@ -1,14 +1,14 @@
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/rulings_between.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_bends.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/joined_elements.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/parabolic_sides.h"
+#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/parabolic_sides.h"
 
 namespace taut {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "taut/hull/contact_system.h"
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
 

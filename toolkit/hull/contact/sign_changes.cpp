@@ -1,4 +1,4 @@
-#include "taut/hull/sign_changes.h"
+#include "taut/hull/contact/sign_changes.h"
 
 #include <algorithm>
 #include <cmath>

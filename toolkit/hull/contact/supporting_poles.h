@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/concave_dome.h"
+#include "taut/hull/cull/concave_dome.h"
 
 #include <algorithm>
 #include <array>

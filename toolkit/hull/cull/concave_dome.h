@@ -11,8 +11,8 @@
 #include "taut/bounds/normal_pyramid.h"
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
-#include "taut/hull/concave_patch.h"
-#include "taut/hull/fall_map.h"
+#include "taut/hull/cull/concave_patch.h"
+#include "taut/hull/cull/fall_map.h"
 
 namespace taut {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "taut/bounds/gauss_map.h"
-#include "taut/hull/sample.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/fall_map.h"
+#include "taut/hull/cull/fall_map.h"
 
 #include <cmath>
 

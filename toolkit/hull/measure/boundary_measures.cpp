@@ -1,14 +1,14 @@
-#include "taut/hull/boundary_measures.h"
+#include "taut/hull/measure/boundary_measures.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/green_regions.h"
-#include "taut/hull/interior_point.h"
-#include "taut/hull/quadrature.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/measure/green_regions.h"
+#include "taut/hull/measure/interior_point.h"
+#include "taut/hull/measure/quadrature.h"
 
 namespace taut {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/hull_boundary.h"
-#include "taut/hull/measures.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/result/measures.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/green_regions.h"
+#include "taut/hull/measure/green_regions.h"
 
 #include <algorithm>
 

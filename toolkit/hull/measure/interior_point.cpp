@@ -1,4 +1,4 @@
-#include "taut/hull/interior_point.h"
+#include "taut/hull/measure/interior_point.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/boundary_mesh.h"
+#include "taut/hull/mesh/boundary_mesh.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "taut/core/stopwatch.h"
-#include "taut/hull/boundary_samples.h"
-#include "taut/hull/contact_faces.h"
-#include "taut/hull/kept_chords.h"
-#include "taut/hull/polytope_mesh.h"
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/mesh/boundary_samples.h"
+#include "taut/hull/mesh/contact_faces.h"
+#include "taut/hull/mesh/kept_chords.h"
+#include "taut/hull/sample/polytope_mesh.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {

@@ -3,9 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/sample.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

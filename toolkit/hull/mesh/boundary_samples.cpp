@@ -1,12 +1,12 @@
-#include "taut/hull/boundary_samples.h"
+#include "taut/hull/mesh/boundary_samples.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "taut/hull/contact_system.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
 namespace {

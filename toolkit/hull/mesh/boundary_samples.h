@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_faces.h"
-#include "taut/hull/sampled_polytope.h"
+#include "taut/hull/mesh/contact_faces.h"
+#include "taut/hull/sample/sampled_polytope.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/contact_faces.h"
+#include "taut/hull/mesh/contact_faces.h"
 
 #include <algorithm>
 #include <limits>

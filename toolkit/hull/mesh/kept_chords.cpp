@@ -1,8 +1,8 @@
-#include "taut/hull/kept_chords.h"
+#include "taut/hull/mesh/kept_chords.h"
 
 #include <algorithm>
 
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
 

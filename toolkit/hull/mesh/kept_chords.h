@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/boundary_samples.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/mesh/boundary_samples.h"
 
 namespace taut {
 

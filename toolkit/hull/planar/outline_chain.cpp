@@ -1,4 +1,4 @@
-#include "taut/hull/outline_chain.h"
+#include "taut/hull/planar/outline_chain.h"
 
 #include <algorithm>
 #include <cmath>

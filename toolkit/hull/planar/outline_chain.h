@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "taut/hull/planar_hull.h"
-#include "taut/hull/planar_sweep.h"
+#include "taut/hull/planar/planar_hull.h"
+#include "taut/hull/planar/planar_sweep.h"
 
 namespace taut {
 

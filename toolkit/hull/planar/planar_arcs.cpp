@@ -1,4 +1,4 @@
-#include "taut/hull/planar_arcs.h"
+#include "taut/hull/planar/planar_arcs.h"
 
 #include <algorithm>
 #include <cmath>

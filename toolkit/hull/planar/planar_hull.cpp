@@ -1,12 +1,12 @@
-#include "taut/hull/planar_hull.h"
+#include "taut/hull/planar/planar_hull.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "taut/hull/outline_chain.h"
-#include "taut/hull/planar_arcs.h"
-#include "taut/hull/planar_sweep.h"
+#include "taut/hull/planar/outline_chain.h"
+#include "taut/hull/planar/planar_arcs.h"
+#include "taut/hull/planar/planar_sweep.h"
 
 namespace taut {
 namespace {

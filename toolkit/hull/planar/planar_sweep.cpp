@@ -1,4 +1,4 @@
-#include "taut/hull/planar_sweep.h"
+#include "taut/hull/planar/planar_sweep.h"
 
 #include <algorithm>
 #include <cmath>

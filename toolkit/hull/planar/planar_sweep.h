@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "taut/hull/planar_arcs.h"
+#include "taut/hull/planar/planar_arcs.h"
 
 namespace taut {
 

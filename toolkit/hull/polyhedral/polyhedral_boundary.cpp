@@ -1,4 +1,4 @@
-#include "taut/hull/polyhedral_boundary.h"
+#include "taut/hull/polyhedral/polyhedral_boundary.h"
 
 #include <algorithm>
 

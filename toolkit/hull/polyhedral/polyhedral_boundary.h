@@ -1,6 +1,7 @@
 #pragma once
 
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/result/hull_mesh.h"
 
 namespace taut {
 

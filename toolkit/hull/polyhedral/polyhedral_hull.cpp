@@ -1,3 +1,5 @@
+#include "taut/hull/polyhedral/polyhedral_hull.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,14 +9,13 @@
 
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/affine_span.h"
-#include "taut/hull/coarse_hull.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/model_points.h"
-#include "taut/hull/outline.h"
-#include "taut/hull/point_hull.h"
-#include "taut/hull/polyhedral_boundary.h"
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/polyhedral/polyhedral_boundary.h"
+#include "taut/hull/polytope/affine_span.h"
+#include "taut/hull/polytope/coarse_hull.h"
+#include "taut/hull/polytope/model_points.h"
+#include "taut/hull/polytope/outline.h"
+#include "taut/hull/polytope/point_hull.h"
+#include "taut/hull/sample/polytope_mesh.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/affine_span.h"
+#include "taut/hull/polytope/affine_span.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "taut/hull/certificate.h"
+#include "taut/hull/polytope/certificate.h"
 
 #include <algorithm>
 #include <array>

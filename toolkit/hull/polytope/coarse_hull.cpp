@@ -1,11 +1,11 @@
-#include "taut/hull/coarse_hull.h"
+#include "taut/hull/polytope/coarse_hull.h"
 
 #include <algorithm>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/affine_span.h"
-#include "taut/hull/certificate.h"
-#include "taut/hull/polytope_support.h"
+#include "taut/hull/polytope/affine_span.h"
+#include "taut/hull/polytope/certificate.h"
+#include "taut/hull/polytope/polytope_support.h"
 
 namespace taut {
 namespace {

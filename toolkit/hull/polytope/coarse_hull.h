@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "taut/core/progress.h"
-#include "taut/hull/point_hull.h"
+#include "taut/hull/polytope/point_hull.h"
 
 namespace taut {
 

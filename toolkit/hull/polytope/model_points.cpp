@@ -1,4 +1,4 @@
-#include "taut/hull/model_points.h"
+#include "taut/hull/polytope/model_points.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "taut/hull/outline.h"
+#include "taut/hull/polytope/outline.h"
 
 #include <algorithm>
 #include <array>

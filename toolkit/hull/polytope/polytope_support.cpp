@@ -1,4 +1,4 @@
-#include "taut/hull/polytope_support.h"
+#include "taut/hull/polytope/polytope_support.h"
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "taut/hull/point_hull.h"
+#include "taut/hull/polytope/point_hull.h"
 
 namespace taut {
 

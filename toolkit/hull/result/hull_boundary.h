@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/hull/hull_mesh.h"
+#include "taut/hull/result/face_kind.h"
 
 namespace taut {
 

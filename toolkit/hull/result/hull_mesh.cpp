@@ -1,4 +1,4 @@
-#include "taut/hull/hull_mesh.h"
+#include "taut/hull/result/hull_mesh.h"
 
 #include <algorithm>
 #include <cassert>

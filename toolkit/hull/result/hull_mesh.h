@@ -6,16 +6,10 @@
 
 #include "taut/core/geometry.h"
 #include "taut/core/progress.h"
+#include "taut/hull/result/face_kind.h"
 #include "taut/surface/polygon_mesh.h"
 
 namespace taut {
-
-/// What part of a convex hull's boundary a mesh face belongs to.
-enum class FaceKind : unsigned char {
-  patch = 0,   ///< on the model's surface
-  scroll = 1,  ///< spans between two contacts
-  facet = 2,   ///< lies flat on three or more contacts
-};
 
 /// Traits of HullMesh: double coordinates, and the origin of every vertex and face.
 struct HullMeshTraits : public OpenMesh::DefaultTraitsDouble {

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "taut/core/error.h"
-#include "taut/hull/certificate.h"
-#include "taut/hull/outline.h"
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/polytope/certificate.h"
+#include "taut/hull/polytope/outline.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {

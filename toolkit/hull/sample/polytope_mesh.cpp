@@ -1,4 +1,4 @@
-#include "taut/hull/polytope_mesh.h"
+#include "taut/hull/sample/polytope_mesh.h"
 
 #include <algorithm>
 

@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "taut/hull/sampled_polytope.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
+#include "taut/hull/sample/sampled_polytope.h"
 
 namespace taut {
 

@@ -1,6 +1,8 @@
+#include "taut/hull/sample/sampled_hull.h"
+
 #include "taut/core/stopwatch.h"
-#include "taut/hull/polytope_mesh.h"
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/sample/polytope_mesh.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 

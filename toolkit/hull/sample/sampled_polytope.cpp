@@ -1,4 +1,4 @@
-#include "taut/hull/sampled_polytope.h"
+#include "taut/hull/sample/sampled_polytope.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
-#include "taut/hull/certificate.h"
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/polytope/certificate.h"
+#include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/point_hull.h"
-#include "taut/hull/sample.h"
+#include "taut/hull/polytope/point_hull.h"
+#include "taut/hull/result/hull_options.h"
+#include "taut/hull/result/hull_statistics.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/sampled_start.h"
+#include "taut/hull/sample/sampled_start.h"
 
 #include <algorithm>
 #include <limits>

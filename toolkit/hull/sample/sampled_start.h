@@ -4,9 +4,10 @@
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/affine_span.h"
-#include "taut/hull/convex_hull.h"
-#include "taut/hull/sampled_polytope.h"
+#include "taut/hull/polytope/affine_span.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
+#include "taut/hull/sample/sampled_polytope.h"
 
 namespace taut {
 

@@ -1,9 +1,9 @@
-#include "taut/hull/boundary_closure.h"
+#include "taut/hull/stitch/boundary_closure.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "taut/hull/curve_chains.h"
+#include "taut/hull/stitch/curve_chains.h"
 #include "taut/surface/point_grid.h"
 
 namespace taut {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
 

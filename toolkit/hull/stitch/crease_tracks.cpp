@@ -1,10 +1,10 @@
-#include "taut/hull/crease_tracks.h"
+#include "taut/hull/stitch/crease_tracks.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact_system.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
 namespace {

@@ -3,8 +3,8 @@
 #include <map>
 #include <vector>
 
-#include "taut/hull/separating_graph.h"
-#include "taut/hull/trim_loops.h"
+#include "taut/hull/stitch/trim_loops.h"
+#include "taut/hull/trace/separating_graph.h"
 
 namespace taut {
 

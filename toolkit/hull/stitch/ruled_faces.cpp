@@ -1,9 +1,9 @@
-#include "taut/hull/ruled_faces.h"
+#include "taut/hull/stitch/ruled_faces.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {

@@ -1,4 +1,4 @@
-#include "taut/hull/stitch.h"
+#include "taut/hull/stitch/stitch.h"
 
 #include <algorithm>
 #include <iterator>
@@ -7,11 +7,11 @@
 #include <tuple>
 
 #include "taut/core/disjoint_sets.h"
-#include "taut/hull/boundary_closure.h"
-#include "taut/hull/crease_tracks.h"
-#include "taut/hull/curve_chains.h"
-#include "taut/hull/ruled_faces.h"
-#include "taut/hull/trim_stretches.h"
+#include "taut/hull/stitch/boundary_closure.h"
+#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/curve_chains.h"
+#include "taut/hull/stitch/ruled_faces.h"
+#include "taut/hull/stitch/trim_stretches.h"
 
 namespace taut {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/hull_boundary.h"
-#include "taut/hull/separating_graph.h"
+#include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/trace/separating_graph.h"
 
 namespace taut {
 

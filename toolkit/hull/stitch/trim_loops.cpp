@@ -1,4 +1,4 @@
-#include "taut/hull/trim_loops.h"
+#include "taut/hull/stitch/trim_loops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/separating_graph.h"
+#include "taut/hull/trace/separating_graph.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/trim_stretches.h"
+#include "taut/hull/stitch/trim_stretches.h"
 
 #include <cmath>
 

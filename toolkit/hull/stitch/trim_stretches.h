@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/crease_tracks.h"
-#include "taut/hull/trim_loops.h"
+#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/trim_loops.h"
 
 namespace taut {
 

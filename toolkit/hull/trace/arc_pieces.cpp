@@ -1,12 +1,12 @@
-#include "taut/hull/arc_pieces.h"
+#include "taut/hull/trace/arc_pieces.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/curve_point.h"
-#include "taut/hull/pole_passage.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/trace/curve_point.h"
+#include "taut/hull/trace/pole_passage.h"
 
 namespace taut {
 namespace {

@@ -1,21 +1,21 @@
-#include "taut/hull/arc_tracer.h"
+#include "taut/hull/trace/arc_tracer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
-#include "taut/hull/arc_pieces.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/curve_point.h"
-#include "taut/hull/element_changes.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/in_line_contacts.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/level_way.h"
-#include "taut/hull/merging.h"
-#include "taut/hull/rulings_between.h"
-#include "taut/hull/tied_end.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/in_line_contacts.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/trace/arc_pieces.h"
+#include "taut/hull/trace/curve_point.h"
+#include "taut/hull/trace/element_changes.h"
+#include "taut/hull/trace/level_way.h"
+#include "taut/hull/trace/merging.h"
+#include "taut/hull/trace/tied_end.h"
 
 namespace taut {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/progress.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/pole_passage.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/trace/pole_passage.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/cell_crossings.h"
+#include "taut/hull/trace/cell_crossings.h"
 
 #include <algorithm>
 

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/hull_boundary.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/cull/culling.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
 

@@ -1,9 +1,9 @@
-#include "taut/hull/curve_point.h"
+#include "taut/hull/trace/curve_point.h"
 
 #include <array>
 
-#include "taut/hull/level_sides.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 

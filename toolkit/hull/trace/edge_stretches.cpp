@@ -1,11 +1,11 @@
-#include "taut/hull/edge_stretches.h"
+#include "taut/hull/trace/edge_stretches.h"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "taut/hull/facet_contacts.h"
+#include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
 namespace {

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/supporting_poles.h"
-#include "taut/hull/touched_stretches.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/contact/supporting_poles.h"
+#include "taut/hull/trace/touched_stretches.h"
 
 namespace taut {
 

@@ -1,13 +1,13 @@
-#include "taut/hull/edge_touches.h"
+#include "taut/hull/trace/edge_touches.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/parabolic_sides.h"
-#include "taut/hull/sign_changes.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/parabolic_sides.h"
+#include "taut/hull/contact/sign_changes.h"
 
 namespace taut {
 namespace {

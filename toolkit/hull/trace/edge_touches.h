@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/supporting_poles.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/contact/supporting_poles.h"
+#include "taut/hull/cull/culling.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/element_changes.h"
+#include "taut/hull/trace/element_changes.h"
 
 #include <algorithm>
 #include <cmath>

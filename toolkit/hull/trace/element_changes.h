@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/curve_point.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/trace/curve_point.h"
 
 namespace taut {
 

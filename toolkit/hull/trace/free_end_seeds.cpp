@@ -1,9 +1,9 @@
-#include "taut/hull/free_end_seeds.h"
+#include "taut/hull/trace/free_end_seeds.h"
 
 #include <array>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/partings.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/trace/partings.h"
 
 namespace taut {
 namespace {

@@ -3,8 +3,8 @@
 #include <functional>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/free_ends.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/trace/free_ends.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/free_ends.h"
+#include "taut/hull/trace/free_ends.h"
 
 #include <algorithm>
 #include <array>
@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/concave_patch.h"
-#include "taut/hull/contact_bends.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/joined_elements.h"
-#include "taut/hull/parabolic_sides.h"
-#include "taut/hull/sign_changes.h"
+#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/contact/parabolic_sides.h"
+#include "taut/hull/contact/sign_changes.h"
+#include "taut/hull/cull/concave_patch.h"
 
 namespace taut {
 namespace {

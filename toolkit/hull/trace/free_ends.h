@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_geometry.h"
-#include "taut/hull/culling.h"
+#include "taut/hull/contact/contact_geometry.h"
+#include "taut/hull/cull/culling.h"
 
 namespace taut {
 

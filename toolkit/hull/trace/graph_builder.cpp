@@ -1,15 +1,15 @@
-#include "taut/hull/graph_builder.h"
+#include "taut/hull/trace/graph_builder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "taut/hull/arc_tracer.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/level_way.h"
-#include "taut/hull/partings.h"
-#include "taut/hull/rulings_between.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/trace/arc_tracer.h"
+#include "taut/hull/trace/level_way.h"
+#include "taut/hull/trace/partings.h"
 
 namespace taut {
 namespace {

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/cell_crossings.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/free_ends.h"
-#include "taut/hull/separating_graph.h"
-#include "taut/hull/surface_seeds.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/cull/culling.h"
+#include "taut/hull/trace/cell_crossings.h"
+#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/trace/separating_graph.h"
+#include "taut/hull/trace/surface_seeds.h"
 
 namespace taut {
 

@@ -1,10 +1,10 @@
-#include "taut/hull/level_way.h"
+#include "taut/hull/trace/level_way.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/merging.h"
+#include "taut/hull/trace/merging.h"
 
 #include <algorithm>
 #include <array>
@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/arc_pieces.h"
-#include "taut/hull/contact_bends.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/element_changes.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/free_ends.h"
-#include "taut/hull/joined_elements.h"
-#include "taut/hull/pole_passage.h"
+#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/trace/arc_pieces.h"
+#include "taut/hull/trace/element_changes.h"
+#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/trace/pole_passage.h"
 
 namespace taut {
 namespace {

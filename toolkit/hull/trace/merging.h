@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "taut/hull/curve_point.h"
+#include "taut/hull/trace/curve_point.h"
 
 namespace taut {
 

@@ -1,11 +1,11 @@
-#include "taut/hull/partings.h"
+#include "taut/hull/trace/partings.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/level_way.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/trace/level_way.h"
 #include "taut/surface/flatness.h"
 
 namespace taut {

@@ -1,9 +1,9 @@
-#include "taut/hull/plane_corners.h"
+#include "taut/hull/trace/plane_corners.h"
 
 #include <cmath>
 #include <optional>
 
-#include "taut/hull/contact_exits.h"
+#include "taut/hull/contact/contact_exits.h"
 
 namespace taut {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 

@@ -1,14 +1,14 @@
-#include "taut/hull/pole_passage.h"
+#include "taut/hull/trace/pole_passage.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact_bends.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/plane_corners.h"
+#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/trace/plane_corners.h"
 
 namespace taut {
 namespace {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
-#include "taut/hull/curve_point.h"
-#include "taut/hull/supporting_poles.h"
+#include "taut/hull/contact/supporting_poles.h"
+#include "taut/hull/trace/curve_point.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/separating_graph.h"
+#include "taut/hull/trace/separating_graph.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,24 +9,24 @@
 #include <span>
 
 #include "taut/bounds/scene_content.h"
-#include "taut/hull/arc_pieces.h"
-#include "taut/hull/arc_tracer.h"
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/contact_planes.h"
-#include "taut/hull/edge_stretches.h"
-#include "taut/hull/edge_touches.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/free_end_seeds.h"
-#include "taut/hull/free_ends.h"
-#include "taut/hull/graph_builder.h"
-#include "taut/hull/in_line_contacts.h"
-#include "taut/hull/level_sides.h"
-#include "taut/hull/level_way.h"
-#include "taut/hull/partings.h"
-#include "taut/hull/plane_corners.h"
-#include "taut/hull/point_hull.h"
-#include "taut/hull/supporting_poles.h"
-#include "taut/hull/surface_seeds.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_planes.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/in_line_contacts.h"
+#include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/supporting_poles.h"
+#include "taut/hull/polytope/point_hull.h"
+#include "taut/hull/trace/arc_pieces.h"
+#include "taut/hull/trace/arc_tracer.h"
+#include "taut/hull/trace/edge_stretches.h"
+#include "taut/hull/trace/edge_touches.h"
+#include "taut/hull/trace/free_end_seeds.h"
+#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/trace/graph_builder.h"
+#include "taut/hull/trace/level_way.h"
+#include "taut/hull/trace/partings.h"
+#include "taut/hull/trace/plane_corners.h"
+#include "taut/hull/trace/surface_seeds.h"
 
 namespace taut {
 namespace {

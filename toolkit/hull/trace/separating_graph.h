@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/culling.h"
-#include "taut/hull/sample.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/cull/culling.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/surface_seeds.h"
+#include "taut/hull/trace/surface_seeds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/merging.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/trace/merging.h"
 
 namespace taut {
 namespace {

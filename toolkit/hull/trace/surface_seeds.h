@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact_system.h"
-#include "taut/hull/culling.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/cull/culling.h"
 
 namespace taut {
 

@@ -1,10 +1,10 @@
-#include "taut/hull/tied_end.h"
+#include "taut/hull/trace/tied_end.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "taut/hull/level_way.h"
+#include "taut/hull/trace/level_way.h"
 
 namespace taut {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "taut/hull/merging.h"
+#include "taut/hull/trace/merging.h"
 
 namespace taut {
 

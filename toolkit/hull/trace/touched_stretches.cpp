@@ -1,4 +1,4 @@
-#include "taut/hull/touched_stretches.h"
+#include "taut/hull/trace/touched_stretches.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "taut/hull/contact_exits.h"
-#include "taut/hull/facet_contacts.h"
-#include "taut/hull/parabolic_sides.h"
-#include "taut/hull/sign_changes.h"
+#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/parabolic_sides.h"
+#include "taut/hull/contact/sign_changes.h"
 
 namespace taut {
 namespace {

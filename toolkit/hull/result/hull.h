@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "taut/core/error.h"
+#include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/result/hull_mesh.h"
+#include "taut/hull/result/hull_statistics.h"
+
+namespace taut {
+
+/// What a convex hull is. The value is its dimension.
+enum class HullKind { empty = -1, point, segment, planar, solid };
+
+/// A convex hull with its certificate.
+struct Hull {
+  HullKind kind = HullKind::empty;
+  HullMesh mesh;
+  /// Proven upper bound of the Hausdorff distance between the mesh and the true convex hull of the
+  /// model as it stands, in model units, rounding included. What patches that stand for other
+  /// surfaces miss (Model::deviation_bound, of control cages) comes on top.
+  double distance_bound = 0;
+  /// The exact boundary, where the method finds it.
+  std::shared_ptr<const HullBoundary> boundary;
+  HullStatistics statistics;
+
+  int dimension() const { return static_cast<int>(kind); }
+};
+
+/// The tolerance was not reached; `best` is the hull found, a valid one whose distance_bound says
+/// how far it came (no farther than the diagonal where nothing could be certified).
+class HullNotConverged : public NotConverged {
+ public:
+  HullNotConverged(const std::string& message, Hull hull)
+      : NotConverged(message, hull.distance_bound),
+        best(std::make_shared<const Hull>(std::move(hull))) {}
+  std::shared_ptr<const Hull> best;
+};
+
+}  // namespace taut

@@ -1,0 +1,25 @@
+#include "taut/hull/result/hull_options.h"
+
+#include <cmath>
+
+#include "taut/core/error.h"
+
+namespace taut {
+
+double tolerance_for(const HullOptions& options, double diagonal) {
+  // Asked in forms that NaN fails.
+  if (!(options.tolerance >= 0)) {
+    throw InvalidInput("the tolerance must be positive");
+  }
+  if (options.tolerance > 0) return options.tolerance;
+  if (!(options.relative > 0 && std::isfinite(options.relative))) {
+    throw InvalidInput("the relative tolerance must be positive");
+  }
+  const double tolerance = options.relative * diagonal;
+  if (diagonal > 0 && !(tolerance > 0 && std::isfinite(tolerance))) {
+    throw InvalidInput("the relative tolerance times the diagonal leaves the range of doubles");
+  }
+  return tolerance;
+}
+
+}  // namespace taut

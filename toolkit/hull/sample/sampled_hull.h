@@ -1,0 +1,26 @@
+#pragma once
+
+#include "taut/bounds/scene.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_options.h"
+
+namespace taut {
+
+/// Convex hull of a scene as a polytope of points sampled on the model (method `sampled`).
+///
+/// The mesh's vertices are support points of the model, rounded to double; the mesh is closed and
+/// exactly convex (every orientation predicate holds on the coordinates as stored), has no face of
+/// zero area, and its Hausdorff distance from the true hull is at most distance_bound, which is at
+/// most the tolerance, rounding apart. Same bits for any number of threads. Safe to call
+/// concurrently.
+///
+/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a
+/// segment or a point; its corners are support points too, and a planar outline is convex as seen
+/// along the axis that foreshortens it least.
+///
+/// @throws InvalidInput if the tolerance is not valid, HullNotConverged if it is below what double
+/// precision can certify for this scene (about 1e-12 of its size) or max_vertices was met,
+/// Cancelled
+Hull sampled_hull(const Scene& scene, const HullOptions& options = {});
+
+}  // namespace taut
