@@ -89,20 +89,18 @@ inline void check_support(const taut::Scene& scene, const Truth& truth, const dv
   raise(errors.reproduced, std::abs(glm::dot(x, rvec3(n)) - real(s.h)));
 }
 
-/// Largest permitted share of the diagonal by which a support value may be wrong.
+/// Largest permitted share of the diagonal by which a support value, or its bound, may be wrong.
 inline constexpr double support_accuracy = 1e-12;
 
 /// `model_error`: by how much the control points as rounded may differ from the truth's shape.
-/// `bound_excess`: largest share of the diagonal by which the bound may exceed the truth.
 /// `contact_error`: what the check of the contact, in long double, may be off itself.
 inline void expect_correct(const SupportErrors& errors, const std::string& name,
-                           double model_error = 0, double bound_excess = support_accuracy,
-                           double contact_error = 1e-14) {
+                           double model_error = 0, double contact_error = 1e-14) {
   EXPECT_LE(errors.value, support_accuracy) << name;
   EXPECT_LE(errors.below, model_error) << name << " n = " << errors.worst_below.x << ", "
                                        << errors.worst_below.y << ", " << errors.worst_below.z;
-  EXPECT_LE(errors.above, bound_excess) << name << " n = " << errors.worst_above.x << ", "
-                                        << errors.worst_above.y << ", " << errors.worst_above.z;
+  EXPECT_LE(errors.above, support_accuracy) << name << " n = " << errors.worst_above.x << ", "
+                                            << errors.worst_above.y << ", " << errors.worst_above.z;
   EXPECT_LE(errors.contact, contact_error) << name;
   EXPECT_LE(errors.reproduced, contact_error) << name;
   EXPECT_LE(10 * errors.undecided, errors.directions) << name;
@@ -134,15 +132,14 @@ inline std::vector<dvec3> random_directions(Random& random, int count) {
 /// Cold queries in all directions by both kinds of bounds.
 inline void expect_support(const taut::Scene& scene, const Truth& truth,
                            const std::vector<dvec3>& directions, const std::string& name,
-                           double model_error = 0, double bound_excess = support_accuracy,
-                           double contact_error = 1e-14) {
+                           double model_error = 0, double contact_error = 1e-14) {
   for (const taut::SupportBounds bounds :
        {taut::SupportBounds::bezier_nets, taut::SupportBounds::coons}) {
     taut::SupportQuery query(scene, {}, bounds);
     SupportErrors errors;
     for (const dvec3& n : directions) check_support(scene, truth, n, query(n), errors);
     expect_correct(errors, name + (bounds == taut::SupportBounds::coons ? " (coons)" : " (nets)"),
-                   model_error, bound_excess, contact_error);
+                   model_error, contact_error);
   }
 }
 

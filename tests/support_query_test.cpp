@@ -284,7 +284,7 @@ TEST(SupportQuery, PartsFarFromTheirOwnOrigin) {
     const Scene scene = make_scene(shape);
     // The contact's point is evaluated in long double, 2^-64 of the coordinates' size.
     expect_support(scene, reference(scene), directions(22, 10), "at " + std::to_string(far), 0,
-                   support_accuracy, 1e-14 + 2 * far * 0x1p-63);
+                   1e-14 + 2 * far * 0x1p-63);
   }
 }
 
