@@ -6,7 +6,6 @@
 #include "reference.h"
 #include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/result/hull.h"
-#include "taut/hull/result/hull_options.h"
 
 namespace taut_test {
 

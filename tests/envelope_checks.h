@@ -14,7 +14,6 @@
 #include "taut/core/parallel.h"
 #include "taut/envelope/envelope_map.h"
 #include "taut/hull/result/hull.h"
-#include "taut/hull/result/hull_options.h"
 
 namespace taut_test {
 

@@ -22,8 +22,6 @@
 #include "taut/core/error.h"
 #include "taut/core/progress.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/result/hull.h"
-#include "taut/hull/result/hull_options.h"
 #include "taut/subdivision/add_cage.h"
 #include "taut/subdivision/cage_level.h"
 #include "taut/subdivision/conforming.h"
