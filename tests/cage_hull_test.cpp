@@ -19,8 +19,8 @@
 #include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/verify_hull.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/verify/verify_hull.h"
 
 namespace taut {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 #include "taut/surface/control_cage.h"
 #include "taut/surface/model.h"
 

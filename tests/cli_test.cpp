@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "run_command.h"
-#include "taut/io/read_mesh.h"
+#include "taut/io/mesh/read_mesh.h"
 #include "temporary_folder.h"
 
 namespace {

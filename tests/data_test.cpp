@@ -7,7 +7,7 @@
 #include <string>
 
 #include "data_models.h"
-#include "taut/io/model_document.h"
+#include "taut/io/document/write_document.h"
 #include "temporary_folder.h"
 
 namespace taut {

@@ -1,4 +1,4 @@
-#include "taut/io/document_measures.h"
+#include "taut/verify/document_measures.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "models.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
+#include "taut/io/document/boundary_document.h"
 
 namespace taut {
 namespace {

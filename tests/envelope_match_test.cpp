@@ -10,7 +10,7 @@
 #include "hull_checks.h"
 #include "taut/envelope/envelope_hull.h"
 #include "taut/hull/precise_hull.h"
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 namespace {
 

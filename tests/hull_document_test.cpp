@@ -1,5 +1,3 @@
-#include "taut/io/hull_document.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +10,11 @@
 #include "reference.h"
 #include "taut/core/error.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/io/report.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/io/document/polyhedral_document.h"
+#include "taut/io/document/read_hull.h"
+#include "taut/io/document/write_hull.h"
+#include "taut/io/report/report.h"
 #include "temporary_folder.h"
 
 namespace taut {

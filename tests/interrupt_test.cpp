@@ -20,11 +20,11 @@
 #include "taut/core/error.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
-#include "taut/hull/verify.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/model_document.h"
-#include "taut/io/verify_hull.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/io/document/write_document.h"
 #include "taut/subdivision/add_cage.h"
+#include "taut/verify/verify.h"
+#include "taut/verify/verify_hull.h"
 
 namespace taut_test {
 namespace {

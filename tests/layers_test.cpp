@@ -27,6 +27,7 @@ const std::map<std::string, std::set<std::string>> layers = {
     {"hull", {"core", "surface", "bounds"}},
     {"envelope", {"core", "surface", "bounds", "hull"}},
     {"containment", {"core", "surface", "bounds", "hull"}},
+    {"verify", {"core", "surface", "bounds", "hull"}},
     {"io", {"core", "surface", "subdivision", "bounds", "hull"}},
 };
 
@@ -49,12 +50,22 @@ const std::map<std::string, Rooms> rooms_of = {
          {"measure", {"stitch"}},
          {"polyhedral", {"sample"}},
      }},
+    {"io",
+     {
+         {"text", {}},
+         {"mesh", {"text"}},
+         {"obj", {"mesh"}},
+         {"document", {"text"}},
+         {"model", {"obj", "document"}},
+         {"report", {}},
+     }},
 };
 
 /// The layers that may include some rooms of hull only.
 const std::map<std::string, std::set<std::string>> rooms_of_hull_for = {
     {"envelope", {"result", "polytope", "sample"}},
     {"containment", {"result", "polytope", "sample"}},
+    {"verify", {"result", "polytope"}},
 };
 
 /// What breaks the rules today: to go, and none to come.
@@ -62,9 +73,11 @@ const std::set<std::string> debts = {
     "toolkit/envelope/contact_climb.h: taut/hull/contact/contact_geometry.h",
     "toolkit/envelope/gauss_triangles.h: taut/hull/contact/contact_geometry.h",
     "toolkit/envelope/gauss_triangles.h: taut/hull/cull/culling.h",
-    "toolkit/io/document_measures.cpp: taut/hull/measure/quadrature.h",
-    "toolkit/io/document_rulings.cpp: taut/hull/contact/contact_exits.h",
-    "toolkit/io/document_rulings.cpp: taut/hull/contact/level_sides.h",
+    "toolkit/verify/document_measures.cpp: taut/hull/measure/quadrature.h",
+    "toolkit/verify/document_rulings.cpp: taut/hull/contact/contact_exits.h",
+    "toolkit/verify/document_rulings.cpp: taut/hull/contact/level_sides.h",
+    "toolkit/verify/document_rulings.cpp: taut/hull/contact/rulings_between.h",
+    "toolkit/verify/document_rulings.h: taut/hull/contact/contact_system.h",
 };
 
 /// A third-party library and the only folders, of toolkit/ and plugins/, that may include it.
@@ -82,7 +95,7 @@ const std::vector<Home> homes = {
     {"OSMesa", std::regex("(GL|EGL|GLES[0-9])/.*|.*osmesa.*"), {"toolkit/envelope/"}},
     {"libpng", std::regex("(libpng.*/)?png(conf|libconf)?\\.h"), {"toolkit/envelope/"}},
     {"Embree", std::regex("embree.*"), {"toolkit/containment/"}},
-    {"pugixml", std::regex("pug(ixml|iconfig)\\..*"), {"toolkit/io/"}},
+    {"pugixml", std::regex("pug(ixml|iconfig)\\..*"), {"toolkit/io/model/"}},
     {"OpenCASCADE", std::regex(".*\\.hxx|opencascade/.*"), {"plugins/occt/"}},
 };
 

@@ -17,10 +17,10 @@
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/result/measures.h"
 #include "taut/hull/sample/sampled_hull.h"
-#include "taut/io/read_mesh.h"
-#include "taut/io/read_model.h"
-#include "taut/io/write_mesh.h"
-#include "taut/io/write_project.h"
+#include "taut/io/mesh/read_mesh.h"
+#include "taut/io/mesh/write_mesh.h"
+#include "taut/io/model/read_model.h"
+#include "taut/io/model/write_project.h"
 #include "temporary_folder.h"
 
 namespace {

@@ -1,5 +1,3 @@
-#include "taut/io/model_document.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,8 @@
 #include "models.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
+#include "taut/io/document/read_document.h"
+#include "taut/io/document/write_document.h"
 #include "temporary_folder.h"
 
 namespace taut {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "taut/core/tolerances.h"
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 namespace taut_test {
 

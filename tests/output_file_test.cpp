@@ -1,4 +1,4 @@
-#include "taut/io/output_file.h"
+#include "taut/io/text/output_file.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "taut/io/whole_file.h"
+#include "taut/io/text/whole_file.h"
 #include "temporary_folder.h"
 
 namespace taut {

@@ -1,6 +1,6 @@
 // Readers of polygon meshes: PLY, OBJ, OFF, STL.
 
-#include "taut/io/read_mesh.h"
+#include "taut/io/mesh/read_mesh.h"
 
 #include <algorithm>
 #include <array>

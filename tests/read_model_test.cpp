@@ -1,6 +1,6 @@
 // Readers of models: .bpt, .obj, and the polygons of other formats as models.
 
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 #include <algorithm>
 #include <clocale>
@@ -12,9 +12,9 @@
 #include <tuple>
 #include <vector>
 
-#include "taut/io/formats.h"
-#include "taut/io/read_mesh.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/mesh/read_mesh.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/text_scanner.h"
 #include "temporary_folder.h"
 
 namespace {

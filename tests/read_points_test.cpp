@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "taut/io/read_model.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/model/read_model.h"
+#include "taut/io/text/text_scanner.h"
 #include "temporary_folder.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 #include "temporary_folder.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // The JSON report.
 
-#include "taut/io/report.h"
+#include "taut/io/report/report.h"
 
 #include <gtest/gtest.h>
 

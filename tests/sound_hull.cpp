@@ -5,7 +5,9 @@
 
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
-#include "taut/io/report.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/io/document/polyhedral_document.h"
+#include "taut/io/report/report.h"
 
 namespace taut_test {
 

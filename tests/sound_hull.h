@@ -4,7 +4,7 @@
 #include <string>
 
 #include "models.h"
-#include "taut/io/verify_hull.h"
+#include "taut/verify/verify_hull.h"
 
 namespace taut_test {
 

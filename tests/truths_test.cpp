@@ -22,7 +22,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/result/measures.h"
 #include "taut/hull/sample/sampled_hull.h"
-#include "taut/hull/verify.h"
+#include "taut/verify/verify.h"
 
 namespace taut {
 namespace {

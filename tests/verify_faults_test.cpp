@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "sound_hull.h"
-#include "taut/io/document_geometry.h"
+#include "taut/verify/document_geometry.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/verify_hull.h"
+#include "taut/verify/verify_hull.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,11 @@
 #include "boundaries.h"
 #include "sound_hull.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/io/closest_on_surface.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/io/document/polyhedral_document.h"
+#include "taut/io/document/read_hull.h"
+#include "taut/io/document/write_hull.h"
+#include "taut/verify/closest_on_surface.h"
 #include "truths.h"
 
 namespace taut {

@@ -1,4 +1,4 @@
-#include "taut/hull/verify.h"
+#include "taut/verify/verify.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Writers of hull meshes: PLY, OBJ, OFF, STL.
 
-#include "taut/io/write_mesh.h"
+#include "taut/io/mesh/write_mesh.h"
 
 #include <sys/resource.h>
 
@@ -21,8 +21,8 @@
 #include "taut/core/predicates.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/convex_hull.h"
-#include "taut/hull/verify.h"
-#include "taut/io/read_mesh.h"
+#include "taut/io/mesh/read_mesh.h"
+#include "taut/verify/verify.h"
 #include "temporary_folder.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/write_project.h"
+#include "taut/io/model/write_project.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "taut/core/error.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/sample/sampled_hull.h"
-#include "taut/io/read_mesh.h"
-#include "taut/io/read_model.h"
+#include "taut/io/mesh/read_mesh.h"
+#include "taut/io/model/read_model.h"
 #include "temporary_folder.h"
 
 namespace taut {

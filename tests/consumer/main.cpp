@@ -1,6 +1,6 @@
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/result/measures.h"
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 /// consumer MODEL VOLUME: is the volume of the model's convex hull VOLUME, within one percent?
 int main(int, char** argv) {

@@ -10,7 +10,7 @@
 
 #include "shapes.h"
 #include "taut/core/tolerances.h"
-#include "taut/io/model_document.h"
+#include "taut/io/document/write_document.h"
 
 namespace taut_test {
 namespace {

@@ -13,11 +13,13 @@
 #include <thread>
 
 #include "taut/hull/convex_hull.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/model_document.h"
-#include "taut/io/read_mesh.h"
-#include "taut/io/read_model.h"
-#include "taut/io/verify_hull.h"
+#include "taut/io/document/read_document.h"
+#include "taut/io/document/read_hull.h"
+#include "taut/io/document/write_document.h"
+#include "taut/io/document/write_hull.h"
+#include "taut/io/mesh/read_mesh.h"
+#include "taut/io/model/read_model.h"
+#include "taut/verify/verify_hull.h"
 #include "tools/taut/directions.h"
 
 namespace taut_test {

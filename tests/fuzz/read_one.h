@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 namespace taut_test {
 

@@ -1,4 +1,4 @@
-#include "taut/io/piecewise.h"
+#include "taut/surface/piecewise.h"
 
 #include <algorithm>
 #include <cstddef>

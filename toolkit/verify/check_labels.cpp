@@ -1,10 +1,10 @@
-#include "taut/io/check_labels.h"
+#include "taut/verify/check_labels.h"
 
 #include <algorithm>
 #include <array>
 
-#include "taut/io/closest_on_surface.h"
-#include "taut/io/hull_sources.h"
+#include "taut/hull/result/hull_sources.h"
+#include "taut/verify/closest_on_surface.h"
 
 namespace taut {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "taut/io/document_geometry.h"
-#include "taut/io/hull_faults.h"
+#include "taut/verify/document_geometry.h"
+#include "taut/verify/hull_faults.h"
 
 namespace taut {
 

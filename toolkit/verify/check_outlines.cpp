@@ -1,11 +1,11 @@
-#include "taut/io/check_outlines.h"
+#include "taut/verify/check_outlines.h"
 
 #include <functional>
 #include <optional>
 #include <set>
 
-#include "taut/io/closest_on_curve.h"
-#include "taut/io/nearest_point.h"
+#include "taut/verify/closest_on_curve.h"
+#include "taut/verify/nearest_point.h"
 
 namespace taut {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "taut/io/hull_faults.h"
-#include "taut/io/region_outlines.h"
+#include "taut/verify/hull_faults.h"
+#include "taut/verify/region_outlines.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/io/check_patches.h"
+#include "taut/verify/check_patches.h"
 
 #include <random>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "taut/hull/verify.h"
-#include "taut/io/hull_faults.h"
-#include "taut/io/region_outlines.h"
+#include "taut/verify/hull_faults.h"
+#include "taut/verify/region_outlines.h"
+#include "taut/verify/verify.h"
 
 namespace taut {
 

@@ -1,11 +1,10 @@
-#include "taut/io/check_report.h"
+#include "taut/verify/check_report.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-
-#include "taut/io/document_tree.h"
+#include <nlohmann/json.hpp>
 
 namespace taut {
 namespace {
@@ -13,31 +12,27 @@ namespace {
 /// Measures that a report says are known no better than this are compared as if they were.
 constexpr double least_accuracy = 1e-7;
 
-const DocumentValue* find(const DocumentValue* object, std::string_view key) {
-  if (object == nullptr) return nullptr;
-  const auto* members = std::get_if<DocumentValue::Object>(&object->value);
-  if (members == nullptr) return nullptr;
-  for (const DocumentMember& member : *members) {
-    if (member.key == key) return &member.value;
-  }
-  return nullptr;
+using Json = nlohmann::json;
+
+const Json* find(const Json* object, const std::string& key) {
+  if (object == nullptr || !object->is_object()) return nullptr;
+  const auto found = object->find(key);
+  return found == object->end() ? nullptr : &*found;
 }
 
-std::optional<double> number(const DocumentValue* value) {
-  if (value == nullptr) return std::nullopt;
-  if (const auto* whole = std::get_if<std::int64_t>(&value->value)) return double(*whole);
-  if (const auto* real = std::get_if<double>(&value->value)) return *real;
-  return std::nullopt;
+std::optional<double> number(const Json* value) {
+  if (value == nullptr || !value->is_number()) return std::nullopt;
+  return value->get<double>();
 }
 
 /// Compares one report.
 class ReportCheck {
  public:
-  ReportCheck(const DocumentValue& report, HullFaults& faults) : report_(report), faults_(faults) {}
+  ReportCheck(const Json& report, HullFaults& faults) : report_(report), faults_(faults) {}
 
   /// What the report says, if it does, is the value but for a share of it.
-  void compare(const std::string& key, const DocumentValue* object, double value, double accuracy) {
-    const DocumentValue* said = find(object, key);
+  void compare(const std::string& key, const Json* object, double value, double accuracy) {
+    const Json* said = find(object, key);
     if (said == nullptr) return;
     const std::optional<double> given = number(said);
     if (given && std::abs(*given - value) <= accuracy * std::abs(value)) return;
@@ -55,7 +50,7 @@ class ReportCheck {
     return {digits.data(), end.ptr};
   }
 
-  const DocumentValue& report_;
+  const Json& report_;
   HullFaults& faults_;
 };
 
@@ -65,7 +60,7 @@ void ReportCheck::compare_counts(const HullDocument& hull) {
                                 [&](const HullDocument::Face& f) { return f.kind == kind; }));
   };
   compare("dimension", &report_, hull.dimension, 0);
-  const DocumentValue* exact = find(&report_, "hull");
+  const Json* exact = find(&report_, "hull");
   compare("patches", exact, count(FaceKind::patch), 0);
   compare("scrolls", exact, count(FaceKind::scroll), 0);
   compare("facets", exact, count(FaceKind::facet), 0);
@@ -74,13 +69,13 @@ void ReportCheck::compare_counts(const HullDocument& hull) {
 }
 
 void ReportCheck::compare_measures(const DocumentMeasures& measures, double accuracy) {
-  const DocumentValue* exact = find(&report_, "hull");
+  const Json* exact = find(&report_, "hull");
   accuracy += std::min(number(find(exact, "measures_accuracy")).value_or(0), least_accuracy);
   compare("volume", exact, measures.volume, accuracy);
   compare("area", exact, measures.area, accuracy);
   // Where stand-ins meet, normals jump, which integrals of curvature miss: either width is within
   // twice the deviation of that of the surface itself.
-  const DocumentValue* subdivision = find(&report_, "subdivision");
+  const Json* subdivision = find(&report_, "subdivision");
   const double deviation = number(find(subdivision, "deviation_bound")).value_or(0);
   compare("mean_width", exact, measures.mean_width,
           accuracy + 4 * deviation / std::abs(measures.mean_width));
@@ -92,13 +87,13 @@ void check_report(const HullDocument& hull, const std::optional<DocumentMeasures
                   double rounding, HullFaults& faults) {
   if (hull.report.empty()) return;
   try {
-    const DocumentValue report = parse_json("report", hull.report);
+    const Json report = Json::parse(hull.report);
     ReportCheck check(report, faults);
     check.compare_counts(hull);
     if (measures)
       check.compare_measures(*measures, measure_accuracy + rounding + measures->interpolation);
-  } catch (const Error& error) {
-    faults.add("report", error.what());
+  } catch (const Json::parse_error& error) {
+    faults.add("report", std::string("report: ") + error.what());
   }
 }
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "taut/io/document_measures.h"
-#include "taut/io/hull_faults.h"
+#include "taut/verify/document_measures.h"
+#include "taut/verify/hull_faults.h"
 
 namespace taut {
 

@@ -1,6 +1,6 @@
-#include "taut/io/check_sources.h"
+#include "taut/verify/check_sources.h"
 
-#include "taut/io/hull_sources.h"
+#include "taut/hull/result/hull_sources.h"
 
 namespace taut {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "taut/io/hull_document.h"
-#include "taut/io/hull_faults.h"
+#include "taut/hull/result/hull_document.h"
+#include "taut/verify/hull_faults.h"
 
 namespace taut {
 

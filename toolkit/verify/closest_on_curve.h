@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "taut/io/document_geometry.h"
+#include "taut/verify/document_geometry.h"
 
 namespace taut {
 

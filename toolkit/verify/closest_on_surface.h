@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "taut/io/document_geometry.h"
+#include "taut/verify/document_geometry.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/io/document_geometry.h"
+#include "taut/verify/document_geometry.h"
 
 namespace taut {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "taut/bounds/scene.h"
-#include "taut/io/hull_document.h"
+#include "taut/hull/result/hull_document.h"
 #include "taut/surface/bezier.h"
 
 namespace taut {

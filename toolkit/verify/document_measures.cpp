@@ -1,4 +1,4 @@
-#include "taut/io/document_measures.h"
+#include "taut/verify/document_measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "taut/hull/measure/quadrature.h"
-#include "taut/io/closest_on_curve.h"
+#include "taut/verify/closest_on_curve.h"
 
 namespace taut {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "taut/core/progress.h"
-#include "taut/io/region_outlines.h"
+#include "taut/verify/region_outlines.h"
 
 namespace taut {
 

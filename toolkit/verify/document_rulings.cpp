@@ -1,4 +1,4 @@
-#include "taut/io/document_rulings.h"
+#include "taut/verify/document_rulings.h"
 
 #include <cmath>
 #include <optional>

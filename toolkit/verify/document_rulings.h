@@ -1,7 +1,7 @@
 #pragma once
 
 #include "taut/hull/contact/contact_system.h"
-#include "taut/io/document_geometry.h"
+#include "taut/verify/document_geometry.h"
 
 namespace taut {
 

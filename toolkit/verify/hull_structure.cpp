@@ -1,4 +1,4 @@
-#include "taut/io/hull_structure.h"
+#include "taut/verify/hull_structure.h"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/io/hull_document.h"
+#include "taut/hull/result/hull_document.h"
 
 namespace taut {
 

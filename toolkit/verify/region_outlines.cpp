@@ -1,4 +1,4 @@
-#include "taut/io/region_outlines.h"
+#include "taut/verify/region_outlines.h"
 
 #include <algorithm>
 #include <limits>

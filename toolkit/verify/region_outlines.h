@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "taut/io/document_rulings.h"
+#include "taut/verify/document_rulings.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/io/verify_hull.h"
+#include "taut/verify/verify_hull.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,13 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
-#include "taut/io/check_labels.h"
-#include "taut/io/check_outlines.h"
-#include "taut/io/check_patches.h"
-#include "taut/io/check_report.h"
-#include "taut/io/check_sources.h"
-#include "taut/io/hull_structure.h"
-#include "taut/io/nearest_point.h"
+#include "taut/verify/check_labels.h"
+#include "taut/verify/check_outlines.h"
+#include "taut/verify/check_patches.h"
+#include "taut/verify/check_report.h"
+#include "taut/verify/check_sources.h"
+#include "taut/verify/hull_structure.h"
+#include "taut/verify/nearest_point.h"
 
 namespace taut {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "taut/bounds/scene.h"
-#include "taut/hull/verify.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/hull_faults.h"
+#include "taut/hull/result/hull_document.h"
+#include "taut/verify/hull_faults.h"
+#include "taut/verify/verify.h"
 
 namespace taut {
 

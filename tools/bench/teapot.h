@@ -1,7 +1,7 @@
 #pragma once
 
 #include "taut/bounds/scene.h"
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 /// The Utah teapot of the data folder.
 inline taut::Model teapot() {

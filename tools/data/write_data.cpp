@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "data_models.h"
-#include "taut/io/model_document.h"
+#include "taut/io/document/write_document.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -10,7 +10,7 @@
 #include "progress_bar.h"
 #include "taut/core/progress.h"
 #include "taut/core/stopwatch.h"
-#include "taut/io/report.h"
+#include "taut/io/report/report.h"
 
 namespace taut::tool {
 

@@ -5,7 +5,7 @@
 
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
-#include "taut/io/hull_document.h"
+#include "taut/hull/result/hull_document.h"
 #include "taut/surface/polygon_mesh.h"
 
 namespace taut::tool {

@@ -18,11 +18,13 @@
 #include "taut/hull/precise_hull.h"
 #include "taut/hull/result/measures.h"
 #include "taut/hull/sample/sampled_hull.h"
-#include "taut/io/formats.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/report.h"
-#include "taut/io/write_mesh.h"
-#include "taut/io/write_project.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/io/document/polyhedral_document.h"
+#include "taut/io/document/write_hull.h"
+#include "taut/io/mesh/write_mesh.h"
+#include "taut/io/model/write_project.h"
+#include "taut/io/report/report.h"
+#include "taut/io/text/formats.h"
 #include "text.h"
 
 namespace taut::tool {

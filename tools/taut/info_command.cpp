@@ -6,8 +6,8 @@
 #include "command.h"
 #include "input.h"
 #include "output.h"
-#include "taut/io/formats.h"
-#include "taut/io/model_document.h"
+#include "taut/io/document/write_document.h"
+#include "taut/io/text/formats.h"
 #include "text.h"
 
 namespace taut::tool {

@@ -5,7 +5,7 @@
 
 #include "exit_code.h"
 #include "standard_input.h"
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 #include "text.h"
 
 namespace taut::tool {

@@ -7,7 +7,7 @@
 
 #include "console.h"
 #include "taut/bounds/scene.h"
-#include "taut/io/report.h"
+#include "taut/io/report/report.h"
 
 namespace taut::tool {
 

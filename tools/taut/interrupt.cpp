@@ -10,7 +10,7 @@
 #include <ctime>
 #include <string_view>
 
-#include "taut/io/whole_file.h"
+#include "taut/io/text/whole_file.h"
 
 namespace taut::tool {
 namespace {

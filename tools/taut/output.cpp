@@ -10,9 +10,9 @@
 #include <system_error>
 
 #include "exit_code.h"
-#include "taut/io/formats.h"
-#include "taut/io/whole_file.h"
-#include "taut/io/write_project.h"
+#include "taut/io/model/write_project.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/whole_file.h"
 #include "text.h"
 
 namespace taut::tool {

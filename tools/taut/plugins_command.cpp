@@ -2,7 +2,7 @@
 
 #include "command.h"
 #include "input.h"
-#include "taut/io/formats.h"
+#include "taut/io/text/formats.h"
 #include "text.h"
 
 namespace taut::tool {

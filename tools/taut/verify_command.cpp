@@ -10,11 +10,11 @@
 #include "contained_samples.h"
 #include "input.h"
 #include "standard_input.h"
-#include "taut/hull/verify.h"
-#include "taut/io/formats.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/read_mesh.h"
-#include "taut/io/verify_hull.h"
+#include "taut/io/document/read_hull.h"
+#include "taut/io/mesh/read_mesh.h"
+#include "taut/io/text/formats.h"
+#include "taut/verify/verify.h"
+#include "taut/verify/verify_hull.h"
 #include "text.h"
 
 namespace taut::tool {

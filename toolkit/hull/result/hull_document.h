@@ -1,17 +1,14 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "taut/bounds/scene.h"
-#include "taut/core/progress.h"
+#include "taut/core/geometry.h"
+#include "taut/hull/result/face_kind.h"
 #include "taut/hull/result/hull_boundary.h"
-#include "taut/hull/result/hull_mesh.h"
-#include "taut/io/model_document.h"
+#include "taut/surface/model.h"
 
 namespace taut {
 
@@ -118,36 +115,5 @@ struct HullDocument {
   /// A JSON object as text, or empty.
   std::string report;
 };
-
-/// The document of an exact boundary. `files`: what each of the model's parts was read from, as far
-/// as it is known.
-HullDocument hull_document(const Scene& scene, const HullBoundary& boundary,
-                           const std::vector<std::string>& files = {});
-
-/// The same of a polyhedral hull, whose mesh is its boundary: facets, and rulings between them. A
-/// planar hull has two facets, a segment one curve without faces, a point nothing but a source.
-/// @pre model.polyhedral(), and the mesh's vertices have sources
-HullDocument hull_document(const Model& model, const HullMesh& mesh,
-                           const std::vector<std::string>& files = {});
-
-/// The document in one of its encodings; numbers round-trip. @pre all numbers are finite
-std::string to_document(const HullDocument& hull, DocumentEncoding encoding);
-
-/// Writes the document, the encoding by the path's extension. The file appears whole or not at all.
-/// @throws IoError if the extension is neither .hull.json nor .hull.cbor or the file cannot be
-/// written
-void write_hull(const std::filesystem::path& path, const HullDocument& hull);
-
-/// Reads a hull document. Ids of faces and curves become places in the lists. What it says is
-/// consistent as far as one can tell without geometry: references exist, contacts have the
-/// parameters that their sources have, Bezier patches have valid degrees and weights.
-///
-/// `name` begins the messages.
-/// @throws IoError if the file cannot be read or is no hull document (NAME:LINE: or NAME:byte N:
-/// for its syntax, NAME: faces[3].rulings[0].n: for what it holds), InvalidInput (with the same
-/// places) if its numbers are no valid geometry, Cancelled
-HullDocument read_hull(std::string_view data, const std::string& name, DocumentEncoding encoding,
-                       const Progress& progress = {});
-HullDocument read_hull(const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace taut

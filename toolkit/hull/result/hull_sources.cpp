@@ -1,4 +1,4 @@
-#include "taut/io/hull_sources.h"
+#include "taut/hull/result/hull_sources.h"
 
 namespace taut {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/io/hull_document.h"
+#include "taut/hull/result/hull_document.h"
 
 namespace taut {
 

@@ -1,10 +1,9 @@
-#include "taut/io/hull_document.h"
+#include "taut/io/document/boundary_document.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "taut/hull/contact/contact_geometry.h"
-#include "taut/io/hull_sources.h"
+#include "taut/hull/result/hull_sources.h"
 
 namespace taut {
 namespace {
@@ -322,51 +321,6 @@ std::vector<DirectedCurve> DocumentMaker::facet_outline(int index) const {
 HullDocument hull_document(const Scene& scene, const HullBoundary& boundary,
                            const std::vector<std::string>& files) {
   return DocumentMaker(scene, boundary, files).make();
-}
-
-HullDocument hull_document(const Model& model, const HullMesh& mesh,
-                           const std::vector<std::string>& files) {
-  HullSources sources(model, files);
-  for (const auto v : mesh.vertices()) sources.add(mesh.data(v).source);
-  for (const auto f : mesh.faces()) sources.add(mesh.data(f).source);
-  sources.finish();
-
-  HullDocument document;
-  document.diagonal = diagonal(model.control_box());
-  document.dimension = mesh.n_faces() == 0  ? int(mesh.n_vertices()) - 1
-                       : mesh.n_faces() > 2 ? 3
-                                            : 2;
-  document.sources = sources.make();
-  for (const auto f : mesh.faces()) {
-    HullDocument::Face& face = document.faces.emplace_back();
-    face.source = sources.place(mesh.data(f).source);
-    for (const auto h : mesh.fh_range(f)) {
-      const auto v = mesh.from_vertex_handle(h);
-      face.outline.emplace_back(mesh.edge_handle(h).idx(), h.idx() % 2 == 0 ? 1 : -1);
-      face.boundary.push_back(position(mesh, v));
-      face.contacts.push_back({sources.place(mesh.data(v).source), {}, position(mesh, v)});
-    }
-    dvec3 area(0.0);
-    for (std::size_t k = 1; k + 1 < face.boundary.size(); ++k) {
-      area += glm::cross(unit(face.boundary[k] - face.boundary[0]),
-                         face.boundary[k + 1] - face.boundary[0]);
-    }
-    face.normal = unit(area);
-    face.offset = -std::numeric_limits<double>::infinity();
-    for (const dvec3& p : face.boundary) {
-      face.offset = std::max(face.offset, glm::dot(face.normal, p));
-    }
-  }
-  for (const auto e : mesh.edges()) {
-    const auto h = mesh.halfedge_handle(e, 0);
-    const auto opposite = mesh.halfedge_handle(e, 1);
-    document.curves.push_back(
-        {HullCurveKind::ruling,
-         {mesh.face_handle(h).idx(), mesh.face_handle(opposite).idx()},
-         -1,
-         {position(mesh, mesh.from_vertex_handle(h)), position(mesh, mesh.to_vertex_handle(h))}});
-  }
-  return document;
 }
 
 }  // namespace taut

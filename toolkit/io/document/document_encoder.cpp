@@ -1,4 +1,4 @@
-#include "taut/io/document_encoder.h"
+#include "taut/io/document/document_encoder.h"
 
 #include <bit>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "taut/io/document_tree.h"
-#include "taut/io/model_document.h"
+#include "taut/io/document/document_encoding.h"
+#include "taut/io/document/document_tree.h"
 
 namespace taut {
 

@@ -1,9 +1,9 @@
-#include "taut/io/document_node.h"
+#include "taut/io/document/document_node.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "taut/core/geometry.h"
 #include "taut/core/progress.h"
-#include "taut/io/document_tree.h"
+#include "taut/io/document/document_tree.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/io/document_tree.h"
+#include "taut/io/document/document_tree.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/joined_pieces.h"
+#include "taut/io/document/joined_pieces.h"
 
 #include <cassert>
 #include <span>

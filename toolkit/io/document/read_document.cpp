@@ -1,3 +1,5 @@
+#include "taut/io/document/read_document.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,10 +9,9 @@
 #include <utility>
 
 #include "taut/core/tolerances.h"
-#include "taut/io/document_format.h"
-#include "taut/io/document_node.h"
-#include "taut/io/model_document.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/document/document_format.h"
+#include "taut/io/document/document_node.h"
+#include "taut/io/text/text_scanner.h"
 #include "taut/subdivision/add_cage.h"
 
 namespace taut {

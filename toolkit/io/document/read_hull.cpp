@@ -1,15 +1,16 @@
+#include "taut/io/document/read_hull.h"
+
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <memory>
 
 #include "taut/core/tolerances.h"
-#include "taut/io/document_encoder.h"
-#include "taut/io/document_node.h"
-#include "taut/io/formats.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/hull_document_format.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/document/document_encoder.h"
+#include "taut/io/document/document_node.h"
+#include "taut/io/document/hull_document_format.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/text_scanner.h"
 #include "taut/surface/bezier.h"
 
 namespace taut {

@@ -1,13 +1,14 @@
+#include "taut/io/document/write_document.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "taut/io/document_encoder.h"
-#include "taut/io/document_format.h"
-#include "taut/io/formats.h"
-#include "taut/io/joined_pieces.h"
-#include "taut/io/model_document.h"
-#include "taut/io/whole_file.h"
+#include "taut/io/document/document_encoder.h"
+#include "taut/io/document/document_format.h"
+#include "taut/io/document/joined_pieces.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/whole_file.h"
 
 namespace taut {
 namespace {

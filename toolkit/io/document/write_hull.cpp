@@ -1,9 +1,10 @@
-#include "taut/io/document_encoder.h"
-#include "taut/io/document_tree.h"
-#include "taut/io/formats.h"
-#include "taut/io/hull_document.h"
-#include "taut/io/hull_document_format.h"
-#include "taut/io/whole_file.h"
+#include "taut/io/document/write_hull.h"
+
+#include "taut/io/document/document_encoder.h"
+#include "taut/io/document/document_tree.h"
+#include "taut/io/document/hull_document_format.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/whole_file.h"
 
 namespace taut {
 namespace {

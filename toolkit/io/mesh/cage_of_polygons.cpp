@@ -1,4 +1,4 @@
-#include "taut/io/cage_of_polygons.h"
+#include "taut/io/mesh/cage_of_polygons.h"
 
 #include <utility>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/io/read_model.h"
+#include "taut/io/text/read_options.h"
 #include "taut/surface/control_cage.h"
 #include "taut/surface/polygon_mesh.h"
 

@@ -1,4 +1,4 @@
-#include "taut/io/file_polygons.h"
+#include "taut/io/mesh/file_polygons.h"
 
 #include <algorithm>
 #include <set>

@@ -1,4 +1,4 @@
-#include "taut/io/obj_reference.h"
+#include "taut/io/mesh/obj_reference.h"
 
 #include <algorithm>
 #include <string>

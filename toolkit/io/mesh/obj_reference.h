@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "taut/core/geometry.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 

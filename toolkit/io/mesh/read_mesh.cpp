@@ -1,8 +1,8 @@
-#include "taut/io/read_mesh.h"
+#include "taut/io/mesh/read_mesh.h"
 
-#include "taut/io/formats.h"
-#include "taut/io/mesh_readers.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/mesh/mesh_readers.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -1,6 +1,6 @@
-#include "taut/io/mesh_readers.h"
-#include "taut/io/obj_reference.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/mesh/mesh_readers.h"
+#include "taut/io/mesh/obj_reference.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 

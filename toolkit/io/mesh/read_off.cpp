@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/io/mesh_readers.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/mesh/mesh_readers.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "taut/io/binary_scanner.h"
-#include "taut/io/mesh_readers.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/mesh/mesh_readers.h"
+#include "taut/io/text/binary_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/rounded_hull.h"
+#include "taut/io/mesh/rounded_hull.h"
 
 #include <algorithm>
 #include <cmath>

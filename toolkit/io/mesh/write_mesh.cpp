@@ -1,4 +1,4 @@
-#include "taut/io/write_mesh.h"
+#include "taut/io/mesh/write_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "taut/core/error.h"
-#include "taut/io/file_polygons.h"
-#include "taut/io/formats.h"
-#include "taut/io/output_file.h"
-#include "taut/io/rounded_hull.h"
+#include "taut/io/mesh/file_polygons.h"
+#include "taut/io/mesh/rounded_hull.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/output_file.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/affine_map.h"
+#include "taut/io/model/affine_map.h"
 
 #include <cassert>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "taut/core/predicates.h"
 #include "taut/core/tolerances.h"
-#include "taut/io/piecewise.h"
+#include "taut/surface/piecewise.h"
 
 namespace taut {
 namespace {

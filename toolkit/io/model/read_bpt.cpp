@@ -1,9 +1,9 @@
-#include "taut/io/read_bpt.h"
+#include "taut/io/model/read_bpt.h"
 
 #include <string>
 
 #include "taut/core/tolerances.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

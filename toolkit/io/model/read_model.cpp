@@ -1,12 +1,12 @@
-#include "taut/io/read_model.h"
+#include "taut/io/model/read_model.h"
 
 #include <utility>
 
-#include "taut/io/formats.h"
-#include "taut/io/model_document.h"
-#include "taut/io/read_part.h"
-#include "taut/io/read_project.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/document/read_document.h"
+#include "taut/io/model/read_part.h"
+#include "taut/io/model/read_project.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -1,35 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
-#include "taut/core/progress.h"
-#include "taut/core/tolerances.h"
-#include "taut/subdivision/add_cage.h"
+#include "taut/io/text/read_options.h"
 #include "taut/surface/model.h"
 
 namespace taut {
-
-/// What the polygons of a file stand for.
-enum class Scheme {
-  bilinear,  ///< themselves
-  catmark,   ///< the control cage of a Catmull-Clark surface
-  loop,      ///< the control cage of a Loop surface
-};
-
-struct ReadOptions {
-  /// Borders whose tangent planes differ by less are smooth joins; radians.
-  double smooth_angle = smooth_join_angle;
-  /// If not given, polygons are bilinear unless their file has the tags of a subdivision cage: then
-  /// they are one of a Loop surface if all are triangles, else of a Catmull-Clark surface.
-  std::optional<Scheme> scheme;
-  /// CageOptions::accuracy of cages.
-  double cage_accuracy = default_cage_accuracy;
-  /// Receives a warning for each part of a file that is named but not supported.
-  Progress progress;
-};
 
 /// Reads a file into the model as one more part, by the file name's extension: `.bpt` (Bezier
 /// patches), `.obj` (free-form statements, polygons and points), `.off`, `.ply`, `.stl` (polygons)

@@ -1,15 +1,15 @@
-#include "taut/io/read_part.h"
+#include "taut/io/model/read_part.h"
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <utility>
 
-#include "taut/io/cage_of_polygons.h"
-#include "taut/io/mesh_readers.h"
-#include "taut/io/read_bpt.h"
-#include "taut/io/read_obj.h"
-#include "taut/io/read_xyz.h"
+#include "taut/io/mesh/cage_of_polygons.h"
+#include "taut/io/mesh/mesh_readers.h"
+#include "taut/io/model/read_bpt.h"
+#include "taut/io/model/read_xyz.h"
+#include "taut/io/obj/read_obj.h"
 #include "taut/subdivision/add_cage.h"
 
 namespace taut {

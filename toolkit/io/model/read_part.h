@@ -1,22 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
-#include "taut/io/read_model.h"
-#include "taut/surface/control_cage.h"
-#include "taut/surface/polygon_mesh.h"
+#include "taut/io/mesh/file_content.h"
+#include "taut/io/text/read_options.h"
 
 namespace taut {
-
-/// What a file of one part holds. Points and polygons stand apart, so that the file's text can go
-/// before they are copied.
-struct FileContent {
-  Part part;         ///< surfaces and curves
-  PolygonMesh mesh;  ///< polygons and points
-  std::optional<ControlCage> cage;
-};
 
 /// Whether files of the format (".ply") hold one part.
 bool is_part_format(std::string_view format);

@@ -1,4 +1,4 @@
-#include "taut/io/read_project.h"
+#include "taut/io/model/read_project.h"
 
 #include <algorithm>
 #include <deque>
@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "taut/io/affine_map.h"
-#include "taut/io/formats.h"
-#include "taut/io/read_part.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/model/affine_map.h"
+#include "taut/io/model/read_part.h"
+#include "taut/io/text/formats.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

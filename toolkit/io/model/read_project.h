@@ -3,7 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "taut/io/read_model.h"
+#include "taut/io/text/read_options.h"
+#include "taut/surface/model.h"
 
 namespace taut {
 

@@ -1,11 +1,11 @@
-#include "taut/io/read_xyz.h"
+#include "taut/io/model/read_xyz.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/write_project.h"
+#include "taut/io/model/write_project.h"
 
 #include <array>
 #include <memory>
@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "taut/core/error.h"
-#include "taut/io/output_file.h"
-#include "taut/io/write_mesh.h"
+#include "taut/io/mesh/write_mesh.h"
+#include "taut/io/text/output_file.h"
 
 namespace taut {
 namespace {

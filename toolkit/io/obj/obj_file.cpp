@@ -1,4 +1,4 @@
-#include "taut/io/obj_file.h"
+#include "taut/io/obj/obj_file.h"
 
 #include <algorithm>
 #include <map>
@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "taut/core/tolerances.h"
-#include "taut/io/obj_reference.h"
-#include "taut/io/obj_tags.h"
+#include "taut/io/mesh/obj_reference.h"
+#include "taut/io/obj/obj_tags.h"
 
 namespace taut {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "taut/core/geometry.h"
 #include "taut/core/progress.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 #include "taut/surface/control_cage.h"
 
 namespace taut {

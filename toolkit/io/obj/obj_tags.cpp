@@ -1,4 +1,4 @@
-#include "taut/io/obj_tags.h"
+#include "taut/io/obj/obj_tags.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "taut/io/obj_file.h"
-#include "taut/io/text_scanner.h"
+#include "taut/io/obj/obj_file.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 

@@ -1,14 +1,14 @@
-#include "taut/io/read_obj.h"
+#include "taut/io/obj/read_obj.h"
 
 #include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
 
-#include "taut/io/obj_file.h"
-#include "taut/io/piecewise.h"
-#include "taut/io/text_scanner.h"
-#include "taut/io/trim_sense.h"
+#include "taut/io/obj/obj_file.h"
+#include "taut/io/obj/trim_sense.h"
+#include "taut/io/text/text_scanner.h"
+#include "taut/surface/piecewise.h"
 
 namespace taut {
 namespace {

@@ -3,7 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "taut/io/read_part.h"
+#include "taut/io/mesh/file_content.h"
+#include "taut/io/text/read_options.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/io/trim_sense.h"
+#include "taut/io/obj/trim_sense.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "taut/io/report.h"
+#include "taut/io/report/report.h"
 
 #include <nlohmann/json.hpp>
 

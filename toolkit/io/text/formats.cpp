@@ -1,4 +1,4 @@
-#include "taut/io/formats.h"
+#include "taut/io/text/formats.h"
 
 namespace taut {
 

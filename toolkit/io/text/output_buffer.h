@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 namespace taut {
 

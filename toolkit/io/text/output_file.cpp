@@ -1,4 +1,4 @@
-#include "taut/io/output_file.h"
+#include "taut/io/text/output_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "taut/core/error.h"
-#include "taut/io/whole_file.h"
+#include "taut/io/text/whole_file.h"
 
 namespace taut {
 namespace {

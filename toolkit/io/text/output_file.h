@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "taut/io/output_buffer.h"
+#include "taut/io/text/output_buffer.h"
 
 namespace taut {
 

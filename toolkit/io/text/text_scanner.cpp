@@ -1,4 +1,4 @@
-#include "taut/io/text_scanner.h"
+#include "taut/io/text/text_scanner.h"
 
 #include <algorithm>
 #include <array>
