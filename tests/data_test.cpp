@@ -8,6 +8,7 @@
 
 #include "data_models.h"
 #include "taut/io/document/write_document.h"
+#include "taut/io/model/read_model.h"
 #include "temporary_folder.h"
 
 namespace taut {

@@ -9,6 +9,7 @@
 #include "models.h"
 #include "reference.h"
 #include "taut/core/error.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/io/document/boundary_document.h"
 #include "taut/io/document/polyhedral_document.h"

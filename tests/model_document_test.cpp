@@ -10,6 +10,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/io/document/read_document.h"
 #include "taut/io/document/write_document.h"
+#include "taut/io/model/read_model.h"
 #include "temporary_folder.h"
 
 namespace taut {

@@ -28,6 +28,19 @@ struct Sample {
   int region = -1;  ///< -1: outside of all
 };
 
+/// The scene's contact at a place of the document. @pre the document's sources are the model's
+Contact scene_contact(const DocumentGeometry& geometry, const Scene& scene, int source,
+                      const SourcePlace& place) {
+  const Model& model = scene.model();
+  const Source own = model.source(geometry.source(source).id);
+  const Part& part = model.parts()[to_size(model.instances()[to_size(own.instance)].part)];
+  int element = own.index;
+  if (own.kind == SourceKind::face) element = part.faces()[to_size(own.index)].first_patch;
+  if (own.kind == SourceKind::edge) element = part.edges()[to_size(own.index)].first_piece;
+  if (own.kind != SourceKind::vertex) element += place.patch;
+  return {own.instance, own.kind, element, place.t.x, place.t.y};
+}
+
 /// Checks one document.
 class PatchCheck {
  public:

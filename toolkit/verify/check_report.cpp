@@ -90,8 +90,7 @@ void check_report(const HullDocument& hull, const std::optional<DocumentMeasures
     const Json report = Json::parse(hull.report);
     ReportCheck check(report, faults);
     check.compare_counts(hull);
-    if (measures)
-      check.compare_measures(*measures, measure_accuracy + rounding + measures->interpolation);
+    if (measures) check.compare_measures(*measures, measure_accuracy + rounding + measures->error);
   } catch (const Json::parse_error& error) {
     faults.add("report", std::string("report: ") + error.what());
   }

@@ -59,6 +59,22 @@ dvec2 DocumentGeometry::parameters(int place, const SourcePlace& at) const {
   return uv;
 }
 
+dvec2 DocumentGeometry::place(int at, int patch, const dvec2& uv) const {
+  dvec2 t(0.0);
+  const std::vector<Interval>& domain = source(at).patches[to_size(patch)].domain;
+  for (std::size_t k = 0; k < domain.size(); ++k) {
+    t[int(k)] = (uv[int(k)] - domain[k].lower) / (domain[k].upper - domain[k].lower);
+  }
+  return t;
+}
+
+dvec2 DocumentGeometry::domain_size(int at, int patch) const {
+  dvec2 size(1.0);
+  const std::vector<Interval>& domain = source(at).patches[to_size(patch)].domain;
+  for (std::size_t k = 0; k < domain.size(); ++k) size[int(k)] = domain[k].upper - domain[k].lower;
+  return size;
+}
+
 SourceJet DocumentGeometry::jet(int place, const SourcePlace& at) const {
   const BezierPatch& net = nets_[to_size(place)][to_size(at.patch)];
   switch (source(place).kind) {

@@ -48,8 +48,11 @@ class DocumentGeometry {
   /// its domain.
   std::vector<SourcePlace> places(int source, const dvec2& uv) const;
   std::vector<SourcePlace> places(const HullDocument::Contact& c) const;
-  /// The source's parameters of a place.
+  /// The source's parameters of a place, and back, also beside the patch.
   dvec2 parameters(int source, const SourcePlace& place) const;
+  dvec2 place(int source, int patch, const dvec2& uv) const;
+  /// Of one of its patches, in the source's parameters.
+  dvec2 domain_size(int source, int patch) const;
   SourceJet jet(int source, const SourcePlace& place) const;
   /// Unit normal along sign * (Su x Sv), by its limit where the patch degenerates; zero if none.
   dvec3 normal(int source, const SourcePlace& place, int sign) const;

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
-#include "taut/hull/measure/quadrature.h"
 #include "taut/verify/closest_on_curve.h"
+#include "taut/verify/integral.h"
 
 namespace taut {
 namespace {
@@ -14,26 +14,29 @@ namespace {
 using DirectedCurve = HullDocument::DirectedCurve;
 using Face = HullDocument::Face;
 
-/// Nodes along a stretch of an outline, and across a patch from it.
-constexpr int along_nodes = 8;
-constexpr int across_nodes = 16;
+/// Of integrals along outlines and rulings, and of those across patches from them, in units of the
+/// diagonal; what differs by less does so by rounding.
+constexpr IntegralAccuracy along_accuracy = {1e-12, 1e-13, 60};
+constexpr IntegralAccuracy across_accuracy = {1e-12, 1e-14, 15};
 
 /// Points of a curve that its interpolating polynomials go through, and those of a worse one that
 /// tells the error.
-constexpr std::size_t best_window = 6;
-constexpr std::size_t worse_window = 4;
+constexpr std::size_t window(Fit fit) { return fit == Fit::best ? 6 : 4; }
 
 /// Cosine of the angle between neighbouring chords from which on there is a kink.
 constexpr double kink = 0.9;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-template <int nodes, class Function>
-void for_gauss_nodes(double from, double to, const Function& f) {
-  const GaussRule<nodes>& rule = GaussRule<nodes>::get();
-  for (std::size_t i = 0; i < to_size(nodes); ++i) {
-    f(from + (to - from) * rule.node[i], (to - from) * rule.weight[i]);
-  }
+/// What is integrated over faces, in units of the diagonal: curvature is the mean one, and what
+/// creases have of it; length, that of outlines, is for comparison.
+enum : std::size_t { volume, area, area_x, area_y, area_z, curvature, outline_length, term_count };
+using Terms = Integrals<term_count>;
+
+void add_vector_area(Terms& terms, const dvec3& A) {
+  terms.value[area_x] += A.x;
+  terms.value[area_y] += A.y;
+  terms.value[area_z] += A.z;
 }
 
 /// A smooth curve through given points.
@@ -109,55 +112,65 @@ class MeasureSums {
     double from = 0;
     double to = 0;
   };
-  MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-              std::size_t window);
+  MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines, Fit fit);
   DocumentMeasures run(const Progress& progress);
-  /// Something was interpolated.
+  /// Something was interpolated of which a worse fit tells the error.
   bool interpolated() const { return interpolated_; }
 
  private:
   void add_patch(const RegionOutline& outline);
   void add_stretch(const RegionOutline& outline, const OutlineStretch& stretch);
-  std::optional<SmoothLine> smooth_line(const OutlineStretch& stretch, const dvec2& lower,
-                                        const dvec2& size);
-  void add_across(const RegionOutline& outline, const dvec2& t, double w);
-  void add_patch_element(const SourceJet& j, int sign, double w);
+  void add_free_stretch(const RegionOutline& outline, const OutlineStretch& stretch);
+  void add_track(const RegionOutline& outline, const OutlineStretch& stretch);
+  Terms region_terms(const RegionOutline& outline, const dvec2& t, const dvec2& dt) const;
+  Terms patch_terms(const SourceJet& j, int sign) const;
   void add_scroll(const Face& face, const std::vector<RulingInterval>& intervals);
-  void add_scroll_element(const RulingInterval& interval, double s, double w);
+  Terms scroll_terms(const RulingInterval& interval, const std::array<RulingState, 2>& at) const;
   void add_end(const HullDocument::Ruling& ruling, bool last);
   void add_facet(const Face& face);
-  dvec3 facet_side(const DirectedCurve& side, const dvec3& normal);
+  Terms facet_side(const DirectedCurve& side, const dvec3& normal);
   std::optional<EdgePart> edge_between(const HullDocument::Curve& curve, const dvec3& p,
                                        const dvec3& q) const;
-  void add_outline(const dvec3& x, const dvec3& dx, const dvec3& n, double w);
-  dvec3 from_inside(const dvec3& p) const { return geometry_.local(p) - inside_; }
+  static Terms outline_terms(const dvec3& x, const dvec3& dx, const dvec3& n);
+  /// Relative to a point inside, in units of the diagonal.
+  dvec3 from_inside(const dvec3& p) const { return placed(geometry_.local(p)); }
+  dvec3 placed(const dvec3& local) const { return (local - inside_) / unit_; }
+  template <class Function>
+  void add(double from, double to, const Function& f) {
+    integrate(f, from, to, along_accuracy, sums_);
+  }
+  /// Whether this is interpolated is noted.
+  void see(const RulingInterval& interval);
 
   const DocumentGeometry& geometry_;
   const DocumentOutlines& outlines_;
+  double unit_;
   dvec3 inside_ = dvec3(0.0);  ///< relative to the origin
   double base_ = 0;            ///< where integrals across the region at hand begin
-  DocumentMeasures sums_;
-  double curvature_ = 0;
-  std::size_t window_;
+  Terms sums_;
+  Fit fit_;
   bool interpolated_ = false;
 };
 
 MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                         std::size_t window)
-    : geometry_(geometry), outlines_(outlines), window_(window) {
+                         Fit fit)
+    : geometry_(geometry),
+      outlines_(outlines),
+      unit_(geometry.hull().diagonal > 0 ? geometry.hull().diagonal : 1),
+      fit_(fit) {
   double count = 0;
-  const auto add = [&](const dvec3& p) {
+  const auto add_point = [&](const dvec3& p) {
     inside_ += geometry.local(p);
     count += 1;
   };
   for (const HullDocument::Curve& curve : geometry.hull().curves) {
-    for (const dvec3& p : curve.points) add(p);
+    for (const dvec3& p : curve.points) add_point(p);
   }
   // A patch without outlines is all that there is; its control points are about it.
   for (const HullDocument::Source& source : geometry.hull().sources) {
     if (!geometry.hull().curves.empty()) break;
     for (const HullDocument::Patch& patch : source.patches) {
-      for (const dvec4& p : patch.points) add(dvec3(p));
+      for (const dvec4& p : patch.points) add_point(dvec3(p));
     }
   }
   if (count > 0) inside_ /= count;
@@ -174,19 +187,31 @@ DocumentMeasures MeasureSums::run(const Progress& progress) {
     if (faces[f].kind == FaceKind::scroll) add_scroll(faces[f], outlines_.intervals()[f]);
     if (faces[f].kind == FaceKind::facet) add_facet(faces[f]);
   }
-  sums_.mean_width = curvature_ / (2 * std::numbers::pi);
-  return sums_;
+  const auto share = [&](std::size_t i) { return sums_.error[i] / std::abs(sums_.value[i]); };
+  const std::array<double, term_count>& value = sums_.value;
+  DocumentMeasures measures;
+  measures.volume = unit_ * unit_ * unit_ * value[volume];
+  measures.area = unit_ * unit_ * value[area];
+  measures.vector_area = unit_ * unit_ * dvec3(value[area_x], value[area_y], value[area_z]);
+  measures.mean_width = unit_ * value[curvature] / (2 * std::numbers::pi);
+  measures.error = std::max({share(volume), share(area), share(curvature)});
+  return measures;
 }
 
-/// A piece of an outline that has its face to the left, w dx: half the angle between the face's
+/// Along a piece of an outline that has its face to the left: half the angle between the face's
 /// normal and what is outward there counts as mean curvature.
-void MeasureSums::add_outline(const dvec3& x, const dvec3& dx, const dvec3& n, double w) {
+Terms MeasureSums::outline_terms(const dvec3& x, const dvec3& dx, const dvec3& n) {
+  Terms terms;
   const double speed = glm::length(dx);
-  if (speed == 0) return;
+  if (speed == 0) return terms;
   const dvec3 along = dx / speed;
   const dvec3 outward = x - glm::dot(x, along) * along;
-  const double angle = std::atan2(glm::dot(n, glm::cross(outward, along)), glm::dot(n, outward));
-  curvature_ += 0.5 * w * speed * angle;
+  // On a convex hull every face has the inside below it.
+  const double above = glm::dot(n, outward);
+  const double angle = above > 0 ? std::atan(glm::dot(n, glm::cross(outward, along)) / above) : 0;
+  terms.value[curvature] = 0.5 * speed * angle;
+  terms.value[outline_length] = speed;
+  return terms;
 }
 
 void MeasureSums::add_patch(const RegionOutline& outline) {
@@ -199,86 +224,110 @@ void MeasureSums::add_patch(const RegionOutline& outline) {
   }
 }
 
-/// Of a stretch of which only the points are known, in the Bezier patch's parameters.
-std::optional<SmoothLine> MeasureSums::smooth_line(const OutlineStretch& stretch,
-                                                   const dvec2& lower, const dvec2& size) {
-  if (stretch.kind != OutlineStretch::Kind::free) return std::nullopt;
+void MeasureSums::add_stretch(const RegionOutline& outline, const OutlineStretch& stretch) {
+  if (stretch.kind == OutlineStretch::Kind::track) return add_track(outline, stretch);
+  if (stretch.kind == OutlineStretch::Kind::free) return add_free_stretch(outline, stretch);
+  const int source = geometry_.hull().faces[to_size(outline.face)].source;
+  const dvec2 from = geometry_.place(source, outline.region->patch, stretch.from);
+  const dvec2 side = geometry_.place(source, outline.region->patch, stretch.to) - from;
+  add(0, 1, [&](double s) { return region_terms(outline, from + s * side, side); });
+}
+
+/// Of which only the points are known.
+void MeasureSums::add_free_stretch(const RegionOutline& outline, const OutlineStretch& stretch) {
+  const int source = geometry_.hull().faces[to_size(outline.face)].source;
   interpolated_ = true;
   std::vector<dvec3> points;
   points.reserve(stretch.line.size());
-  for (const dvec2& p : stretch.line) points.emplace_back((p - lower) / size, 0);
-  const SmoothLine line(points, window_);
+  for (const dvec2& p : stretch.line) {
+    points.emplace_back(geometry_.place(source, outline.region->patch, p), 0);
+  }
+  const SmoothLine line(points, window(fit_));
   // Points that stand twice are one to it.
-  if (line.segments() + 1 != points.size()) return std::nullopt;
-  return line;
+  if (line.segments() + 1 != points.size()) {
+    const dvec2 from(points[stretch.place]);
+    const dvec2 side = dvec2(points[stretch.place + 1]) - from;
+    add(0, 1, [&](double s) { return region_terms(outline, from + s * side, side); });
+    return;
+  }
+  add(line.from(stretch.place), line.to(stretch.place), [&](double s) {
+    const auto [t, slope] = line.at(stretch.place, s);
+    return region_terms(outline, dvec2(t), dvec2(slope));
+  });
+}
+
+void MeasureSums::see(const RulingInterval& interval) {
+  interpolated_ = interpolated_ || std::any_of(interval.panels.begin(), interval.panels.end(),
+                                               [](const RulingPanel& p) { return !p.settled; });
+}
+
+/// Along a scroll's contact, which may be in the terms of another patch than the region.
+void MeasureSums::add_track(const RegionOutline& outline, const OutlineStretch& stretch) {
+  const int source = geometry_.hull().faces[to_size(outline.face)].source;
+  const RulingInterval& interval = *stretch.interval;
+  const auto k = to_size(stretch.contact);
+  see(interval);
+  const dvec2 size = geometry_.domain_size(source, interval.patch[k]) /
+                     geometry_.domain_size(source, outline.region->patch);
+  for (const RulingPanel& panel : interval.panels) {
+    const double from = stretch.reversed ? panel.to : panel.from;
+    const double to = stretch.reversed ? panel.from : panel.to;
+    add(from, to, [&](double s) {
+      const auto [value, slope] = panel.at(s, fit_);
+      const dvec2 uv = geometry_.parameters(source, {interval.patch[k], value.t[k]});
+      return region_terms(outline, geometry_.place(source, outline.region->patch, uv),
+                          slope.t[k] * size);
+    });
+  }
 }
 
 /// The region's integrals are those along its outline, counter-clockwise, of the integrals across
 /// to it, dv.
-void MeasureSums::add_stretch(const RegionOutline& outline, const OutlineStretch& stretch) {
+Terms MeasureSums::region_terms(const RegionOutline& outline, const dvec2& t,
+                                const dvec2& dt) const {
   const int source = geometry_.hull().faces[to_size(outline.face)].source;
+  const int patch = outline.region->patch;
   const int sign = outline.region->sign;
-  const std::vector<Interval>& domain =
-      geometry_.source(source).patches[to_size(outline.region->patch)].domain;
-  const dvec2 lower(domain[0].lower, domain[1].lower);
-  const dvec2 size(domain[0].upper - lower.x, domain[1].upper - lower.y);
-  const std::optional<SmoothLine> free = smooth_line(stretch, lower, size);
-  for_gauss_nodes<along_nodes>(0, 1, [&](double s, double w) {
-    SourcePlace place{outline.region->patch,
-                      (stretch.from + s * (stretch.to - stretch.from) - lower) / size};
-    dvec2 dt = (stretch.to - stretch.from) / size;
-    if (free) {
-      const double from = free->from(stretch.place);
-      const double length = free->to(stretch.place) - from;
-      const auto [t, slope] = free->at(stretch.place, from + s * length);
-      place.t = dvec2(t);
-      dt = length * dvec2(slope);
-    }
-    if (stretch.kind == OutlineStretch::Kind::track) {
-      const RulingInterval& interval = *stretch.interval;
-      const auto k = to_size(stretch.contact);
-      const double at = stretch.reversed ? 1 - s : s;
-      const SourcePlace on_track{interval.patch[k], interval.value(at).t[k]};
-      const Interval& u = geometry_.source(source).patches[to_size(on_track.patch)].domain[0];
-      const Interval& v = geometry_.source(source).patches[to_size(on_track.patch)].domain[1];
-      place.t = (geometry_.parameters(source, on_track) - lower) / size;
-      dt = (stretch.reversed ? -1.0 : 1.0) * interval.slope(at).t[k] *
-           dvec2(u.upper - u.lower, v.upper - v.lower) / size;
-    }
-    if (dt.y != 0) add_across(outline, place.t, w * dt.y);
-    const SourceJet j = geometry_.jet(source, place);
-    const dvec3 n = geometry_.normal(source, place, sign);
-    add_outline(j.x - inside_, double(sign) * (dt.x * j.dx[0] + dt.y * j.dx[1]), n, w);
-  });
+  const SourceJet j = geometry_.jet(source, {patch, t});
+  const dvec3 along = double(sign) * (dt.x * j.dx[0] + dt.y * j.dx[1]) / unit_;
+  Terms terms = outline_terms(placed(j.x), along, geometry_.normal(source, {patch, t}, sign));
+  if (dt.y == 0) return terms;
+  Terms across;
+  integrate(
+      [&](double u) {
+        return patch_terms(geometry_.jet(source, {patch, dvec2(u, t.y)}), sign);
+      },
+      base_, t.x, across_accuracy, across);
+  terms.add(dt.y, across);
+  return terms;
 }
 
-void MeasureSums::add_across(const RegionOutline& outline, const dvec2& t, double w) {
-  const int source = geometry_.hull().faces[to_size(outline.face)].source;
-  for_gauss_nodes<across_nodes>(base_, t.x, [&](double u, double wu) {
-    const SourceJet j = geometry_.jet(source, {outline.region->patch, dvec2(u, t.y)});
-    add_patch_element(j, outline.region->sign, w * wu);
-  });
-}
-
-void MeasureSums::add_patch_element(const SourceJet& j, int sign, double w) {
-  const dvec3 N = double(sign) * glm::cross(j.dx[0], j.dx[1]);
+Terms MeasureSums::patch_terms(const SourceJet& j, int sign) const {
+  Terms terms;
+  const dvec3 du = j.dx[0] / unit_;
+  const dvec3 dv = j.dx[1] / unit_;
+  const dvec3 N = double(sign) * glm::cross(du, dv);
   const double square = glm::dot(N, N);
-  if (square == 0) return;
-  sums_.volume += w * glm::dot(j.x - inside_, N) / 3;
-  sums_.area += w * std::sqrt(square);
-  sums_.vector_area += w * N;
+  if (square == 0) return terms;
+  terms.value[volume] = glm::dot(placed(j.x), N) / 3;
+  terms.value[area] = std::sqrt(square);
+  add_vector_area(terms, N);
   // H dA = (E n - 2 F m + G l) / (2 |N|^2), l = -Suu . N / |N| and so on: positive where the
   // surface is convex (do Carmo 1976, section 3-3).
-  const double form = glm::dot(j.dx[0], j.dx[0]) * glm::dot(j.dyy, N) -
-                      2 * glm::dot(j.dx[0], j.dx[1]) * glm::dot(j.dxy, N) +
-                      glm::dot(j.dx[1], j.dx[1]) * glm::dot(j.dxx, N);
-  curvature_ -= w * form / (2 * square);
+  const double form = glm::dot(du, du) * glm::dot(j.dyy, N) -
+                      2 * glm::dot(du, dv) * glm::dot(j.dxy, N) +
+                      glm::dot(dv, dv) * glm::dot(j.dxx, N);
+  terms.value[curvature] = -form / unit_ / (2 * square);
+  return terms;
 }
 
 void MeasureSums::add_scroll(const Face& face, const std::vector<RulingInterval>& intervals) {
   for (const RulingInterval& interval : intervals) {
-    for_gauss_nodes<along_nodes>(0, 1,
-                                 [&](double s, double w) { add_scroll_element(interval, s, w); });
+    see(interval);
+    for (const RulingPanel& panel : interval.panels) {
+      add(panel.from, panel.to,
+          [&](double s) { return scroll_terms(interval, panel.at(s, fit_)); });
+    }
   }
   if (face.rulings.empty()) return;
   const HullDocument::Ruling& first = face.rulings.front();
@@ -289,74 +338,87 @@ void MeasureSums::add_scroll(const Face& face, const std::vector<RulingInterval>
 }
 
 /// Along it, contact 0 has the scroll to the left. x = a + t (b - a), x_s x x_t is outward.
-void MeasureSums::add_scroll_element(const RulingInterval& interval, double s, double w) {
-  const RulingState value = interval.value(s);
-  const RulingState slope = interval.slope(s);
+Terms MeasureSums::scroll_terms(const RulingInterval& interval,
+                                const std::array<RulingState, 2>& at) const {
+  const auto& [value, slope] = at;
   std::array<dvec3, 2> x, dx;
   for (std::size_t k = 0; k < 2; ++k) {
     const SourceJet j = geometry_.jet(interval.source[k], {interval.patch[k], value.t[k]});
-    x[k] = j.x - inside_;
-    dx[k] = slope.t[k].x * j.dx[0] + slope.t[k].y * j.dx[1];
+    x[k] = placed(j.x);
+    dx[k] = (slope.t[k].x * j.dx[0] + slope.t[k].y * j.dx[1]) / unit_;
   }
   const dvec3 n = unit(value.n);
   const dvec3 d = x[1] - x[0];
   const dvec3 A = glm::cross(0.5 * (dx[0] + dx[1]), d);
-  sums_.volume += w * glm::dot(x[0], A) / 3;
-  sums_.area += w * glm::dot(n, A);
-  sums_.vector_area += w * A;
-  curvature_ += 0.5 * w * glm::length(d) * glm::length(slope.n - glm::dot(slope.n, n) * n);
-  add_outline(x[0], dx[0], n, w);
-  add_outline(x[1], -dx[1], n, w);
+  Terms terms;
+  terms.value[volume] = glm::dot(x[0], A) / 3;
+  terms.value[area] = glm::dot(n, A);
+  add_vector_area(terms, A);
+  terms.value[curvature] = 0.5 * glm::length(d) * glm::length(slope.n - glm::dot(slope.n, n) * n);
+  terms.add(1, outline_terms(x[0], dx[0], n));
+  terms.add(1, outline_terms(x[1], -dx[1], n));
+  return terms;
 }
 
 /// The last ruling from contact 0 to contact 1, the first one back.
 void MeasureSums::add_end(const HullDocument::Ruling& ruling, bool last) {
   const dvec3 a = from_inside(ruling.a.p);
   const dvec3 side = from_inside(ruling.b.p) - a;
-  for_gauss_nodes<across_nodes>(0, 1, [&](double t, double w) {
-    add_outline(a + t * side, last ? side : -side, ruling.n, w);
-  });
+  add(0, 1, [&](double t) { return outline_terms(a + t * side, last ? side : -side, ruling.n); });
 }
 
 void MeasureSums::add_facet(const Face& face) {
-  dvec3 area(0.0);
-  for (const DirectedCurve& c : face.outline) area += facet_side(c, face.normal);
-  const double size = glm::dot(area, face.normal);
-  sums_.area += size;
-  sums_.vector_area += size * face.normal;
+  Terms sides;
+  for (const DirectedCurve& c : face.outline) sides.add(1, facet_side(c, face.normal));
+  const auto along_normal = [&](const std::array<double, term_count>& terms) {
+    return glm::dot(dvec3(terms[area_x], terms[area_y], terms[area_z]), face.normal);
+  };
+  Terms whole;
+  whole.value[area] = along_normal(sides.value);
+  whole.error[area] = sides.error[area_x] + sides.error[area_y] + sides.error[area_z];
+  add_vector_area(whole, whole.value[area] * face.normal);
+  whole.value[curvature] = sides.value[curvature];
+  whole.error[curvature] = sides.error[curvature];
   if (!face.boundary.empty()) {
-    sums_.volume += size * glm::dot(from_inside(face.boundary[0]), face.normal) / 3;
+    const double height = glm::dot(from_inside(face.boundary[0]), face.normal);
+    whole.value[volume] = whole.value[area] * height / 3;
+    whole.error[volume] = whole.error[area] * std::abs(height) / 3;
   }
+  sums_.add(1, whole);
 }
 
-/// Its share of the facet's vector area: along the model's edge between points of it, else along
-/// what is interpolated.
-dvec3 MeasureSums::facet_side(const DirectedCurve& side, const dvec3& normal) {
+/// Its share of the facet's vector area, and its outline: along the model's edge between points of
+/// it, else along what is interpolated.
+Terms MeasureSums::facet_side(const DirectedCurve& side, const dvec3& normal) {
   const HullDocument::Curve& curve = geometry_.hull().curves[to_size(side.first)];
   std::vector<dvec3> points = curve.points;
   for (dvec3& p : points) p = from_inside(p);
   if (side.second < 0) std::reverse(points.begin(), points.end());
-  const SmoothLine line(points, window_);
-  dvec3 area(0.0);
-  const auto add = [&](const dvec3& x, const dvec3& dx, double w) {
-    area += 0.5 * w * glm::cross(x, dx);
-    add_outline(x, dx, normal, w);
+  const SmoothLine line(points, window(fit_));
+  Terms sum;
+  const auto terms_at = [&](const dvec3& x, const dvec3& dx) {
+    Terms terms = outline_terms(x, dx, normal);
+    add_vector_area(terms, 0.5 * glm::cross(x, dx));
+    return terms;
   };
   for (std::size_t k = 0; k < line.segments(); ++k) {
-    if (const auto on_edge = edge_between(curve, line.point(k), line.point(k + 1))) {
-      for_gauss_nodes<across_nodes>(on_edge->from, on_edge->to, [&](double t, double w) {
+    const auto on_edge = edge_between(curve, line.point(k), line.point(k + 1));
+    if (on_edge) {
+      const auto along_edge = [&](double t) {
         const SourceJet j = geometry_.jet(curve.source, {on_edge->patch, dvec2(t, 0)});
-        add(j.x - inside_, j.dx[0], w);
-      });
+        return terms_at(placed(j.x), j.dx[0] / unit_);
+      };
+      integrate(along_edge, on_edge->from, on_edge->to, along_accuracy, sum);
       continue;
     }
     interpolated_ = interpolated_ || line.segments() > 1;
-    for_gauss_nodes<across_nodes>(line.from(k), line.to(k), [&](double s, double w) {
+    const auto along_line = [&](double s) {
       const auto [x, dx] = line.at(k, s);
-      add(x, dx, w);
-    });
+      return terms_at(x, dx);
+    };
+    integrate(along_line, line.from(k), line.to(k), along_accuracy, sum);
   }
-  return area;
+  return sum;
 }
 
 /// The part of one of an edge's Bezier curves between two points, if both lie on it.
@@ -367,11 +429,12 @@ std::optional<MeasureSums::EdgePart> MeasureSums::edge_between(const HullDocumen
   if (geometry_.source(curve.source).kind != SourceKind::edge) return std::nullopt;
   const double near = geometry_.noise() * geometry_.hull().diagonal;
   const int pieces = int(geometry_.source(curve.source).patches.size());
+  const auto local = [&](const dvec3& x) { return unit_ * x + inside_; };
   for (int i = 0; i < pieces; ++i) {
     const auto jet = [&](double t) { return geometry_.jet(curve.source, {i, dvec2(t, 0)}); };
-    const ClosestOnCurve from = closest_on_curve(p + inside_, 0, 1, jet);
+    const ClosestOnCurve from = closest_on_curve(local(p), 0, 1, jet);
     if (!(from.distance <= near)) continue;
-    const ClosestOnCurve to = closest_on_curve(q + inside_, 0, 1, jet);
+    const ClosestOnCurve to = closest_on_curve(local(q), 0, 1, jet);
     if (to.distance <= near && from.s != to.s) return EdgePart{i, from.s, to.s};
   }
   return std::nullopt;
@@ -381,15 +444,15 @@ std::optional<MeasureSums::EdgePart> MeasureSums::edge_between(const HullDocumen
 
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
                          const Progress& progress) {
-  MeasureSums sums(geometry, outlines, best_window);
+  MeasureSums sums(geometry, outlines, Fit::best);
   DocumentMeasures best = sums.run(progress);
   if (!sums.interpolated()) return best;
-  const DocumentMeasures worse = MeasureSums(geometry, outlines, worse_window).run(progress);
+  const DocumentMeasures worse = MeasureSums(geometry, outlines, Fit::worse).run(progress);
   // Where the curve is not as smooth as the polynomials suppose, both err by as much.
   constexpr double safety = 2;
-  best.interpolation = safety * std::max({std::abs(worse.volume / best.volume - 1),
-                                          std::abs(worse.area / best.area - 1),
-                                          std::abs(worse.mean_width / best.mean_width - 1)});
+  best.error += safety * std::max({std::abs(worse.volume / best.volume - 1),
+                                   std::abs(worse.area / best.area - 1),
+                                   std::abs(worse.mean_width / best.mean_width - 1)});
   return best;
 }
 

@@ -13,14 +13,15 @@ struct DocumentMeasures {
   double mean_width = 0;
   /// Integral of the outward unit normal over all faces: zero if they make up a closed surface.
   dvec3 vector_area = dvec3(0.0);
-  /// Estimated relative error from interpolating curves between their points: twice what cubic
-  /// polynomials instead would change.
-  double interpolation = 0;
+  /// Estimated relative error of volume, area and mean width: of the quadrature, and of curves that
+  /// are interpolated, twice what worse polynomials would change.
+  double error = 0;
 };
 
 /// By integrals over all faces: patches by Green's theorem in their parameters, scrolls along their
-/// rulings and facets along their edges, to some 1e-12. Of other curves about facets only points
-/// are known: these, and patches along them, are by polynomials of degree five through the points.
+/// rulings and facets along their edges, bisected until they are known to some 1e-13. Of other
+/// curves about facets only points are known: these, and patches along them, are by polynomials of
+/// degree five through the points.
 ///
 /// The mean width is total mean curvature over 2 pi. Creases have their share of it: the outline of
 /// each face counts with the angle between the face's normal and the direction from a point inside

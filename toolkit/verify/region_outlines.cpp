@@ -8,7 +8,7 @@
 namespace taut {
 namespace {
 
-/// Pieces that an interval of a track is refined into.
+/// Pieces that an interval of a track is refined into, times its panels.
 constexpr int track_pieces = 4;
 
 /// Nearer to an outline than this share of a Bezier patch's parameters nothing can be told: where
@@ -120,12 +120,13 @@ void RegionOutline::refine(const DocumentGeometry& geometry, int source) {
         continue;
       }
       dvec2 from = stretch.from;
-      for (int i = 1; i <= track_pieces; ++i) {
-        const double s = double(i) / track_pieces;
-        const dvec2 to = i == track_pieces ? stretch.to : on_track(stretch, s);
-        const dvec2 middle = on_track(stretch, s - 0.5 / track_pieces);
+      const int pieces = track_pieces * int(stretch.interval->panels.size());
+      for (int i = 1; i <= pieces; ++i) {
+        const double s = double(i) / pieces;
+        const dvec2 to = i == pieces ? stretch.to : on_track(stretch, s);
+        const dvec2 middle = on_track(stretch, s - 0.5 / pieces);
         const double sagitta = glm::length((middle - 0.5 * (from + to)) / size_);
-        double slack = 2 * sagitta + near_outline + untold(stretch, s - 0.5 / track_pieces);
+        double slack = 2 * sagitta + near_outline + untold(stretch, s - 0.5 / pieces);
         if (!stretch.interval->solved) slack += near_guess * glm::length((to - from) / size_);
         pieces_.push_back({from, to, slack});
         from = to;
@@ -140,10 +141,9 @@ void RegionOutline::refine(const DocumentGeometry& geometry, int source) {
   }
 }
 
-DocumentOutlines::DocumentOutlines(const DocumentGeometry& geometry, const ContactSystem& system)
-    : geometry_(geometry) {
+DocumentOutlines::DocumentOutlines(const DocumentGeometry& geometry) : geometry_(geometry) {
   const HullDocument& hull = geometry.hull();
-  const DocumentRulings rulings(geometry, system);
+  const DocumentRulings rulings(geometry);
   intervals_.reserve(hull.faces.size());
   for (const HullDocument::Face& face : hull.faces) intervals_.push_back(rulings.intervals(face));
   add_tracks(geometry);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "taut/verify/document_rulings.h"
@@ -62,7 +63,7 @@ class RegionOutline {
 /// All scrolls' intervals and all regions' outlines of a document.
 class DocumentOutlines {
  public:
-  DocumentOutlines(const DocumentGeometry& geometry, const ContactSystem& system);
+  explicit DocumentOutlines(const DocumentGeometry& geometry);
   DocumentOutlines(const DocumentOutlines&) = delete;
   DocumentOutlines& operator=(const DocumentOutlines&) = delete;
 

@@ -259,9 +259,7 @@ void HullVerifier::check_faces() {
   for (std::size_t i = 0; i < hull_.sources.size(); ++i) {
     place_of_source_[hull_.sources[i].id] = int(i);
   }
-  const ContactGeometry contacts(scene_, options_.progress.stop);
-  const ContactSystem system(contacts);
-  const DocumentOutlines outlines(geometry_, system);
+  const DocumentOutlines outlines(geometry_);
   std::vector<Claim> claims;
   add_listed_claims(claims);
   add_claims_between(outlines, claims);
@@ -276,7 +274,7 @@ void HullVerifier::check_faces() {
   if (hull_.dimension == 3) {
     measures = measure(geometry_, outlines, options_.progress);
     raise(result_.vector_area, glm::length(measures->vector_area) / measures->area);
-    raise(result_.interpolation, measures->interpolation);
+    raise(result_.measures_error, measures->error);
     if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
     raise(result_.patch_outside, check_patches(geometry_, outlines, scene_, options_, faults_));
     options_.progress.update("verify", 0.8);
@@ -306,12 +304,15 @@ void HullVerifier::add_claims_between(const DocumentOutlines& outlines,
                                       std::vector<Claim>& claims) const {
   for (const std::vector<RulingInterval>& intervals : outlines.intervals()) {
     for (const RulingInterval& interval : intervals) {
-      // The first two are listed.
-      for (std::size_t i = 2; interval.solved && i < interval.states().size(); ++i) {
-        const RulingState& state = interval.states()[i];
-        for (std::size_t k = 0; k < 2; ++k) {
-          const SourceJet j = geometry_.jet(interval.source[k], {interval.patch[k], state.t[k]});
-          claims.push_back({state.n, glm::dot(j.x, state.n)});
+      for (const RulingPanel& panel : interval.panels) {
+        if (!interval.solved) break;
+        // The first and the last one of the interval are listed.
+        for (std::size_t i = 1; i < panel.nodes().size() && panel.nodes()[i] < 1; ++i) {
+          const RulingState& state = panel.states()[i];
+          for (std::size_t k = 0; k < 2; ++k) {
+            const SourceJet j = geometry_.jet(interval.source[k], {interval.patch[k], state.t[k]});
+            claims.push_back({state.n, glm::dot(j.x, state.n)});
+          }
         }
       }
     }
@@ -419,7 +420,7 @@ double HullVerification::worst_length() const {
 }
 
 bool HullVerification::closes_up(double relative) const {
-  return vector_area <= std::max(relative, measure_accuracy) + rounding + interpolation;
+  return vector_area <= std::max(relative, measure_accuracy) + rounding + measures_error;
 }
 
 bool HullVerification::has_width(double relative) const {

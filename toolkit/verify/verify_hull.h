@@ -46,8 +46,8 @@ struct HullVerification {
   /// over the faces from that by support queries; of hulls of dimension 3.
   double vector_area = 0;
   double mean_width_error = 0;
-  /// What interpolating the curves of facets may do to these.
-  double interpolation = 0;
+  /// How well the integrals over the faces are known, as far as one can tell.
+  double measures_error = 0;
   /// How well that many queries tell it.
   double mean_width_accuracy = 0;
   /// The document's numbers are finite and its sources are the model's, else nothing was looked at
