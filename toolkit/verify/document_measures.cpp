@@ -206,9 +206,7 @@ Terms MeasureSums::outline_terms(const dvec3& x, const dvec3& dx, const dvec3& n
   if (speed == 0) return terms;
   const dvec3 along = dx / speed;
   const dvec3 outward = x - glm::dot(x, along) * along;
-  // On a convex hull every face has the inside below it.
-  const double above = glm::dot(n, outward);
-  const double angle = above > 0 ? std::atan(glm::dot(n, glm::cross(outward, along)) / above) : 0;
+  const double angle = std::atan2(glm::dot(n, glm::cross(outward, along)), glm::dot(n, outward));
   terms.value[curvature] = 0.5 * speed * angle;
   terms.value[outline_length] = speed;
   return terms;

@@ -112,7 +112,11 @@ std::vector<Check> checks(const HullVerification& found, double relative) {
                                           "no_vector_area", "width"};
   for (Check& check : all) {
     check.made = found.comparable || !of_model.contains(check.key);
-    if (std::string(check.key) == "width") check.accuracy = found.mean_width_accuracy;
+    const std::string key = check.key;
+    if (key == "width") check.accuracy = found.mean_width_accuracy;
+    if (key == "no_vector_area" && found.measures_error > relative) {
+      check.accuracy = found.measures_error;
+    }
   }
   return all;
 }
