@@ -78,6 +78,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
                    std::shared_ptr<const HullBoundary> boundary, const HullOptions& options,
                    std::vector<Sample>* strays) {
   const Stopwatch time;
+  options.progress.update("sample", 0);
   const double tolerance = tolerance_for(options, scene.diagonal());
   const ContactFaces faces(geometry, *boundary);
   const double width =

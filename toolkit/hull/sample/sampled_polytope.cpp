@@ -322,6 +322,7 @@ SampledPolytope Sampler::result() {
 
 SampledPolytope Sampler::run(std::vector<Sample> samples, const std::vector<dvec3>& points) {
   const Stopwatch start_time;
+  options_.progress.update("sample", 0);
   begin(std::move(samples), points);
   const char* failure = nullptr;
   while (failure == nullptr) {
