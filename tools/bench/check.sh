@@ -72,8 +72,8 @@ compare() {
       if (!((run, stage) in before)) return "new"
       ratio = now[run, stage] / before[run, stage]
       if (!told(run, stage) || (ratio <= 1.1 && ratio >= 1 / 1.1)) return ""
-      if (ratio < 1) { ++faster; return "faster" }
-      ++slower
+      if (ratio < 1) { faster = faster "; " run " " stage; return "faster" }
+      slower = slower "; " run " " stage
       return "SLOWER"
     }
     END {
@@ -88,8 +88,9 @@ compare() {
           printf form, runs[r], stage[k], b, n, b && n ? sprintf("%.3f", n / b) : "", said
         }
       }
-      printf "== changed by more than a tenth: %d slower, %d faster\n", slower, faster
-      exit (slower > 0)
+      print "== faster by more than a tenth: " (faster ? substr(faster, 3) : "none")
+      print "== slower by more than a tenth: " (slower ? substr(slower, 3) : "none")
+      exit (slower != "")
     }' "$1" "$2"
 }
 
