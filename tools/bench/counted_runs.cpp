@@ -148,6 +148,7 @@ void blob() {
 void points(int count, bool on_sphere) {
   Random random(1);
   std::vector<dvec3> all;
+  all.reserve(std::size_t(count));
   for (int k = 0; k < count; ++k) all.push_back(on_sphere ? random.direction() : random.point());
   stage_begins("build");
   Part part;
