@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guards speed: counts the instructions of counted_runs, by stage, and says which changed by more
-# than a tenth since reference.txt was written. About five minutes on two cores.
+# than a tenth since reference.txt was written. About three minutes on two cores, after the build.
 #   tools/bench/check.sh              all runs; exits 1 if something got slower
 #   tools/bench/check.sh teapot blob  these alone
 #   tools/bench/check.sh --update     writes reference.txt anew

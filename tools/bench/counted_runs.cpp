@@ -139,6 +139,7 @@ void cage() {
   precise(model_of(std::move(part)));
 }
 
+/// A closed smooth body with dents, in general position: blob(1) of tests/models.h, written out.
 void blob() {
   Model model;
   read_model(TAUT_SOURCE_DIR "/tools/bench/blob.taut.json", model);
