@@ -10,6 +10,16 @@ fail() {
   exit 1
 }
 
+# timed WHAT COMMAND...: runs it and says how long that took; its exit status.
+timed() {
+  local what=$1 begin=$SECONDS status=0
+  shift
+  say "$what"
+  "$@" || status=$?
+  say "$what: $( ((status == 0)) && echo passed || echo FAILED) in $((SECONDS - begin)) s"
+  return $status
+}
+
 # taut_setup GROUP...: installs those packages of the groups that are missing.
 taut_setup() {
   local group package purpose wanted missing=()

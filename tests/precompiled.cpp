@@ -1,0 +1,1 @@
+// The headers of precompiled.h are compiled with this file.
