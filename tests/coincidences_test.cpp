@@ -1,4 +1,4 @@
-#include "taut/hull/contact/coincidences.h"
+#include "taut/bounds/coincidences.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "models.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_geometry.h"
 
 namespace taut {
 namespace {

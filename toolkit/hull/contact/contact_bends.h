@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 
 namespace taut {
 

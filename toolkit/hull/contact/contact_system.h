@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull.h"
 #include "taut/hull/result/hull_options.h"
 #include "taut/hull/result/sample.h"

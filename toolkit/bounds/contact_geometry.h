@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <vector>
 
+#include "taut/bounds/coincidences.h"
 #include "taut/bounds/scene.h"
-#include "taut/hull/contact/coincidences.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/coincidences.h"
+#include "taut/bounds/coincidences.h"
 
 #include <algorithm>
 #include <cmath>
