@@ -4,8 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/in_line_contacts.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/planar/planar_hull.h"

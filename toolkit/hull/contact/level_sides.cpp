@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
+
 namespace taut {
 namespace {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "taut/bounds/poles.h"
 #include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
 
 namespace taut {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/contact/rulings_between.h"
 

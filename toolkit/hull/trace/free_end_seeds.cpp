@@ -2,7 +2,9 @@
 
 #include <array>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/trace/partings.h"
 
 namespace taut {

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/parabolic_sides.h"

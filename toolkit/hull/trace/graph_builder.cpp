@@ -4,7 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/trace/arc_tracer.h"

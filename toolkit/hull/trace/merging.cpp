@@ -5,9 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/trace/arc_pieces.h"

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/trace/level_way.h"
 #include "taut/surface/flatness.h"
 

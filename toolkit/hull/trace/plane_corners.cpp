@@ -3,7 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 namespace {

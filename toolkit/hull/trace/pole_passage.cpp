@@ -4,9 +4,15 @@
 #include <array>
 #include <cmath>
 
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/trace/plane_corners.h"
 

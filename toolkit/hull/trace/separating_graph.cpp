@@ -8,9 +8,10 @@
 #include <set>
 #include <span>
 
+#include "taut/bounds/contact_forms.h"
 #include "taut/bounds/scene_content.h"
-#include "taut/hull/contact/contact_exits.h"
 #include "taut/hull/contact/contact_planes.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/in_line_contacts.h"
 #include "taut/hull/contact/level_sides.h"

@@ -9,7 +9,10 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/trace/merging.h"
 
 namespace taut {
