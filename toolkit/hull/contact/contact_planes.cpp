@@ -138,7 +138,7 @@ void PlaneFinder::put_into(Candidate& plane, const Candidate& own) {
   plane.points.insert(plane.points.end(), own.points.begin(), own.points.end());
   plane.pieces.push_back(own.pieces.front());
   FittedPlane wider(plane.points);
-  if (glm::dot(wider.n, plane.plane.n) < 0) wider.n = -wider.n;
+  wider.n = aligned(wider.n, plane.plane.n);
   plane.plane = wider;
 }
 

@@ -56,8 +56,7 @@ std::optional<CommonSupport> parted(const ContactSystem& system, SupportQuery& q
     const auto c = moved(geometry, end.contact, middle + sense * length * end.along);
     if (!c) return std::nullopt;
     s.add(geometry, *c);
-    const dvec3 normal = unit_normal(geometry, *c);
-    s.n += glm::dot(normal, end.n) < 0 ? -normal : normal;
+    s.n += aligned(unit_normal(geometry, *c), end.n);
   }
   s.n = glm::normalize(s.n);
   const dvec3 x = geometry.point(end.contact);
