@@ -275,10 +275,8 @@ class Climb {
 
 }  // namespace
 
-std::optional<Contact> climbed(const ContactGeometry& geometry, Contact c, const dvec3& n) {
-  c.u = std::clamp(c.u, 0.0, 1.0);
-  c.v = std::clamp(c.v, 0.0, 1.0);
-  return Climb(geometry, geometry.canonical(c), n).run();
+std::optional<Contact> climbed(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
+  return Climb(geometry, geometry.canonical(clamped(c)), n).run();
 }
 
 std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,

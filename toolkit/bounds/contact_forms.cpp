@@ -8,6 +8,12 @@
 
 namespace taut {
 
+Contact clamped(Contact c) {
+  c.u = std::clamp(c.u, 0.0, 1.0);
+  c.v = std::clamp(c.v, 0.0, 1.0);
+  return c;
+}
+
 Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
   Contact own = geometry.canonical(c);
   const auto move_to_end = [&](const Contact& low, const Contact& high) {

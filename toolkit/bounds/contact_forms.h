@@ -4,6 +4,9 @@
 
 namespace taut {
 
+/// The contact with its parameters moved into [0, 1], where they have left that.
+Contact clamped(Contact c);
+
 /// The contact in its canonical form where it supports in the direction n; inside of a straight
 /// edge or of a ruled patch, which support only together with the ends of the segments in them, the
 /// higher of these ends.

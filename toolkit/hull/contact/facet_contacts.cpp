@@ -36,12 +36,6 @@ bool in_range(const Contact& c) {
   return within(c.u) && within(c.v);
 }
 
-Contact clamped(Contact c) {
-  c.u = std::clamp(c.u, 0.0, 1.0);
-  c.v = std::clamp(c.v, 0.0, 1.0);
-  return c;
-}
-
 /// Corners of facets are on a border or at a vertex that is no farther: Newton's method leaves them
 /// so near to it.
 constexpr double corner_distance = 1e-9;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_bends.h"
@@ -54,12 +55,6 @@ constexpr double pole_distance = 1e-6;
 constexpr std::array<double, 9> plane_places = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
 /// Elements over a border that is no farther are searched too.
 constexpr double beside_border = 0.1;
-
-Contact clamped(Contact c) {
-  c.u = std::clamp(c.u, 0.0, 1.0);
-  c.v = std::clamp(c.v, 0.0, 1.0);
-  return c;
-}
 
 double distance_from(const Contact& c, Side side) {
   const double t = along_v(side) ? c.u : c.v;
