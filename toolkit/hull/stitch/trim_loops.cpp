@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "taut/bounds/supporting_plane.h"
 #include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
@@ -396,7 +397,7 @@ void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
     if (geometry_.is_ruled(c) || geometry_.is_repeated(c)) continue;
     const ContactJet j = geometry_.jet(c);
     const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-    if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + geometry_.tie()) continue;
+    if (n == dvec3(0.0) || !is_supporting(geometry_, query_, n, glm::dot(j.x, n), c)) continue;
     const double uv = glm::dot(j.dxy, n);
     const double det = glm::dot(j.dxx, n) * glm::dot(j.dyy, n) - uv * uv;
     const double size = glm::length(j.dx[0]) * glm::length(j.dx[1]);

@@ -8,6 +8,7 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
+#include "taut/bounds/supporting_plane.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_bends.h"
 #include "taut/hull/contact/facet_contacts.h"
@@ -478,8 +479,10 @@ void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
     return glm::distance(geometry_.point(other.contact), x) <= same_contact &&
            glm::distance(other.n, end->n) <= same_contact;
   });
-  if (known || query_(end->n, end->contact).h > glm::dot(x, end->n) + geometry_.tie()) return;
-  ends_.push_back(*end);
+  if (known) return;
+  if (is_supporting(geometry_, query_, end->n, glm::dot(x, end->n), end->contact)) {
+    ends_.push_back(*end);
+  }
 }
 
 /// The nets are those over the cell.
