@@ -17,6 +17,7 @@
 #include "taut/envelope/envelope_hull.h"
 #include "taut/envelope/envelope_picture.h"
 #include "taut/envelope/offscreen_canvas.h"
+#include "taut/envelope/trace_envelope.h"
 
 namespace {
 

@@ -27,6 +27,10 @@ struct CommonSupport {
   Ruling ruling() const;
 };
 
+/// Contacts nearer than this, in the scene's frame, are one. Two contacts of one direction that are
+/// so near are about to merge in a free end; they differ in height by the fourth power of it.
+inline constexpr double same_contact = 1e-7;
+
 /// One more equation, linearised: residual + n . dn + sum_i parameter[i] . d(u_i, v_i) = 0.
 struct LinearEquation {
   double residual = 0;

@@ -6,7 +6,6 @@
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/contact_system.h"
-#include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
 namespace {
