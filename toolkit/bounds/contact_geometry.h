@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "taut/bounds/coincidences.h"
+#include "taut/bounds/repeated_elements.h"
 #include "taut/bounds/scene.h"
 
 namespace taut {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "taut/bounds/poles.h"
-#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/local_curvature.h"
 
 namespace taut {
 namespace {

@@ -9,7 +9,7 @@
 #include "taut/bounds/patch_cell.h"
 #include "taut/bounds/reach_test.h"
 #include "taut/bounds/scene.h"
-#include "taut/hull/cull/concave_dome.h"
+#include "taut/hull/cull/convex_cap.h"
 
 namespace taut {
 

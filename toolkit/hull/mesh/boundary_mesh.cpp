@@ -8,8 +8,8 @@
 
 #include "taut/core/stopwatch.h"
 #include "taut/hull/mesh/boundary_samples.h"
+#include "taut/hull/mesh/constrained_edges.h"
 #include "taut/hull/mesh/contact_faces.h"
-#include "taut/hull/mesh/kept_chords.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_start.h"
 

@@ -8,8 +8,8 @@
 
 #include "taut/core/disjoint_sets.h"
 #include "taut/hull/stitch/boundary_closure.h"
-#include "taut/hull/stitch/crease_tracks.h"
 #include "taut/hull/stitch/curve_chains.h"
+#include "taut/hull/stitch/edge_incidence.h"
 #include "taut/hull/stitch/ruled_faces.h"
 #include "taut/hull/stitch/trim_stretches.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/edge_incidence.h"
 #include "taut/hull/stitch/trim_loops.h"
 
 namespace taut {

@@ -9,11 +9,11 @@
 #include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_bends.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/trace/plane_corners.h"
 
 namespace taut {

@@ -12,7 +12,7 @@
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
 #include "taut/hull/cull/concave_patch.h"
-#include "taut/hull/cull/fall_map.h"
+#include "taut/hull/cull/osculating_paraboloid.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/bounds/coincidences.h"
+#include "taut/bounds/repeated_elements.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/edge_incidence.h"
 
 #include <gtest/gtest.h>
 

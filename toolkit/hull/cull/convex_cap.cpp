@@ -1,4 +1,4 @@
-#include "taut/hull/cull/concave_dome.h"
+#include "taut/hull/cull/convex_cap.h"
 
 #include <algorithm>
 #include <array>

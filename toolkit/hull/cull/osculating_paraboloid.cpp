@@ -1,4 +1,4 @@
-#include "taut/hull/cull/fall_map.h"
+#include "taut/hull/cull/osculating_paraboloid.h"
 
 #include <cmath>
 

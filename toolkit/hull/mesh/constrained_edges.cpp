@@ -1,4 +1,4 @@
-#include "taut/hull/mesh/kept_chords.h"
+#include "taut/hull/mesh/constrained_edges.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/local_curvature.h"
 
 #include <gtest/gtest.h>
 
