@@ -25,7 +25,7 @@ std::optional<Contact> moved(const ContactGeometry& geometry, const Contact& c, 
   for (const ContactExit& exit : exits(geometry, c)) {
     const std::optional<Contact> over = beyond(geometry, c, exit);
     if (over && over->kind == SourceKind::face &&
-        glm::distance(geometry.point(*over), geometry.point(c)) < same_branch) {
+        glm::distance(geometry.point(*over), geometry.point(c)) < same_branch_distance) {
       elements.push_back(*over);
     }
   }

@@ -21,14 +21,15 @@ namespace {
 /// Halvings of a side after which a curve that Newton's method does not find is given up.
 constexpr int halving_limit = 36;
 
-struct Sighting {
+struct SupportSample {
   bool supports = false;
   dvec3 n = dvec3(0.0);  ///< zero where the patch has no normal
   Contact winner;
 };
 
 /// Whether the patch's point supports the model in the direction of its normal, or what does.
-Sighting looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c, int sign) {
+SupportSample looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c,
+                     int sign) {
   const dvec3 n = double(sign) * unit_normal(geometry, c);
   if (n == dvec3(0.0)) return {};
   const Support top = query(n, c);
@@ -45,7 +46,7 @@ class Lookout {
         query_(query),
         diameter_(geometry.scene().frame().length_to_frame(geometry.scene().diagonal())) {}
 
-  Sighting operator()(const Contact& c, int sign) {
+  SupportSample operator()(const Contact& c, int sign) {
     const dvec3 n = double(sign) * unit_normal(geometry_, c);
     if (n == dvec3(0.0)) return {};
     const dvec3 x = geometry_.point(c);
@@ -98,7 +99,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
                                            std::span<const CulledCell> cells) {
   using Place = std::tuple<int, double, double>;
   // Of the cells of one patch.
-  std::map<Place, Sighting> sightings;
+  std::map<Place, SupportSample> sightings;
   std::set<std::pair<Place, Place>> sides;
   std::pair<int, int> patch(-1, -1);
   Lookout look(geometry, query);
@@ -121,7 +122,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
       if (!(sign > 0 ? cell.signs.plus : cell.signs.minus)) continue;
       std::array<Contact, 4> contacts;
       std::array<Place, 4> places;
-      std::array<const Sighting*, 4> seen{};
+      std::array<const SupportSample*, 4> seen{};
       for (std::size_t k = 0; k < 4; ++k) {
         const dvec2& at = corners[k];
         contacts[k] = {cell.instance, SourceKind::face, cell.patch, at.x, at.y};
@@ -158,7 +159,7 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
   for (int k = 0; k < halving_limit; ++k) {
     Contact middle = on;
     middle.*free = 0.5 * (on.*free + beyond.off.*free);
-    const Sighting there = looked(geometry, query, middle, change.sign);
+    const SupportSample there = looked(geometry, query, middle, change.sign);
     if (there.n == dvec3(0.0)) return std::nullopt;
     if (there.supports) {
       on = middle;
