@@ -96,7 +96,7 @@ std::optional<dvec2> rate_along(const ContactGeometry& geometry, const Contact& 
     const dvec3 d = geometry.jet(c).dx[0];
     return dvec2(glm::dot(d, along) / glm::dot(d, d), 0);
   }
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   if (!b) return std::nullopt;
   return glm::dot(b->along, along) < 0 ? -b->rate : b->rate;
 }
