@@ -7,7 +7,7 @@
 namespace taut {
 
 /// The curvature of a surface at a point, and its change, up to third order, in the scene's frame:
-/// what tells where its parabolic curve runs and where on it the cusps of Gauss are.
+/// what tells where the surface's parabolic curve runs and where on it the cusps of Gauss are.
 struct SurfaceCurvature {
   dvec3 x = dvec3(0.0);
   /// Unit normal on the side from which the surface bends away most: the outward one wherever a
