@@ -95,7 +95,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
       start.faces.push_back(faces.touched(apart.samples[k].contact));
     }
   }
-  KeptChords chords(geometry, *boundary, faces, start.chords, width);
+  ConstrainedEdges chords(geometry, *boundary, faces, start.chords, width);
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);
   polytope.statistics.support_queries += query.queries();
