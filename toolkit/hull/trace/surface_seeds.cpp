@@ -99,7 +99,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
                                            std::span<const CulledCell> cells) {
   using Place = std::tuple<int, double, double>;
   // Of the cells of one patch.
-  std::map<Place, SupportSample> sightings;
+  std::map<Place, SupportSample> support_samples;
   std::set<std::pair<Place, Place>> sides;
   std::pair<int, int> patch(-1, -1);
   Lookout look(geometry, query);
@@ -107,7 +107,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
   for (const CulledCell& cell : cells) {
     if (patch != std::pair(cell.instance, cell.patch)) {
       patch = {cell.instance, cell.patch};
-      sightings.clear();
+      support_samples.clear();
       sides.clear();
     }
     if (cell.state != CellState::mixed ||
@@ -127,7 +127,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
         const dvec2& at = corners[k];
         contacts[k] = {cell.instance, SourceKind::face, cell.patch, at.x, at.y};
         places[k] = {sign, at.x, at.y};
-        const auto [found, is_new] = sightings.try_emplace(places[k]);
+        const auto [found, is_new] = support_samples.try_emplace(places[k]);
         if (is_new) found->second = look(contacts[k], sign);
         seen[k] = &found->second;
       }
