@@ -14,13 +14,13 @@ using namespace taut_test;  // NOLINT: models
 
 constexpr double width = 1e-6;
 
-/// Points of a part of space of this dimension, turned, some off it by less than half the width.
+/// Points of a part of space of this dimension, turned, some off it by less than a quarter of the width.
 std::vector<dvec3> spread(Random& random, int dimension) {
   const dmat3 turn = random_rotation(random);
   const dvec3 origin = random_point(random);
   std::vector<dvec3> points;
   for (int i = 0; i < 50; ++i) {
-    dvec3 p = 0.4 * width * random_direction(random);
+    dvec3 p = 0.2 * width * random_direction(random);
     for (int k = 0; k < dimension; ++k) p += uniform(random, -1, 1) * turn[k];
     points.push_back(origin + p);
   }

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/scene.h"
-#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut_test {

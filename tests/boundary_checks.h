@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "reference.h"
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull.h"
 
 namespace taut_test {

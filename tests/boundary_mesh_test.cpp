@@ -291,13 +291,13 @@ TEST(BoundaryMesh, FacetsWithCurvedSides) {
     const bool patches = boundary->count(FaceKind::patch) > 0;
     for (const double tolerance : {1e-3, patches ? 2e-4 : 1e-5}) {
       SCOPED_TRACE(testing::Message() << hull_of.name << " at " << tolerance);
-      std::vector<Sample> strays;
+      std::vector<Sample> uncovered_samples;
       const Hull hull =
           boundary_mesh(scene, geometry, boundary,
-                        {.relative = tolerance, .threads = 1, .progress = {}}, &strays);
+                        {.relative = tolerance, .threads = 1, .progress = {}}, &uncovered_samples);
       expect_certified(scene, hull, tolerance, hull_of.measures, 300);
       expect_labelled(hull);
-      EXPECT_TRUE(strays.empty());
+      EXPECT_TRUE(uncovered_samples.empty());
       EXPECT_LT(off_their_planes(scene, hull), 1e-14);
       const std::map<int, double> found = areas(hull);
       EXPECT_EQ(found.size(), hull_of.areas.size());

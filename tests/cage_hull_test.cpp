@@ -13,10 +13,10 @@
 
 #include "cages.h"
 #include "models.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/scene.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/io/document/boundary_document.h"

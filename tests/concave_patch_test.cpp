@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "models.h"
-#include "taut/hull/cull/concave_dome.h"
+#include "taut/hull/cull/convex_cap.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,12 @@
 
 #include "freeform.h"
 #include "models.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/bounds/support_query.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
 

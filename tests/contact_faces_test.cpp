@@ -74,7 +74,7 @@ TEST(ContactFaces, OfEdgesAreThoseOnBothSides) {
   SupportQuery query(known.scene);
   for (const double z : {1.0, -1.0}) {
     const Contact contact = query(unit(dvec3(0.6, 0.5, z))).contact;
-    ASSERT_EQ(contact.kind, SourceKind::edge);
+    ASSERT_EQ(known.scene.source(contact).kind, SourceKind::edge);
     const TouchedFaces touched = faces.touched(contact);
     ASSERT_EQ(touched.size(), 2U);
     EXPECT_TRUE(touches(touched, first_of(known.boundary, FaceKind::scroll)));

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 
 #include <gtest/gtest.h>
 

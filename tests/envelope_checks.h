@@ -12,7 +12,7 @@
 #include "models.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
-#include "taut/envelope/envelope_map.h"
+#include "taut/envelope/trace_envelope.h"
 #include "taut/hull/result/hull.h"
 
 namespace taut_test {

@@ -9,6 +9,7 @@
 #include "envelope_checks.h"
 #include "hull_checks.h"
 #include "taut/envelope/envelope_hull.h"
+#include "taut/envelope/trace_envelope.h"
 #include "taut/hull/precise_hull.h"
 #include "taut/io/model/read_model.h"
 

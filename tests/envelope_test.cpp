@@ -12,11 +12,12 @@
 #include "error_checks.h"
 #include "freeform.h"
 #include "hull_checks.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/core/error.h"
 #include "taut/envelope/envelope_hull.h"
 #include "taut/envelope/envelope_picture.h"
 #include "taut/envelope/offscreen_canvas.h"
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/envelope/trace_envelope.h"
 
 namespace {
 

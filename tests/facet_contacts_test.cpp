@@ -7,9 +7,11 @@
 #include <numbers>
 
 #include "models.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_exits.h"
 #include "taut/hull/contact/contact_planes.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 namespace {

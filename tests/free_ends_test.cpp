@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "models.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/subdivision/reparametrize.h"

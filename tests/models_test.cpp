@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_geometry.h"
 
 namespace taut {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "models.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
 #include "traced_scene.h"
 
 namespace taut {

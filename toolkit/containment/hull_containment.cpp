@@ -11,6 +11,7 @@
 #include "taut/containment/point_batches.h"
 #include "taut/containment/triangle_rays.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/sample/sampled_polytope.h"
 #include "taut/hull/sample/sampled_start.h"
 
 namespace taut {

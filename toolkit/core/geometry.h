@@ -49,6 +49,9 @@ double diagonal(const Box& box);
 /// The zero vector stays zero.
 dvec3 unit(const dvec3& v);
 
+/// The vector, or its opposite where the vector points against `side`.
+inline dvec3 aligned(const dvec3& v, const dvec3& side) { return glm::dot(v, side) < 0 ? -v : v; }
+
 /// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
 std::array<dvec3, 2> tangent_frame(const dvec3& n);
 

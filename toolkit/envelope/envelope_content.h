@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "taut/envelope/contact_climb.h"
+#include "taut/envelope/climbed_contact.h"
 #include "taut/envelope/envelope_images.h"
 #include "taut/envelope/gauss_triangles.h"
 #include "taut/envelope/offscreen_canvas.h"

@@ -11,6 +11,7 @@
 #include "taut/envelope/envelope_content.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_hull.h"
+#include "taut/hull/sample/sampled_polytope.h"
 #include "taut/hull/sample/sampled_start.h"
 
 namespace taut {

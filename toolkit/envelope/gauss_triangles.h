@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/cull/culling.h"
 
 namespace taut {

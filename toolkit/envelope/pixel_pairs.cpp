@@ -63,8 +63,7 @@ dvec3 plane_normal(const std::vector<ClimbedContact>& contacts, const dvec3& n) 
     const dvec3& b = contacts[(k + 1) % contacts.size()].x - contacts[0].x;
     sum += glm::cross(a, b);
   }
-  const dvec3 normal = unit(sum);
-  return glm::dot(normal, n) < 0 ? -normal : normal;
+  return aligned(unit(sum), n);
 }
 
 EnvelopeTriplePoint triple_point(const EnvelopeImages::Content& content, const dvec3& n,

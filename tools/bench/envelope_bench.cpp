@@ -10,6 +10,7 @@
 
 #include "taut/envelope/envelope_hull.h"
 #include "taut/envelope/offscreen_canvas.h"
+#include "taut/envelope/trace_envelope.h"
 #include "teapot.h"
 
 namespace {

@@ -8,8 +8,8 @@
 #include "input.h"
 #include "output.h"
 #include "taut/envelope/envelope_images.h"
-#include "taut/envelope/envelope_map.h"
 #include "taut/envelope/envelope_picture.h"
+#include "taut/envelope/trace_envelope.h"
 #include "taut/hull/convex_hull.h"
 #include "text.h"
 

@@ -13,6 +13,7 @@
 #include "output.h"
 #include "standard_input.h"
 #include "taut/envelope/envelope_hull.h"
+#include "taut/envelope/trace_envelope.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/polyhedral/polyhedral_hull.h"
 #include "taut/hull/precise_hull.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/bounds/supporting_plane.h"
 #include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
@@ -95,7 +96,7 @@ class PlaneFinder {
     const double highest = c.offset() + geometry_.tie() + slack;
     const bool is_below = std::any_of(sampled_.begin(), sampled_.end(),
                                       [&](const dvec3& x) { return glm::dot(x, n) > highest; });
-    return !is_below && query_(n, c.pieces.front()).h <= highest;
+    return !is_below && is_supporting(geometry_, query_, n, c.offset(), c.pieces.front(), slack);
   }
 
   const ContactGeometry& geometry_;
@@ -138,7 +139,7 @@ void PlaneFinder::put_into(Candidate& plane, const Candidate& own) {
   plane.points.insert(plane.points.end(), own.points.begin(), own.points.end());
   plane.pieces.push_back(own.pieces.front());
   FittedPlane wider(plane.points);
-  if (glm::dot(wider.n, plane.plane.n) < 0) wider.n = -wider.n;
+  wider.n = aligned(wider.n, plane.plane.n);
   plane.plane = wider;
 }
 

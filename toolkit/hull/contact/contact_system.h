@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
@@ -26,6 +26,10 @@ struct CommonSupport {
   dvec3 d() const { return jet[0].x - jet[1].x; }
   Ruling ruling() const;
 };
+
+/// Contacts nearer than this, in the scene's frame, are one. Two contacts of one direction that are
+/// so near are about to merge in a free end; they differ in height by the fourth power of it.
+inline constexpr double same_contact = 1e-7;
 
 /// One more equation, linearised: residual + n . dn + sum_i parameter[i] . d(u_i, v_i) = 0.
 struct LinearEquation {

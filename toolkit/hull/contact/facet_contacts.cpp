@@ -4,8 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/in_line_contacts.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/planar/planar_hull.h"
@@ -31,12 +34,6 @@ constexpr double parameter_slack = 1e-9;
 bool in_range(const Contact& c) {
   const auto within = [](double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; };
   return within(c.u) && within(c.v);
-}
-
-Contact clamped(Contact c) {
-  c.u = std::clamp(c.u, 0.0, 1.0);
-  c.v = std::clamp(c.v, 0.0, 1.0);
-  return c;
 }
 
 /// Corners of facets are on a border or at a vertex that is no farther: Newton's method leaves them

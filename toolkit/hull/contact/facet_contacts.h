@@ -8,9 +8,6 @@
 
 namespace taut {
 
-/// Contacts nearer than this, in the scene's frame, are one. Two contacts of one direction that are
-/// so near are about to merge in a free end; they differ in height by the fourth power of it.
-inline constexpr double same_contact = 1e-7;
 /// Normals of facets are the same below this difference.
 inline constexpr double same_plane = 1e-7;
 

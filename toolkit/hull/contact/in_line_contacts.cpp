@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact/contact_exits.h"
-#include "taut/hull/contact/facet_contacts.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 namespace {

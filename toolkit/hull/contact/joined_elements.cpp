@@ -1,9 +1,10 @@
 #include "taut/hull/contact/joined_elements.h"
 
 #include <algorithm>
-#include <optional>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 
 namespace taut {
 namespace {
@@ -41,6 +42,43 @@ std::vector<Contact> about(const ContactGeometry& geometry, const Contact& c) {
     }
   }
   return found;
+}
+
+std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
+                                    const Contact& other) {
+  if (c.instance != other.instance) return std::nullopt;
+  if (same_element(c, other)) return turned_to(geometry, c, other);
+  const auto found = [&](const std::optional<Contact>& next) {
+    const bool own = next && same_element(*next, other);
+    return own ? std::optional(turned_to(geometry, *next, other)) : std::nullopt;
+  };
+  if (c.kind == SourceKind::vertex) {
+    for (const ContactGeometry::PieceEnd& end : geometry.ends(c)) {
+      const Contact at = piece_end(c, end);
+      if (const auto next = found(at)) return next;
+      if (const auto next = found(expressed_in(geometry, at, other))) return next;
+    }
+    if (other.kind != SourceKind::face) return std::nullopt;
+    for (const Side side : all_sides) {
+      if (geometry.patch(other).borders[std::size_t(side)].vertex != c.element) continue;
+      return on_side(c.instance, other.element, side, along_v(side) ? other.v : other.u);
+    }
+    const std::array<int, 4>& corners = geometry.patch(other).corner_vertex;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (corners[k] != c.element) continue;
+      return Contact{c.instance, other.kind, other.element, k < 2 ? 0.0 : 1.0,
+                     k % 2 == 0 ? 0.0 : 1.0};
+    }
+    return std::nullopt;
+  }
+  for (const ContactExit& exit : exits(geometry, c)) {
+    if (!stands_at(c, exit)) continue;
+    if (const auto next = found(beyond(geometry, c, exit))) return next;
+  }
+  for (const Contact& at : about(geometry, c)) {
+    if (const auto next = found(at)) return next;
+  }
+  return std::nullopt;
 }
 
 bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b) {

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 
 namespace taut {
 
 /// The contact, and the same point in all other elements of its kind of which it is on a border,
 /// as far as one goes on smoothly into the next.
 std::vector<Contact> about(const ContactGeometry& geometry, const Contact& c);
+
+/// The point of `c` as a contact of the element of `other`, in whose border it lies, turned to
+/// `other`. None if it does not.
+std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
+                                    const Contact& other);
 
 /// Both lie on one smooth surface or curve: in one element, in two that go on smoothly into each
 /// other, or about a smooth corner.

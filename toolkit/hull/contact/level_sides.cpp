@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
+
 namespace taut {
 namespace {
 
@@ -71,8 +75,7 @@ bool is_level(const ContactGeometry& geometry, const Contact& c, const dvec3& n,
 
 /// The third derivative of x . n inwards from a side, n the patch's outward normal there.
 double swell(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& outward) {
-  const dvec3 normal = unit_normal(geometry, c);
-  return InwardCubic(geometry, c, side, glm::dot(normal, outward) < 0 ? -normal : normal).third;
+  return InwardCubic(geometry, c, side, aligned(unit_normal(geometry, c), outward)).third;
 }
 
 }  // namespace

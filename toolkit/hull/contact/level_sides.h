@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
 
 namespace taut {
 

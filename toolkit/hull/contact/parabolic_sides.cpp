@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/local_curvature.h"
 
 namespace taut {
 namespace {
@@ -20,7 +20,7 @@ double sample(int k) { return double(k) / samples_along; }
 
 /// The determinant of the second form along Su x Sv itself: a polynomial, where the patch is one.
 double determinant_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
-  const std::optional<SurfaceBend> b = surface_bend(geometry, on_side_of(patch, side, t));
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, on_side_of(patch, side, t));
   return b ? b->gauss_curvature() * std::pow(b->area, 4) : 0;
 }
 

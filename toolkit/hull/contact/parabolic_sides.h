@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/contact/sign_changes.h"
 
 namespace taut {

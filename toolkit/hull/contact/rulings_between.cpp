@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/contact/parabolic_sides.h"
 
 namespace taut {

@@ -1,6 +1,6 @@
 #include "taut/hull/contact/supporting_poles.h"
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
 
 namespace taut {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {

@@ -16,17 +16,17 @@ namespace {
 constexpr std::array<double, 3> disc_radii = {2, 3, 5};
 /// By how much larger discs are tried, one after the other, to be of use to other cells.
 constexpr double growth = 2;
-/// Domes over a patch that are looked at, the latest.
-constexpr std::size_t latest_domes = 32;
-/// Where a dome reaches so many of a cell's radii beyond it in vain, others will not do.
+/// Caps over a patch that are looked at, the latest.
+constexpr std::size_t latest_caps = 32;
+/// Where a cap reaches so many of a cell's radii beyond it in vain, others will not do.
 constexpr double wide = 16;
 /// Nodes of patches' trees that are held, some kilobytes each, and cells after which they are
 /// counted again.
 constexpr std::size_t node_limit = 16384;
 constexpr long cells_between_counts = 64;
-/// Pieces of domes that are held.
+/// Pieces of caps that are held.
 constexpr std::size_t held_pieces = 1 << 19;
-/// Points of a dome that are compared with, those nearest to the cell.
+/// Points of a cap that are compared with, those nearest to the cell.
 constexpr std::size_t compared_points = 32;
 
 double width(const Interval& t) { return t.upper - t.lower; }
@@ -45,7 +45,7 @@ struct ConcaveSurroundings::Subject {
   std::vector<dvec3> points;     ///< its control points, in the part's frame
   dvec3 middle;                  ///< of it
 
-  double radius(const FallMap& map) const {
+  double radius(const OsculatingParaboloid& map) const {
     double result = 0;
     const dvec2 from = map(middle);
     for (const dvec3& p : points) result = std::max(result, glm::distance(map(p), from));
@@ -57,8 +57,8 @@ ConcaveSurroundings::ConcaveSurroundings(const Scene& scene, std::stop_token sto
     : scene_(scene), reach_(scene, stop), surfaces_(scene, std::move(stop)) {}
 
 void ConcaveSurroundings::begin_anew() {
-  domes_.clear();
-  domes_over_.clear();
+  caps_.clear();
+  caps_over_.clear();
   pieces_ = 0;
 }
 
@@ -90,44 +90,44 @@ bool ConcaveSurroundings::surely_on(int instance, int patch, const PatchCell& ce
   return answer == Answer::on || (answer == Answer::none && look_about(subject));
 }
 
-/// The domes known that hold the cell, the widest about it first.
+/// The caps known that hold the cell, the widest about it first.
 ConcaveSurroundings::Answer ConcaveSurroundings::ask_known(const Subject& cell) {
-  const auto found = domes_over_.find({cell.part, cell.patch});
-  if (found == domes_over_.end()) return Answer::none;
+  const auto found = caps_over_.find({cell.part, cell.patch});
+  if (found == caps_over_.end()) return Answer::none;
   std::vector<std::pair<double, int>> candidates;
   const std::vector<int>& over = found->second;
-  const std::size_t old = over.size() - std::min(over.size(), latest_domes);
+  const std::size_t old = over.size() - std::min(over.size(), latest_caps);
   for (std::size_t i = old; i < over.size(); ++i) {
     const int k = over[i];
-    const ConcaveDome& dome = domes_[std::size_t(k)];
-    const double clear = dome.radius - glm::length(dome.map(cell.middle));
-    const double ratio = clear / cell.radius(dome.map);
+    const ConvexCap& cap = caps_[std::size_t(k)];
+    const double clear = cap.radius - glm::length(cap.map(cell.middle));
+    const double ratio = clear / cell.radius(cap.map);
     if (ratio >= disc_radii.front()) candidates.emplace_back(-ratio, k);
   }
   std::sort(candidates.begin(), candidates.end());
   for (const auto& [ratio, k] : candidates) {
-    const ConcaveDome& dome = domes_[std::size_t(k)];
-    if (!dome.faces(cell.pyramid, cell.sign) || !dome.covers(cell.patch, cell.cell)) continue;
-    if (is_above_others(cell, dome)) return Answer::on;
+    const ConvexCap& cap = caps_[std::size_t(k)];
+    if (!cap.faces(cell.pyramid, cell.sign) || !cap.covers(cell.patch, cell.cell)) continue;
+    if (is_above_others(cell, cap)) return Answer::on;
     return -ratio >= wide ? Answer::hopeless : Answer::none;
   }
   return Answer::none;
 }
 
-/// Domes about the cell itself.
+/// Caps about the cell itself.
 bool ConcaveSurroundings::look_about(const Subject& cell) {
   const dvec3 axis = cell.sign * cell.pyramid.axis;
-  const std::optional<FallMap> map =
-      FallMap::about(surfaces_.patch(cell.part, cell.patch), cell.cell.middle(), axis);
+  const std::optional<OsculatingParaboloid> map =
+      OsculatingParaboloid::about(surfaces_.patch(cell.part, cell.patch), cell.cell.middle(), axis);
   if (!map) return false;
   const double size = cell.radius(*map);
-  std::optional<ConcaveDome> largest;
+  std::optional<ConvexCap> largest;
   bool on = false;
   const auto look = [&](double radius) {
-    std::optional<ConcaveDome> dome =
-        concave_dome(surfaces_, cell.part, cell.patch, cell.cell, axis, *map, radius * size);
-    if (!dome) return false;
-    largest = std::move(dome);
+    std::optional<ConvexCap> cap =
+        convex_cap(surfaces_, cell.part, cell.patch, cell.cell, axis, *map, radius * size);
+    if (!cap) return false;
+    largest = std::move(cap);
     return true;
   };
   bool grows = true;
@@ -143,18 +143,18 @@ bool ConcaveSurroundings::look_about(const Subject& cell) {
   return true;
 }
 
-void ConcaveSurroundings::keep(int part, ConcaveDome dome) {
+void ConcaveSurroundings::keep(int part, ConvexCap cap) {
   int last = -1;
-  for (const ConcaveDome::Piece& piece : dome.pieces) {
-    if (piece.patch != last) domes_over_[{part, piece.patch}].push_back(int(domes_.size()));
+  for (const ConvexCap::Piece& piece : cap.pieces) {
+    if (piece.patch != last) caps_over_[{part, piece.patch}].push_back(int(caps_.size()));
     last = piece.patch;
   }
-  pieces_ += dome.pieces.size();
-  domes_.push_back(std::move(dome));
+  pieces_ += cap.pieces.size();
+  caps_.push_back(std::move(cap));
 }
 
-/// A point of the cell or of the dome is above all else, in all directions between the corners.
-bool ConcaveSurroundings::is_above_others(const Subject& cell, const ConcaveDome& dome) {
+/// A point of the cell or of the cap is above all else, in all directions between the corners.
+bool ConcaveSurroundings::is_above_others(const Subject& cell, const ConvexCap& cap) {
   std::vector<dvec3> points;
   const auto add_point = [&](int of, double u, double v) {
     points.push_back(scene_.content().frame_point({cell.instance, SourceKind::face, of, u, v}));
@@ -167,9 +167,9 @@ bool ConcaveSurroundings::is_above_others(const Subject& cell, const ConcaveDome
   std::vector<PatchRectangle> regions;
   std::vector<std::pair<double, std::size_t>> near;
   double narrowest = std::min(width(cell.cell.u), width(cell.cell.v));
-  const dvec2 from = dome.map(cell.middle);
-  for (std::size_t k = 0; k < dome.pieces.size(); ++k) {
-    const ConcaveDome::Piece& piece = dome.pieces[k];
+  const dvec2 from = cap.map(cell.middle);
+  for (std::size_t k = 0; k < cap.pieces.size(); ++k) {
+    const ConvexCap::Piece& piece = cap.pieces[k];
     near.emplace_back(glm::distance(piece.middle, from), k);
     regions.push_back({cell.instance, piece.patch, piece.cell.u, piece.cell.v});
     narrowest = std::min({narrowest, width(piece.cell.u), width(piece.cell.v)});
@@ -179,8 +179,8 @@ bool ConcaveSurroundings::is_above_others(const Subject& cell, const ConcaveDome
     near.resize(compared_points);
   }
   for (const auto& [distance, k] : near) {
-    const dvec2 p = dome.pieces[k].cell.middle();
-    add_point(dome.pieces[k].patch, p.x, p.y);
+    const dvec2 p = cap.pieces[k].cell.middle();
+    add_point(cap.pieces[k].patch, p.x, p.y);
   }
   return reach_.surely_below(points, cell.corners, regions, 1 - std::ilogb(narrowest));
 }

@@ -9,16 +9,16 @@
 #include "taut/bounds/patch_cell.h"
 #include "taut/bounds/reach_test.h"
 #include "taut/bounds/scene.h"
-#include "taut/hull/cull/concave_dome.h"
+#include "taut/hull/cull/convex_cap.h"
 
 namespace taut {
 
 /// Proves that cells of patches touch the hull, with what surrounds them, on other patches too:
 /// over smooth joins and around poles.
 ///
-/// A cell lies on a ConcaveDome, all of which is below the cell's tangent planes. If a point of the
-/// dome is above all else of the model, in the directions of the cell's normals, each point of the
-/// cell supports its normal, alone. Domes are sought about a cell, as large as they can be proven,
+/// A cell lies on a ConvexCap, all of which is below the cell's tangent planes. If a point of the
+/// cap is above all else of the model, in the directions of the cell's normals, each point of the
+/// cell supports its normal, alone. Caps are sought about a cell, as large as they can be proven,
 /// and serve the cells after it that lie well inside of them.
 ///
 /// Holds what it learns of patches; use one object a thread. The scene must outlive it.
@@ -42,16 +42,16 @@ class ConcaveSurroundings {
   void forget_some();
   Answer ask_known(const Subject& cell);
   bool look_about(const Subject& cell);
-  void keep(int part, ConcaveDome dome);
-  bool is_above_others(const Subject& cell, const ConcaveDome& dome);
+  void keep(int part, ConvexCap cap);
+  bool is_above_others(const Subject& cell, const ConvexCap& cap);
 
   const Scene& scene_;
   ReachTest reach_;
   ConcaveSurfaces surfaces_;
   long cells_ = 0;
-  std::vector<ConcaveDome> domes_;
-  std::size_t pieces_ = 0;                                      // of the domes
-  std::map<std::pair<int, int>, std::vector<int>> domes_over_;  // by part and patch
+  std::vector<ConvexCap> caps_;
+  std::size_t pieces_ = 0;                                     // of the caps
+  std::map<std::pair<int, int>, std::vector<int>> caps_over_;  // by part and patch
 };
 
 }  // namespace taut

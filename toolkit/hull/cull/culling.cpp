@@ -37,7 +37,7 @@ constexpr int directions_for_edges = 3;
 constexpr double dense_samples = 4;
 
 /// Patches of a task, between these, so that there are many tasks for all threads; each task makes
-/// its own queries and domes.
+/// its own queries and caps.
 constexpr std::size_t least_patches_per_task = 8;
 constexpr std::size_t most_patches_per_task = 256;
 constexpr std::size_t tasks = 64;

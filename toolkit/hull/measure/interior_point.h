@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {

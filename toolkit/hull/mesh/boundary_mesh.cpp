@@ -8,8 +8,8 @@
 
 #include "taut/core/stopwatch.h"
 #include "taut/hull/mesh/boundary_samples.h"
+#include "taut/hull/mesh/constrained_edges.h"
 #include "taut/hull/mesh/contact_faces.h"
-#include "taut/hull/mesh/kept_chords.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_start.h"
 
@@ -76,7 +76,7 @@ class BoundaryLabels {
 
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
                    std::shared_ptr<const HullBoundary> boundary, const HullOptions& options,
-                   std::vector<Sample>* strays) {
+                   std::vector<Sample>* uncovered_samples) {
   const Stopwatch time;
   options.progress.update("sample", 0);
   const double tolerance = tolerance_for(options, scene.diagonal());
@@ -95,7 +95,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
       start.faces.push_back(faces.touched(apart.samples[k].contact));
     }
   }
-  KeptChords chords(geometry, *boundary, faces, start.chords, width);
+  ConstrainedEdges chords(geometry, *boundary, faces, start.chords, width);
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);
   polytope.statistics.support_queries += query.queries();
@@ -106,7 +106,8 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
     start.faces.push_back(faces.touched(sample.contact));
     const auto on_curve = chords.inserted().find(int(k));
     if (on_curve == chords.inserted().end()) {
-      if (strays != nullptr && faces.surely_astray(sample.contact)) strays->push_back(sample);
+      if (uncovered_samples != nullptr && faces.surely_uncovered(sample.contact))
+        uncovered_samples->push_back(sample);
       continue;
     }
     for (const TouchedFace& f : on_curve->second) touch(start.faces.back(), f);

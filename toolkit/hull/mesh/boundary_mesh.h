@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull.h"
 #include "taut/hull/result/hull_options.h"
 #include "taut/hull/result/sample.h"
@@ -19,10 +19,11 @@ namespace taut {
 /// to a scroll, else to a patch. Where the boundary is not complete, a face without any is labelled
 /// as by sampled_hull(), its hull face numbered after those of the boundary.
 ///
-/// Support points that lie on no face of the boundary are added to `strays`: what it lacks.
+/// Support points that lie on no face of the boundary are added to `uncovered_samples`: what it
+/// lacks.
 /// @pre the boundary is the scene's, in its frame @throws as sampled_hull()
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
                    std::shared_ptr<const HullBoundary> boundary, const HullOptions& options = {},
-                   std::vector<Sample>* strays = nullptr);
+                   std::vector<Sample>* uncovered_samples = nullptr);
 
 }  // namespace taut

@@ -264,7 +264,7 @@ double ContactFaces::deepest(int instance, int patch, const dvec2& uv) const {
   return result;
 }
 
-bool ContactFaces::surely_astray(const Contact& contact) const {
+bool ContactFaces::surely_uncovered(const Contact& contact) const {
   const Contact c = geometry_.canonical(contact);
   if (c.kind != SourceKind::face) {
     if (!touched(c).empty()) return false;

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
@@ -44,7 +44,7 @@ class ContactFaces {
 
   /// The contact is surely on no face: farther from all outlines of its patch than their chords
   /// leave open, on a stretch of an edge or at a vertex that no face touches.
-  bool surely_astray(const Contact& contact) const;
+  bool surely_uncovered(const Contact& contact) const;
 
  private:
   struct Region {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "taut/hull/planar/planar_hull.h"
+#include "taut/hull/planar/outline_side.h"
 #include "taut/hull/planar/planar_sweep.h"
 
 namespace taut {

@@ -19,10 +19,11 @@ constexpr std::size_t sliver_limit = 8;
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
  public:
-  Sampler(const Scene& scene, const HullOptions& options, double tolerance, KeptEdges* kept)
+  Sampler(const Scene& scene, const HullOptions& options, double tolerance,
+          EdgeConstraints* constraints)
       : scene_(scene),
         options_(options),
-        kept_(kept),
+        constraints_(constraints),
         hull_(inflated(scene)),
         tolerance_(tolerance * scene.frame().scale) {}
 
@@ -73,7 +74,7 @@ class Sampler {
 
   const Scene& scene_;
   const HullOptions& options_;
-  KeptEdges* kept_;
+  EdgeConstraints* constraints_;
   PointHull hull_;
   std::vector<Sample> samples_;        // per vertex
   std::vector<dvec3> frame_points_;    // per vertex
@@ -251,14 +252,14 @@ bool Sampler::bisect_hidden(const dvec3& point, int facet) {
       const int b = own.vertex[(k + 1) % 3];
       const int other = own.neighbor[k];
       if (a > b || std::find(visible.begin(), visible.end(), other) == visible.end()) continue;
-      const std::optional<KeptEdges::Middle> middle = kept_->middle(a, b);
+      const std::optional<EdgeConstraints::Middle> middle = constraints_->middle(a, b);
       if (!middle) continue;
       const auto number = int(hull_.points().size());
       if (!insert(middle->sample, middle->point, f) &&
           !insert(middle->sample, middle->point, other)) {
         return false;
       }
-      kept_->bisect(a, b, number);
+      constraints_->bisect(a, b, number);
       return true;
     }
   }
@@ -297,7 +298,7 @@ bool Sampler::refine() {
     if (!plane.known || plane.n != c.n) continue;
     // No point is beyond a sliver.
     const int facet = has_lost_facet(plane) ? c.facet : plane.facet;
-    const bool bisected = kept_ != nullptr && bisect_hidden(plane.point, facet);
+    const bool bisected = constraints_ != nullptr && bisect_hidden(plane.point, facet);
     if (bisected || insert({plane.n, plane.contact}, plane.point, facet)) inserted = true;
   }
   return inserted;
@@ -347,8 +348,8 @@ SampledPolytope Sampler::run(std::vector<Sample> samples, const std::vector<dvec
 
 SampledPolytope sampled_polytope(const Scene& scene, const HullOptions& options, double tolerance,
                                  std::vector<Sample> samples, const std::vector<dvec3>& points,
-                                 KeptEdges* kept) {
-  return Sampler(scene, options, tolerance, kept).run(std::move(samples), points);
+                                 EdgeConstraints* constraints) {
+  return Sampler(scene, options, tolerance, constraints).run(std::move(samples), points);
 }
 
 }  // namespace taut

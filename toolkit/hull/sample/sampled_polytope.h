@@ -12,14 +12,14 @@
 namespace taut {
 
 /// Edges of a polytope that are to stay, like chords of curves, whole or bisected.
-class KeptEdges {
+class EdgeConstraints {
  public:
   struct Middle {
     Sample sample;
     dvec3 point;  ///< in model coordinates
   };
 
-  virtual ~KeptEdges() = default;
+  virtual ~EdgeConstraints() = default;
   /// A point of the hull between two points, by number, if these are the ends of such an edge.
   virtual std::optional<Middle> middle(int a, int b) const = 0;
   /// It was inserted, with this number.
@@ -50,6 +50,6 @@ struct SampledPolytope {
 /// @pre the points, per sample in model coordinates, span space @throws Cancelled
 SampledPolytope sampled_polytope(const Scene& scene, const HullOptions& options, double tolerance,
                                  std::vector<Sample> samples, const std::vector<dvec3>& points,
-                                 KeptEdges* kept = nullptr);
+                                 EdgeConstraints* constraints = nullptr);
 
 }  // namespace taut

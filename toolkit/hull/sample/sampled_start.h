@@ -7,7 +7,7 @@
 #include "taut/hull/polytope/affine_span.h"
 #include "taut/hull/result/hull.h"
 #include "taut/hull/result/hull_options.h"
-#include "taut/hull/sample/sampled_polytope.h"
+#include "taut/hull/result/sample.h"
 
 namespace taut {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {

@@ -8,8 +8,8 @@
 
 #include "taut/core/disjoint_sets.h"
 #include "taut/hull/stitch/boundary_closure.h"
-#include "taut/hull/stitch/crease_tracks.h"
 #include "taut/hull/stitch/curve_chains.h"
+#include "taut/hull/stitch/edge_incidence.h"
 #include "taut/hull/stitch/ruled_faces.h"
 #include "taut/hull/stitch/trim_stretches.h"
 
@@ -51,7 +51,7 @@ class Stitcher {
   std::vector<dvec3> contact_points(int arc, int contact, const std::vector<int>& pieces) const;
   void make_joins();
   void make_creases();
-  CurveElement crease(const CreaseTracks::Stretch& c) const;
+  CurveElement crease(const EdgeIncidence::Stretch& c) const;
   void make_rulings();
   void make_scroll_curves();
   int curve_of(int stretch) const { return stretches_.curve_of(stretch); }
@@ -283,13 +283,13 @@ void Stitcher::make_joins() {
 }
 
 /// Of a stretch of an edge, or seam, with something to both sides.
-CurveElement Stitcher::crease(const CreaseTracks::Stretch& c) const {
-  const auto face = [&](const CreaseTracks::Track& t) {
+CurveElement Stitcher::crease(const EdgeIncidence::Stretch& c) const {
+  const auto face = [&](const EdgeIncidence::Neighbor& t) {
     return t.arc >= 0    ? scroll_of(t.arc, t.piece)
            : t.node >= 0 ? facet_of_[std::size_t(t.node)]
                          : face_of(t.region);
   };
-  const auto stretch = [&](const CreaseTracks::Track& t) {
+  const auto stretch = [&](const EdgeIncidence::Neighbor& t) {
     return t.region < 0 ? -1 : stretches_.number(t.region, t.loop, t.index);
   };
   CurveElement e;
@@ -303,7 +303,7 @@ CurveElement Stitcher::crease(const CreaseTracks::Stretch& c) const {
   }
   e.stretch_left = stretch(c.low);
   e.stretch_right = stretch(c.high);
-  for (const CreaseTracks::Track& t : {c.low, c.high}) {
+  for (const EdgeIncidence::Neighbor& t : {c.low, c.high}) {
     // Along the arc the parameter grows or falls.
     if (t.arc >= 0) e.contacts.push_back({t.arc, t.piece, t.contact, t.sense * c.from});
   }
@@ -314,8 +314,8 @@ CurveElement Stitcher::crease(const CreaseTracks::Stretch& c) const {
 void Stitcher::make_creases() {
   std::vector<CurveElement> edges;
   std::vector<CurveElement> seams;
-  for (const CreaseTracks::Stretch& c :
-       CreaseTracks(geometry_, graph_, stretches_.regions()).overlay()) {
+  for (const EdgeIncidence::Stretch& c :
+       EdgeIncidence(geometry_, graph_, stretches_.regions()).overlay()) {
     const Contact at{c.instance, SourceKind::edge, c.piece, 0.5 * (c.from + c.to), 0};
     if (c.low.empty() || c.high.empty()) {
       fail(unit(geometry_.point(at)), "an edge lies on the hull on one side only");

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "taut/bounds/supporting_plane.h"
 #include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
@@ -18,23 +19,23 @@ constexpr double same_parameter = 1e-9;
 constexpr double flat_curvature = 1e-10;
 
 /// The trace of a contact along a piece of a half-arc, in the walk's direction.
-struct Stroke {
+struct TrimArc {
   TrimStretch stretch;
   dvec2 from = dvec2(0.0);
   dvec2 to = dvec2(0.0);
-  dvec3 n = dvec3(0.0);  ///< where the stroke begins
-  int sheet = -1;
-  int next = -1;  ///< stroke of the same sheet that it runs into; -1: the border
+  dvec3 n = dvec3(0.0);  ///< where the trim arc begins
+  int patch = -1;        ///< number of the oriented patch that it lies on
+  int next = -1;         ///< trim arc of the same oriented patch that it runs into; -1: the border
 };
 
 /// One side of a Bezier patch, by the sign of its normal.
-struct Sheet {
+struct OrientedPatch {
   int instance, patch, sign;
-  std::vector<int> strokes;
-  /// Where strokes meet the border, by position around it.
+  std::vector<int> trim_arcs;
+  /// Where trim arcs meet the border, by position around it.
   struct Meeting {
     double position;
-    int stroke;
+    int trim_arc;
     bool arrives;
   };
   std::vector<Meeting> meetings;
@@ -53,7 +54,7 @@ double position(const dvec2& p) {
 
 /// Gives meetings that are in one place the same position: where curves touch the border in a
 /// common end, rounding does not tell which comes first.
-void join_places(std::vector<Sheet::Meeting>& meetings) {
+void join_places(std::vector<OrientedPatch::Meeting>& meetings) {
   std::sort(meetings.begin(), meetings.end(),
             [](const auto& a, const auto& b) { return a.position < b.position; });
   for (std::size_t k = 1; k < meetings.size(); ++k) {
@@ -91,10 +92,10 @@ class Trimmer {
 
   std::vector<TrimRegion> run(const std::vector<CulledCell>& cells) {
     for (int a = 0; a < int(graph_.arcs.size()); ++a) {
-      for (int contact = 0; contact < 2; ++contact) add_strokes({a, contact});
+      for (int contact = 0; contact < 2; ++contact) add_trim_arcs({a, contact});
     }
     link();
-    for (Sheet& sheet : sheets_) trim(sheet);
+    for (OrientedPatch& oriented : patches_) trim(oriented);
     if (!graph_.exhausted) add_whole_patches(cells);
     return std::move(regions_);
   }
@@ -102,13 +103,13 @@ class Trimmer {
  private:
   using Loop = std::vector<TrimStretch>;
 
-  void add_strokes(const HalfArc& half);
-  int sheet_of(const Contact& c, const dvec3& n);
+  void add_trim_arcs(const HalfArc& half);
+  int patch_of(const Contact& c, const dvec3& n);
   void link();
-  void meet(int stroke, bool arrives);
-  void trim(Sheet& sheet);
-  void add_border(const Sheet& sheet, double from, double to, Loop& loop) const;
-  void add_regions(const Sheet& sheet, std::vector<Loop> loops);
+  void meet(int trim_arc, bool arrives);
+  void trim(OrientedPatch& oriented);
+  void add_border(const OrientedPatch& oriented, double from, double to, Loop& loop) const;
+  void add_regions(const OrientedPatch& oriented, std::vector<Loop> loops);
   std::vector<dvec2> polyline(const Loop& loop) const;
   void add_whole_patches(const std::vector<CulledCell>& cells);
   void fail(const dvec3& n, const char* reason) { unresolved_.push_back({n, reason}); }
@@ -117,71 +118,71 @@ class Trimmer {
   SupportQuery& query_;
   const SeparatingGraph& graph_;
   std::vector<Unresolved>& unresolved_;
-  std::vector<Stroke> strokes_;
-  std::vector<std::vector<int>> strokes_of_;  // per half-arc 2 * arc + contact: its strokes or -1
-  std::vector<Sheet> sheets_;
-  std::map<std::tuple<int, int, int>, int> sheet_index_;
+  std::vector<TrimArc> trim_arcs_;
+  std::vector<std::vector<int>> trim_arcs_of_;  // per half-arc 2 * arc + contact; -1: none
+  std::vector<OrientedPatch> patches_;
+  std::map<std::tuple<int, int, int>, int> patch_index_;
   std::vector<TrimRegion> regions_;
 };
 
-int Trimmer::sheet_of(const Contact& c, const dvec3& n) {
+int Trimmer::patch_of(const Contact& c, const dvec3& n) {
   const ContactJet j = geometry_.jet(c);
   const int sign = glm::dot(glm::cross(j.dx[0], j.dx[1]), n) < 0 ? -1 : 1;
   const auto [at, is_new] =
-      sheet_index_.try_emplace({c.instance, c.element, sign}, int(sheets_.size()));
-  if (is_new) sheets_.push_back({c.instance, c.element, sign, {}, {}});
+      patch_index_.try_emplace({c.instance, c.element, sign}, int(patches_.size()));
+  if (is_new) patches_.push_back({c.instance, c.element, sign, {}, {}});
   return at->second;
 }
 
-void Trimmer::add_strokes(const HalfArc& half) {
+void Trimmer::add_trim_arcs(const HalfArc& half) {
   const SeparatingArc& arc = graph_.arcs[std::size_t(half.arc)];
   const bool backward = half.contact == 0;
   const int count = int(arc.pieces.size());
-  strokes_of_.emplace_back();
+  trim_arcs_of_.emplace_back();
   for (int k = 0; k < count; ++k) {
     const int piece = backward ? count - 1 - k : k;
     const std::vector<Ruling>& rulings = arc.pieces[std::size_t(piece)].rulings;
     const auto i = std::size_t(half.contact);
     if (rulings.front().contact[i].kind != SourceKind::face) {
-      strokes_of_.back().push_back(-1);
+      trim_arcs_of_.back().push_back(-1);
       continue;
     }
     const Ruling& first = backward ? rulings.back() : rulings.front();
     const Ruling& last = backward ? rulings.front() : rulings.back();
-    Stroke stroke;
-    stroke.stretch.arc = half.arc;
-    stroke.stretch.piece = piece;
-    stroke.stretch.contact = half.contact;
-    stroke.stretch.reversed = backward;
-    stroke.from = parameters(first.contact[i]);
-    stroke.to = parameters(last.contact[i]);
-    stroke.n = first.n;
+    TrimArc trim_arc;
+    trim_arc.stretch.arc = half.arc;
+    trim_arc.stretch.piece = piece;
+    trim_arc.stretch.contact = half.contact;
+    trim_arc.stretch.reversed = backward;
+    trim_arc.from = parameters(first.contact[i]);
+    trim_arc.to = parameters(last.contact[i]);
+    trim_arc.n = first.n;
     const Ruling& middle = rulings[rulings.size() / 2];
     Contact inside = middle.contact[i];
     if (rulings.size() == 2) {
-      inside.u = 0.5 * (stroke.from.x + stroke.to.x);
-      inside.v = 0.5 * (stroke.from.y + stroke.to.y);
+      inside.u = 0.5 * (trim_arc.from.x + trim_arc.to.x);
+      inside.v = 0.5 * (trim_arc.from.y + trim_arc.to.y);
     }
-    stroke.sheet = sheet_of(inside, middle.n);
-    sheets_[std::size_t(stroke.sheet)].strokes.push_back(int(strokes_.size()));
-    strokes_of_.back().push_back(int(strokes_.size()));
-    strokes_.push_back(stroke);
+    trim_arc.patch = patch_of(inside, middle.n);
+    patches_[std::size_t(trim_arc.patch)].trim_arcs.push_back(int(trim_arcs_.size()));
+    trim_arcs_of_.back().push_back(int(trim_arcs_.size()));
+    trim_arcs_.push_back(trim_arc);
   }
 }
 
-void Trimmer::meet(int stroke, bool arrives) {
-  const Stroke& s = strokes_[std::size_t(stroke)];
+void Trimmer::meet(int trim_arc, bool arrives) {
+  const TrimArc& s = trim_arcs_[std::size_t(trim_arc)];
   const dvec2& p = arrives ? s.to : s.from;
   const double off = std::min({p.x, 1 - p.x, p.y, 1 - p.y});
   if (off > same_parameter) fail(s.n, "a trim curve ends inside a patch");
-  sheets_[std::size_t(s.sheet)].meetings.push_back({position(p), stroke, arrives});
+  patches_[std::size_t(s.patch)].meetings.push_back({position(p), trim_arc, arrives});
 }
 
-/// Lets each stroke run into the next, or into the border.
+/// Lets each trim arc run into the next, or into the border.
 void Trimmer::link() {
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     for (int contact = 0; contact < 2; ++contact) {
-      const std::vector<int>& own = strokes_of_[std::size_t(2 * a + contact)];
+      const std::vector<int>& own = trim_arcs_of_[std::size_t(2 * a + contact)];
       for (std::size_t k = 0; k < own.size(); ++k) {
         int next = -1;
         if (k + 1 < own.size()) {
@@ -190,22 +191,22 @@ void Trimmer::link() {
           const HalfArc after = next_half_arc(graph_, {a, contact});
           if (after.arc < 0) {
             if (own[k] >= 0)
-              fail(strokes_[std::size_t(own[k])].n, "a separating curve ends nowhere");
+              fail(trim_arcs_[std::size_t(own[k])].n, "a separating curve ends nowhere");
             continue;
           }
-          next = strokes_of_[std::size_t(2 * after.arc + after.contact)].front();
+          next = trim_arcs_of_[std::size_t(2 * after.arc + after.contact)].front();
         }
-        const int stroke = own[k];
-        if (stroke < 0 && next < 0) continue;
-        if (stroke >= 0 && next >= 0) {
-          Stroke& s = strokes_[std::size_t(stroke)];
-          const Stroke& t = strokes_[std::size_t(next)];
-          if (s.sheet == t.sheet && glm::distance(s.to, t.from) < same_parameter) {
+        const int trim_arc = own[k];
+        if (trim_arc < 0 && next < 0) continue;
+        if (trim_arc >= 0 && next >= 0) {
+          TrimArc& s = trim_arcs_[std::size_t(trim_arc)];
+          const TrimArc& t = trim_arcs_[std::size_t(next)];
+          if (s.patch == t.patch && glm::distance(s.to, t.from) < same_parameter) {
             s.next = next;
             continue;
           }
         }
-        if (stroke >= 0) meet(stroke, true);
+        if (trim_arc >= 0) meet(trim_arc, true);
         if (next >= 0) meet(next, false);
       }
     }
@@ -213,8 +214,8 @@ void Trimmer::link() {
 }
 
 /// The border's stretches from one position to another in the walk's direction.
-void Trimmer::add_border(const Sheet& sheet, double from, double to, Loop& loop) const {
-  const double sense = sheet.sign;
+void Trimmer::add_border(const OrientedPatch& oriented, double from, double to, Loop& loop) const {
+  const double sense = oriented.sign;
   double length = sense * (to - from);
   if (length < 0) length += 4;
   if (length < same_parameter || length > 4 - same_parameter) return;
@@ -235,42 +236,43 @@ void Trimmer::add_border(const Sheet& sheet, double from, double to, Loop& loop)
   }
 }
 
-void Trimmer::trim(Sheet& sheet) {
-  auto& meetings = sheet.meetings;
+void Trimmer::trim(OrientedPatch& oriented) {
+  auto& meetings = oriented.meetings;
   join_places(meetings);
-  const double sense = sheet.sign;
+  const double sense = oriented.sign;
   std::sort(meetings.begin(), meetings.end(), [&](const auto& a, const auto& b) {
     return a.position != b.position ? sense * a.position < sense * b.position
            : a.arrives != b.arrives ? a.arrives
-                                    : a.stroke < b.stroke;
+                                    : a.trim_arc < b.trim_arc;
   });
   const std::size_t count = meetings.size();
-  // The strokes that leave the border after each that arrives.
-  std::map<int, std::pair<int, std::size_t>> after;  // arriving stroke: leaving stroke, meeting
+  // The trim arcs that leave the border after each that arrives.
+  std::map<int, std::pair<int, std::size_t>> after;  // arriving: leaving, meeting
   for (std::size_t k = 0; k < count; ++k) {
     if (!meetings[k].arrives) continue;
     const auto& next = meetings[(k + 1) % count];
     if (next.arrives) {
-      fail(strokes_[std::size_t(meetings[k].stroke)].n, "trim curves do not alternate on a border");
+      fail(trim_arcs_[std::size_t(meetings[k].trim_arc)].n,
+           "trim curves do not alternate on a border");
       return;
     }
-    after[meetings[k].stroke] = {next.stroke, k};
+    after[meetings[k].trim_arc] = {next.trim_arc, k};
   }
   std::vector<Loop> loops;
-  std::vector<bool> done(sheet.strokes.size(), false);
+  std::vector<bool> done(oriented.trim_arcs.size(), false);
   std::map<int, std::size_t> place;
-  for (std::size_t k = 0; k < sheet.strokes.size(); ++k) place[sheet.strokes[k]] = k;
-  for (const int start : sheet.strokes) {
+  for (std::size_t k = 0; k < oriented.trim_arcs.size(); ++k) place[oriented.trim_arcs[k]] = k;
+  for (const int start : oriented.trim_arcs) {
     if (done[place[start]]) continue;
     Loop loop;
     int at = start;
     do {
       if (done[place[at]]) {
-        fail(strokes_[std::size_t(at)].n, "a trim loop runs into another");
+        fail(trim_arcs_[std::size_t(at)].n, "a trim loop runs into another");
         return;
       }
       done[place[at]] = true;
-      const Stroke& s = strokes_[std::size_t(at)];
+      const TrimArc& s = trim_arcs_[std::size_t(at)];
       loop.push_back(s.stretch);
       if (s.next >= 0) {
         at = s.next;
@@ -282,12 +284,13 @@ void Trimmer::trim(Sheet& sheet) {
         return;
       }
       const auto& [leaving, meeting] = found->second;
-      add_border(sheet, meetings[meeting].position, meetings[(meeting + 1) % count].position, loop);
+      add_border(oriented, meetings[meeting].position, meetings[(meeting + 1) % count].position,
+                 loop);
       at = leaving;
     } while (at != start);
     loops.push_back(std::move(loop));
   }
-  add_regions(sheet, std::move(loops));
+  add_regions(oriented, std::move(loops));
 }
 
 std::vector<dvec2> Trimmer::polyline(const Loop& loop) const {
@@ -330,25 +333,25 @@ bool winds_about(const std::vector<dvec2>& polygon, const dvec2& x) {
 }
 
 /// Loops that run about a region, with those around its holes.
-void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
+void Trimmer::add_regions(const OrientedPatch& oriented, std::vector<Loop> loops) {
   const std::size_t first = regions_.size();
   std::vector<std::vector<dvec2>> outlines;
   std::vector<std::pair<Loop, dvec2>> holes;
   for (Loop& loop : loops) {
     std::vector<dvec2> outline = polyline(loop);
     if (outline.empty()) {
-      fail(strokes_[std::size_t(sheet.strokes.front())].n, "a trim loop has no length");
+      fail(trim_arcs_[std::size_t(oriented.trim_arcs.front())].n, "a trim loop has no length");
       return;
     }
-    if (sheet.sign * signed_area(outline) > 0) {
-      regions_.push_back({sheet.instance, sheet.patch, sheet.sign, {std::move(loop)}});
+    if (oriented.sign * signed_area(outline) > 0) {
+      regions_.push_back({oriented.instance, oriented.patch, oriented.sign, {std::move(loop)}});
       outlines.push_back(std::move(outline));
     } else {
       holes.emplace_back(std::move(loop), outline.front());
     }
   }
   bool whole = false;
-  if (sheet.meetings.empty() && !holes.empty()) {
+  if (oriented.meetings.empty() && !holes.empty()) {
     // Nothing meets the border: it lies on the hull all around, or nowhere.
     const auto inside_other = [&](const dvec2& x) {
       return std::any_of(outlines.begin(), outlines.end(),
@@ -357,7 +360,8 @@ void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
     whole = std::any_of(holes.begin(), holes.end(),
                         [&](const auto& hole) { return !inside_other(hole.second); });
     if (whole) {
-      regions_.push_back({sheet.instance, sheet.patch, sheet.sign, {all_around(sheet.sign)}});
+      regions_.push_back(
+          {oriented.instance, oriented.patch, oriented.sign, {all_around(oriented.sign)}});
       outlines.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
     }
   }
@@ -371,7 +375,7 @@ void Trimmer::add_regions(const Sheet& sheet, std::vector<Loop> loops) {
       }
     }
     if (owner == outlines.size()) {
-      fail(strokes_[std::size_t(sheet.strokes.front())].n, "a trim loop lies in no other");
+      fail(trim_arcs_[std::size_t(oriented.trim_arcs.front())].n, "a trim loop lies in no other");
       return;
     }
     regions_[first + owner].loops.push_back(std::move(loop));
@@ -391,12 +395,12 @@ void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
     }
   }
   for (const auto& [instance, patch, sign] : candidates) {
-    if (sheet_index_.contains({instance, patch, sign})) continue;
+    if (patch_index_.contains({instance, patch, sign})) continue;
     const Contact c{instance, SourceKind::face, patch, 0.5, 0.5};
     if (geometry_.is_ruled(c) || geometry_.is_repeated(c)) continue;
     const ContactJet j = geometry_.jet(c);
     const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-    if (n == dvec3(0.0) || query_(n, c).h > glm::dot(j.x, n) + geometry_.tie()) continue;
+    if (n == dvec3(0.0) || !is_supporting(geometry_, query_, n, glm::dot(j.x, n), c)) continue;
     const double uv = glm::dot(j.dxy, n);
     const double det = glm::dot(j.dxx, n) * glm::dot(j.dyy, n) - uv * uv;
     const double size = glm::length(j.dx[0]) * glm::length(j.dx[1]);

@@ -17,9 +17,9 @@ Contact contact(const TrimRegion& r, const dvec2& at) {
 TrimStretches::TrimStretches(const ContactGeometry& geometry, const SeparatingGraph& graph,
                              std::vector<TrimRegion> regions, std::vector<Unresolved>& unresolved)
     : geometry_(geometry), regions_(std::move(regions)) {
-  const CreaseTracks tracks(geometry, graph, regions_);
+  const EdgeIncidence incidence(geometry, graph, regions_);
   for (TrimRegion& r : regions_) {
-    for (auto& loop : r.loops) loop = split(tracks, r, loop);
+    for (auto& loop : r.loops) loop = split(incidence, r, loop);
   }
   number_all();
   match_joins(unresolved);
@@ -71,7 +71,8 @@ dvec3 TrimStretches::normal(const TrimRegion& region, Side side, double t) const
 }
 
 /// The loop with its stretches on edges split.
-std::vector<TrimStretch> TrimStretches::split(const CreaseTracks& tracks, const TrimRegion& region,
+std::vector<TrimStretch> TrimStretches::split(const EdgeIncidence& incidence,
+                                              const TrimRegion& region,
                                               const std::vector<TrimStretch>& loop) const {
   std::vector<TrimStretch> result;
   for (const TrimStretch& s : loop) {
@@ -83,7 +84,7 @@ std::vector<TrimStretch> TrimStretches::split(const CreaseTracks& tracks, const 
     double from = s.from;
     const Contact low = geometry_.first({region.instance, SourceKind::edge, b.piece, 0, 0});
     const bool reversed = b.piece_reversed != (low.u != 0);
-    for (const double t : tracks.breaks(low.instance, low.element, reversed, s.from, s.to)) {
+    for (const double t : incidence.breaks(low.instance, low.element, reversed, s.from, s.to)) {
       result.push_back(s);
       result.back().from = from;
       result.back().to = t;

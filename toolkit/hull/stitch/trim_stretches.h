@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/edge_incidence.h"
 #include "taut/hull/stitch/trim_loops.h"
 
 namespace taut {
@@ -18,7 +18,7 @@ inline constexpr int border_points = 8;
 /// lie along each other.
 class TrimStretches {
  public:
-  /// Stretches on edges are split where what lies beyond the edge changes (CreaseTracks). Where
+  /// Stretches on edges are split where what lies beyond the edge changes (EdgeIncidence). Where
   /// two patches do not agree on which part of their join is on the hull, that is added to
   /// `unresolved`. The geometry must outlive this.
   TrimStretches(const ContactGeometry& geometry, const SeparatingGraph& graph,
@@ -63,7 +63,7 @@ class TrimStretches {
   const Border& border(const TrimRegion& region, Side side) const;
   dvec3 normal(const TrimRegion& region, Side side, double t) const;
 
-  std::vector<TrimStretch> split(const CreaseTracks& tracks, const TrimRegion& region,
+  std::vector<TrimStretch> split(const EdgeIncidence& incidence, const TrimRegion& region,
                                  const std::vector<TrimStretch>& loop) const;
   void number_all();
   void match_joins(std::vector<Unresolved>& unresolved);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/trace/curve_point.h"
 #include "taut/hull/trace/pole_passage.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {

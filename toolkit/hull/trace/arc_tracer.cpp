@@ -5,9 +5,14 @@
 #include <iterator>
 #include <utility>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/in_line_contacts.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/trace/arc_pieces.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/cull/culling.h"
 #include "taut/hull/result/hull_boundary.h"
 

@@ -2,6 +2,9 @@
 
 #include <array>
 
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/supporting_plane.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/contact/rulings_between.h"
 
@@ -48,7 +51,7 @@ std::optional<CommonSupport> CurvePoint::stepped(double length) const {
 }
 
 bool CurvePoint::supports(const CommonSupport& s) const {
-  return query_(s.n, s.contact[0]).h <= glm::dot(s.jet[0].x, s.n) + geometry_.tie();
+  return is_supporting(geometry_, query_, s.n, glm::dot(s.jet[0].x, s.n), s.contact[0]);
 }
 
 bool CurvePoint::is_followed(Ruling from, const Ruling& to) const {

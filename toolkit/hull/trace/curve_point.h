@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/bounds/contact_exits.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_exits.h"
 #include "taut/hull/contact/contact_system.h"
 
 namespace taut {

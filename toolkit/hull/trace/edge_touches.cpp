@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
 #include "taut/hull/contact/parabolic_sides.h"
 #include "taut/hull/contact/sign_changes.h"
 

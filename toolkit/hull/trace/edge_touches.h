@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/contact/supporting_poles.h"
 #include "taut/hull/cull/culling.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/bounds/poles.h"
+
 namespace taut {
 namespace {
 

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/trace/curve_point.h"
 
 namespace taut {

@@ -2,7 +2,9 @@
 
 #include <array>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/trace/partings.h"
 
 namespace taut {
@@ -23,7 +25,7 @@ std::optional<Contact> moved(const ContactGeometry& geometry, const Contact& c, 
   for (const ContactExit& exit : exits(geometry, c)) {
     const std::optional<Contact> over = beyond(geometry, c, exit);
     if (over && over->kind == SourceKind::face &&
-        glm::distance(geometry.point(*over), geometry.point(c)) < same_branch) {
+        glm::distance(geometry.point(*over), geometry.point(c)) < same_branch_distance) {
       elements.push_back(*over);
     }
   }
@@ -54,8 +56,7 @@ std::optional<CommonSupport> parted(const ContactSystem& system, SupportQuery& q
     const auto c = moved(geometry, end.contact, middle + sense * length * end.along);
     if (!c) return std::nullopt;
     s.add(geometry, *c);
-    const dvec3 normal = unit_normal(geometry, *c);
-    s.n += glm::dot(normal, end.n) < 0 ? -normal : normal;
+    s.n += aligned(unit_normal(geometry, *c), end.n);
   }
   s.n = glm::normalize(s.n);
   const dvec3 x = geometry.point(end.contact);

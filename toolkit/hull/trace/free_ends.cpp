@@ -5,11 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
+#include "taut/bounds/supporting_plane.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/contact/parabolic_sides.h"
 #include "taut/hull/contact/sign_changes.h"
 #include "taut/hull/cull/concave_patch.h"
@@ -53,12 +56,6 @@ constexpr double pole_distance = 1e-6;
 constexpr std::array<double, 9> plane_places = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
 /// Elements over a border that is no farther are searched too.
 constexpr double beside_border = 0.1;
-
-Contact clamped(Contact c) {
-  c.u = std::clamp(c.u, 0.0, 1.0);
-  c.v = std::clamp(c.v, 0.0, 1.0);
-  return c;
-}
 
 double distance_from(const Contact& c, Side side) {
   const double t = along_v(side) ? c.u : c.v;
@@ -108,7 +105,7 @@ std::optional<double> root_near(const SideFunction& f, double start, double reac
 /// is that of `along`.
 std::optional<dvec2> cusp_residual(const ContactGeometry& geometry, const Contact& c,
                                    const dvec3& along) {
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   if (!b) return std::nullopt;
   return dvec2(b->flat, glm::dot(b->along, along) < 0 ? -b->cubic : b->cubic);
 }
@@ -120,7 +117,7 @@ std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, dou
   const double noise = noise_step(geometry, c);
   double last = reach;
   for (int k = 0; k < newton_limit; ++k) {
-    const std::optional<SurfaceBend> here = surface_bend(geometry, c);
+    const std::optional<SurfaceCurvature> here = surface_curvature(geometry, c);
     if (!here) return std::nullopt;
     const auto residual = [&](double du, double dv) {
       Contact moved = c;
@@ -150,7 +147,7 @@ std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, dou
 }
 
 double curvature_at(const ContactGeometry& geometry, const Contact& c) {
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   return b ? b->gauss_curvature() : 0;
 }
 
@@ -186,8 +183,8 @@ std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Conta
     crossings.push_back(parabolic_between(geometry, corner[k], corner[next]));
   }
   if (crossings.size() != 2) return std::nullopt;
-  const std::optional<SurfaceBend> a = surface_bend(geometry, crossings[0]);
-  const std::optional<SurfaceBend> b = surface_bend(geometry, crossings[1]);
+  const std::optional<SurfaceCurvature> a = surface_curvature(geometry, crossings[0]);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, crossings[1]);
   if (!a || !b) return std::nullopt;
   const double last = glm::dot(a->along, b->along) < 0 ? -b->cubic : b->cubic;
   if ((a->cubic < 0) == (last < 0)) return std::nullopt;
@@ -206,7 +203,7 @@ std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Conta
 std::optional<FreeEnd> cusp(const ContactGeometry& geometry, const Contact& root) {
   if (!is_within(root.u) || !is_within(root.v)) return std::nullopt;
   const Contact c = clamped(root);
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
   return FreeEnd{b->n, c, Kind::face, b->along};
 }
@@ -220,13 +217,13 @@ Departure departure(double cubic, double slack) {
 }
 
 /// Rate into the patch at a side.
-double inward_rate(const SurfaceBend& b, Side side) {
+double inward_rate(const SurfaceCurvature& b, Side side) {
   const double across = along_v(side) ? b.rate.x : b.rate.y;
   return at_upper_end(side) ? -across : across;
 }
 
 /// Into the patch along the flat direction, to third order.
-Departure inward_departure(const SurfaceBend& b, Side side) {
+Departure inward_departure(const SurfaceCurvature& b, Side side) {
   const double cubic = inward_rate(b, side) < 0 ? -b.cubic : b.cubic;
   return departure(cubic, cubic_slack * std::max(1.0, b.third));
 }
@@ -255,7 +252,7 @@ double curvature_on(const ContactGeometry& geometry, const Contact& patch, Side 
 bool agrees_beyond(const ContactGeometry& geometry, const Contact& c, Side side, Departure own) {
   const std::optional<Beyond> over = beyond_join(geometry, c, side);
   if (!over) return true;
-  const std::optional<SurfaceBend> b = surface_bend(geometry, over->contact);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, over->contact);
   if (!b) return false;
   return b->flat < flat_slack * b->steep || inward_departure(*b, over->side) == own;
 }
@@ -279,7 +276,7 @@ std::vector<Contact> about_corner(const ContactGeometry& geometry, const Contact
 std::optional<Departure> corner_departure(const ContactGeometry& geometry,
                                           const std::vector<Contact>& around, const dvec3& along) {
   for (const Contact& c : around) {
-    const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+    const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
     if (!b) return std::nullopt;
     const double sense = glm::dot(b->along, along) < 0 ? -1 : 1;
     const bool leads_in = std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
@@ -317,7 +314,7 @@ std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact
                                   double t) {
   if (!is_within(t) || is_at_flat_corner(geometry, patch, side, t)) return std::nullopt;
   const Contact c = on_side_of(patch, side, placed(t));
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
   const std::vector<Contact> around = about_corner(geometry, c);
   std::optional<Departure> own = inward_departure(*b, side);
@@ -336,7 +333,7 @@ std::optional<FreeEnd> border_end(const ContactGeometry& geometry, const Contact
 
 double twist_at(const ContactGeometry& geometry, Contact c, double t) {
   c.u = t;
-  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  const std::optional<CurveCurvature> b = curve_curvature(geometry, c);
   return b ? b->twist : 0;
 }
 
@@ -344,7 +341,7 @@ double twist_at(const ContactGeometry& geometry, Contact c, double t) {
 bool is_planar(const ContactGeometry& geometry, Contact c) {
   return std::all_of(plane_places.begin(), plane_places.end(), [&](double t) {
     c.u = t;
-    const std::optional<CurveBend> b = curve_bend(geometry, c);
+    const std::optional<CurveCurvature> b = curve_curvature(geometry, c);
     return b && std::abs(b->twist) <= twist_rounding(geometry, c, *b);
   });
 }
@@ -353,13 +350,13 @@ bool is_planar(const ContactGeometry& geometry, Contact c) {
 std::optional<FreeEnd> edge_end(const ContactGeometry& geometry, Contact c, double t, double sign) {
   if (!is_within(t)) return std::nullopt;
   c.u = std::clamp(t, 0.0, 1.0);
-  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  const std::optional<CurveCurvature> b = curve_curvature(geometry, c);
   if (!b || b->binormal == dvec3(0.0)) return std::nullopt;
   return FreeEnd{sign * b->binormal, c, Kind::edge, b->along};
 }
 
 /// From an end of the piece on, to third order.
-Departure inward_departure(const CurveBend& b, int end, const dvec3& n) {
+Departure inward_departure(const CurveCurvature& b, int end, const dvec3& n) {
   const double cubic = glm::dot(b.third, n);
   return departure(end == 0 ? cubic : -cubic, cubic_slack * std::max(1.0, glm::length(b.third)));
 }
@@ -368,7 +365,7 @@ Departure inward_departure(const CurveBend& b, int end, const dvec3& n) {
 /// the jump of derivatives makes.
 std::optional<FreeEnd> piece_end(const ContactGeometry& geometry, Contact c, int end, double sign) {
   c.u = end;
-  const std::optional<CurveBend> b = curve_bend(geometry, c);
+  const std::optional<CurveCurvature> b = curve_curvature(geometry, c);
   const std::optional<Contact> over = beyond(geometry, c, {ContactExit::Kind::end, end});
   if (!b || b->binormal == dvec3(0.0) || !over) return std::nullopt;
   const dvec3 n = sign * b->binormal;
@@ -380,7 +377,7 @@ std::optional<FreeEnd> piece_end(const ContactGeometry& geometry, Contact c, int
   }
   const dvec3 along = end == 0 ? b->along : -b->along;
   if (over->kind == SourceKind::vertex) return FreeEnd{n, *over, Kind::end, along};
-  const std::optional<CurveBend> next = curve_bend(geometry, *over);
+  const std::optional<CurveCurvature> next = curve_curvature(geometry, *over);
   if (!next) return std::nullopt;
   const bool bends_away = glm::dot(next->second, n) < -flat_slack * next->curvature;
   if (!bends_away && inward_departure(*next, int(over->u), n) != own) return std::nullopt;
@@ -394,8 +391,8 @@ bool parts_at_corner(const ContactGeometry& geometry, const Contact& a, const Co
     for (const ContactGeometry::PieceSide& t : geometry.sides(b)) {
       if (s.patch != t.patch || along_v(s.side) == along_v(t.side)) continue;
       const dvec2 uv = on_side(s.side, at_upper_end(t.side) ? 1 : 0);
-      const std::optional<SurfaceBend> bend =
-          surface_bend(geometry, {a.instance, SourceKind::face, s.patch, uv.x, uv.y});
+      const std::optional<SurfaceCurvature> bend =
+          surface_curvature(geometry, {a.instance, SourceKind::face, s.patch, uv.x, uv.y});
       if (!bend || bend->flat <= 0) return false;
     }
   }
@@ -406,11 +403,11 @@ bool parts_at_corner(const ContactGeometry& geometry, const Contact& a, const Co
 /// unless a face's takes over between them.
 std::optional<FreeEnd> corner_end(const ContactGeometry& geometry, const Contact& vertex,
                                   const std::array<Contact, 2>& c, double sign) {
-  std::array<CurveBend, 2> bend;
+  std::array<CurveCurvature, 2> bend;
   std::array<dvec3, 2> away;
   for (std::size_t i = 0; i < 2; ++i) {
     const bool seam = geometry.part(c[i]).pieces()[std::size_t(c[i].element)].edge < 0;
-    const std::optional<CurveBend> b = curve_bend(geometry, c[i]);
+    const std::optional<CurveCurvature> b = curve_curvature(geometry, c[i]);
     if (seam || !b || geometry.is_straight(c[i])) return std::nullopt;
     bend[i] = *b;
     away[i] = c[i].u == 0 ? b->along : -b->along;
@@ -482,8 +479,10 @@ void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
     return glm::distance(geometry_.point(other.contact), x) <= same_contact &&
            glm::distance(other.n, end->n) <= same_contact;
   });
-  if (known || query_(end->n, end->contact).h > glm::dot(x, end->n) + geometry_.tie()) return;
-  ends_.push_back(*end);
+  if (known) return;
+  if (is_supporting(geometry_, query_, end->n, glm::dot(x, end->n), end->contact)) {
+    ends_.push_back(*end);
+  }
 }
 
 /// The nets are those over the cell.

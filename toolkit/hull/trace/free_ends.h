@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/cull/culling.h"
 
 namespace taut {

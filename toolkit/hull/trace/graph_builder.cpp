@@ -4,7 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/trace/arc_tracer.h"
@@ -44,7 +46,7 @@ constexpr double longest_chord = 0.2;
 void GraphBuilder::fail(const dvec3& n, const char* reason) {
   const bool known =
       std::any_of(graph_.unresolved.begin(), graph_.unresolved.end(), [&](const Unresolved& u) {
-        return u.reason == reason && glm::distance(u.n, n) < same_branch;
+        return u.reason == reason && glm::distance(u.n, n) < same_branch_distance;
       });
   if (!known) graph_.unresolved.push_back({n, reason});
 }
@@ -82,8 +84,8 @@ int GraphBuilder::crossing_at(const dvec3& n, const Contact& contact) {
   const dvec3 x = geometry_.point(contact);
   for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
     const FacetNode& node = graph_.nodes[k];
-    if (node.is_crossing() && glm::distance(node.n, n) < same_branch &&
-        glm::distance(node.points.front(), x) < same_branch) {
+    if (node.is_crossing() && glm::distance(node.n, n) < same_branch_distance &&
+        glm::distance(node.points.front(), x) < same_branch_distance) {
       return int(k);
     }
   }
@@ -95,8 +97,8 @@ int GraphBuilder::crossing_at(const dvec3& n, const Contact& contact) {
 int GraphBuilder::side_of(int node, const dvec3& first, const dvec3& second) const {
   const std::vector<dvec3>& points = graph_.nodes[std::size_t(node)].points;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (glm::distance(points[i], first) < same_branch &&
-        glm::distance(points[(i + 1) % points.size()], second) < same_branch) {
+    if (glm::distance(points[i], first) < same_branch_distance &&
+        glm::distance(points[(i + 1) % points.size()], second) < same_branch_distance) {
       return int(i);
     }
   }
@@ -179,7 +181,8 @@ void GraphBuilder::connect(int arc, int end, int node) {
 /// Whether two contacts that touch each other are in one corner of the facet.
 bool GraphBuilder::meets_corner(const FacetNode& node, const Ruling& r) {
   return std::any_of(node.points.begin(), node.points.end(), [&](const dvec3& p) {
-    return glm::distance(p, r.point[0]) < same_branch && glm::distance(p, r.point[1]) < same_branch;
+    return glm::distance(p, r.point[0]) < same_branch_distance &&
+           glm::distance(p, r.point[1]) < same_branch_distance;
   });
 }
 
@@ -187,7 +190,7 @@ bool GraphBuilder::meets_corner(const FacetNode& node, const Ruling& r) {
 /// number.
 int GraphBuilder::add_corner(FacetNode& node, const Ruling& r, int end) {
   const auto found = std::find_if(node.points.begin(), node.points.end(), [&](const dvec3& p) {
-    return glm::distance(p, r.point[0]) < same_branch;
+    return glm::distance(p, r.point[0]) < same_branch_distance;
   });
   const auto k = found - node.points.begin();
   node.contacts[std::size_t(k)] = r.contact[end == 0 ? 0 : 1];
@@ -230,8 +233,9 @@ bool GraphBuilder::is_end_known(const std::vector<ArcPiece>& pieces) const {
   // Of an arc that begins in the end the first contact is the other's second one.
   const auto same = [&](const Ruling& other, const Ruling& before, bool begins) {
     const dvec3 aside = before.point[begins ? 1 : 0] - other.point[0];
-    return other.point[0] == other.point[1] && glm::distance(other.n, end.n) < same_branch &&
-           glm::distance(other.point[0], end.point[0]) < same_branch &&
+    return other.point[0] == other.point[1] &&
+           glm::distance(other.n, end.n) < same_branch_distance &&
+           glm::distance(other.point[0], end.point[0]) < same_branch_distance &&
            glm::dot(approach(other, before), along) > same_approach &&
            glm::dot(aside, own_before.point[0] - end.point[0]) > 0;
   };
@@ -364,9 +368,10 @@ bool GraphBuilder::is_within(const FacetNode& node, const dvec3& x) {
   const std::size_t count = node.points.size();
   bool inside = true;
   for (std::size_t k = 0; k < count; ++k) {
-    if (glm::distance(node.points[k], x) < same_branch) return true;
+    if (glm::distance(node.points[k], x) < same_branch_distance) return true;
     const dvec3 side = unit(node.points[(k + 1) % count] - node.points[k]);
-    inside = inside && glm::dot(glm::cross(side, x - node.points[k]), node.n) > -same_branch;
+    inside =
+        inside && glm::dot(glm::cross(side, x - node.points[k]), node.n) > -same_branch_distance;
   }
   return inside && count > 2;
 }
@@ -431,7 +436,7 @@ bool GraphBuilder::lies_in_ruling(const dvec3& n, const std::vector<dvec3>& poin
   const auto has_points = [&](const Ruling& r) {
     const double turn = glm::distance(r.n, n);
     if (turn >= same_plane) return false;
-    const double reach = same_branch + std::sqrt(moved_contact * turn);
+    const double reach = same_branch_distance + std::sqrt(moved_contact * turn);
     const dvec3 along = unit(r.point[1] - r.point[0]);
     return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
       const dvec3 off = x - r.point[0];
@@ -483,7 +488,7 @@ SeparatingGraph GraphBuilder::take() {
 /// Whether the seed, in a direction that is hardly off the node's, is on a curve that leaves it:
 /// its contacts are two of the node's own that have moved by as little.
 bool GraphBuilder::is_beside(const FacetNode& node, const CommonSupport& seed, double off) {
-  const double reach = same_branch + moved_contact * off;
+  const double reach = same_branch_distance + moved_contact * off;
   return std::all_of(seed.jet.begin(), seed.jet.begin() + seed.count, [&](const ContactJet& j) {
     return std::any_of(node.points.begin(), node.points.end(),
                        [&](const dvec3& p) { return glm::distance(p, j.x) < reach; });

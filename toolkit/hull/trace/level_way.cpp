@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/hull/contact/joined_elements.h"
 
 namespace taut {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 
 namespace taut {
 

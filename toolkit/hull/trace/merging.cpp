@@ -5,11 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/trace/arc_pieces.h"
 #include "taut/hull/trace/element_changes.h"
 #include "taut/hull/trace/free_ends.h"
@@ -92,7 +96,7 @@ std::optional<dvec2> rate_along(const ContactGeometry& geometry, const Contact& 
     const dvec3 d = geometry.jet(c).dx[0];
     return dvec2(glm::dot(d, along) / glm::dot(d, d), 0);
   }
-  const std::optional<SurfaceBend> b = surface_bend(geometry, c);
+  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   if (!b) return std::nullopt;
   return glm::dot(b->along, along) < 0 ? -b->rate : b->rate;
 }
@@ -283,8 +287,7 @@ bool Merging::runs_into(const dvec3& x) {
     c = *pole;
   }
   if (end.contact[0].instance != end.contact[1].instance) return false;
-  end.n = unit_normal(geometry_, end.contact[0]);
-  if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
+  end.n = aligned(unit_normal(geometry_, end.contact[0]), point_.at.n);
   if (glm::distance(end.n, point_.at.n + ahead * point_.tangent.n) > reach ||
       point_.query()(end.n, end.contact[0]).h > glm::dot(x, end.n) + geometry_.tie()) {
     return false;
@@ -398,7 +401,7 @@ std::optional<ElementChange> Merging::change_before(const FreeEnd& end) const {
     const Contact& own = point_.at.contact[k];
     if (same_element(own, end.contact)) continue;
     const dvec3 apart = point_.at.jet[k].x - point_.at.jet[1 - k].x;
-    const dvec3 along = glm::dot(apart, end.along) < 0 ? -end.along : end.along;
+    const dvec3 along = aligned(end.along, apart);
     const std::optional<BorderPoint> border = border_ahead(geometry_, end, along);
     if (!border || border->distance <= longest) continue;
     const std::optional<Contact> over = beyond(geometry_, border->contact, border->exit);
@@ -488,8 +491,7 @@ bool Merging::tie_at_exit(ElementChange& event) const {
   CommonSupport& s = event.support;
   put_on_border(geometry_, event);
   if (s.contact[i].kind != SourceKind::face) return false;
-  const dvec3 normal = unit_normal(geometry_, s.contact[i]);
-  s.n = glm::dot(normal, s.n) < 0 ? -normal : normal;
+  s.n = aligned(unit_normal(geometry_, s.contact[i]), s.n);
   Contact& other = s.contact[1 - i];
   for (int k = 0; k < 2 && other.kind == SourceKind::face; ++k) {
     // Where it stands across, the prediction tells as well as anything.
@@ -527,8 +529,7 @@ CommonSupport Merging::near_end(const FreeEnd& end, double length) const {
     c.v = std::clamp(c.v + ahead.y, 0.0, 1.0);
     if (!same_element(c, end.contact)) continue;
     const dvec3 side = point_.at.jet[i].x - point_.at.jet[1 - i].x;
-    const std::optional<dvec2> along =
-        rate_along(geometry_, end.contact, glm::dot(side, end.along) < 0 ? -end.along : end.along);
+    const std::optional<dvec2> along = rate_along(geometry_, end.contact, aligned(end.along, side));
     if (!along) continue;
     c.u = std::clamp(end.contact.u + 0.5 * length * along->x, 0.0, 1.0);
     c.v = std::clamp(end.contact.v + 0.5 * length * along->y, 0.0, 1.0);
@@ -613,7 +614,7 @@ dvec3 limit_normal(const std::array<ContactJet, 2>& jet, const dvec3& near) {
     }
     normal = unit(normal);
   }
-  return glm::dot(normal, near) < 0 ? -normal : normal;
+  return aligned(normal, near);
 }
 
 double merging_distance(const ContactGeometry& geometry) {

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/trace/level_way.h"
 #include "taut/surface/flatness.h"
 
@@ -40,17 +43,17 @@ bool leads_straight(const ContactGeometry& geometry, const Contact& from, const 
 }  // namespace
 
 double branch_distance(const ContactGeometry& geometry) {
-  return std::max(same_branch, std::sqrt(geometry.tie()));
+  return std::max(same_branch_distance, std::sqrt(geometry.tie()));
 }
 
-Sighting seen(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
-              const Contact& hint) {
+SupportSample seen(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
+                   const Contact& hint) {
   const Support s = query(n, hint);
   const Contact c = at_rest(geometry, s.contact, n);
   return {n, c, geometry.point(c)};
 }
 
-bool is_near(const ContactGeometry& geometry, const Sighting& from, const Sighting& to) {
+bool is_near(const ContactGeometry& geometry, const SupportSample& from, const SupportSample& to) {
   const ContactJet j = geometry.jet(from.contact);
   const std::optional<dvec2> rate = parameter_rate(j, from.n, to.n - from.n);
   if (!rate) return false;
@@ -58,10 +61,10 @@ bool is_near(const ContactGeometry& geometry, const Sighting& from, const Sighti
   return glm::distance(to.x - from.x, motion) < first_order * glm::distance(to.x, from.x);
 }
 
-bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighting& b) {
+bool same_branch(const ContactGeometry& geometry, const SupportSample& a, const SupportSample& b) {
   const double same = branch_distance(geometry);
   if (glm::distance(a.x, b.x) < same) return true;
-  const auto leads = [&](const Sighting& from, const Sighting& to) {
+  const auto leads = [&](const SupportSample& from, const SupportSample& to) {
     if (is_near(geometry, from, to)) return true;
     const std::optional<Contact> c = climbed(geometry, from.contact, to.n);
     if (!c) return false;
@@ -78,8 +81,8 @@ bool are_joined(const ContactGeometry& geometry, const Sighting& a, const Sighti
 
 /// Newton's method on the difference of the two values, the slope of which is the contacts'
 /// difference, within the bracket that their signs make.
-std::optional<CommonSupport> parting(const ContactGeometry& geometry, const Sighting& a,
-                                     const Sighting& b) {
+std::optional<CommonSupport> parting(const ContactGeometry& geometry, const SupportSample& a,
+                                     const SupportSample& b) {
   CommonSupport s;
   s.add(geometry, a.contact);
   s.add(geometry, b.contact);

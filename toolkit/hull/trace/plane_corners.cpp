@@ -3,7 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 namespace {
@@ -63,8 +64,7 @@ CommonSupport settled_in_plane_corners(const ContactGeometry& geometry, SupportQ
     const std::optional<Contact> corner = plane_corner_at(geometry, s.contact[i]);
     if (!corner) continue;
     settled.contact[i] = *corner;
-    settled.n = unit_normal(geometry, *corner);
-    if (glm::dot(settled.n, s.n) < 0) settled.n = -settled.n;
+    settled.n = aligned(unit_normal(geometry, *corner), s.n);
   }
   settled.evaluate(geometry);
   const bool supports = query(settled.n, settled.contact[0]).h <=

@@ -4,10 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_bends.h"
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/exit_margins.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/level_sides.h"
+#include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/trace/plane_corners.h"
 
 namespace taut {
@@ -87,8 +93,7 @@ bool PolePassage::reach(int contact, Side side, double length) {
   const std::size_t other = 1 - i;
   CommonSupport pole = point_.at;
   pole.contact[i] = at_pole(point_.at.contact[i], side);
-  pole.n = unit_normal(geometry_, pole.contact[i]);
-  if (glm::dot(pole.n, point_.at.n) < 0) pole.n = -pole.n;
+  pole.n = aligned(unit_normal(geometry_, pole.contact[i]), point_.at.n);
   const std::optional<Contact> c = climbed(geometry_, point_.at.contact[other], pole.n);
   if (!c || !same_element(*c, point_.at.contact[other])) return false;
   pole.contact[other] = *c;
@@ -429,8 +434,7 @@ std::optional<CommonSupport> PolePassage::at_swell_end(const CommonSupport& end,
     if (!last) continue;
     CommonSupport s = end;
     s.contact[i] = *last;
-    s.n = unit_normal(geometry_, *last);
-    if (glm::dot(s.n, point_.at.n) < 0) s.n = -s.n;
+    s.n = aligned(unit_normal(geometry_, *last), point_.at.n);
     Contact& other = s.contact[1 - i];
     for (int k = 0; k < most_slides; ++k) other = highest_along(geometry_, other, s.n);
     s.evaluate(geometry_);
@@ -456,8 +460,7 @@ std::optional<CommonSupport> PolePassage::at_flat_ends(double length) const {
   const double ahead = point_.length_to(end);
   const double reach = in_plane_corner(end) ? plane_corner_reach * length : length;
   if (ahead <= margin_slack || ahead > reach) return std::nullopt;
-  end.n = common_normal(end);
-  if (glm::dot(end.n, point_.at.n) < 0) end.n = -end.n;
+  end.n = aligned(common_normal(end), point_.at.n);
   for (std::size_t i = 0; i < 2; ++i) {
     if (!is_flat_end(end.contact[i], end.jet[i], end.n)) return std::nullopt;
   }

@@ -8,9 +8,10 @@
 #include <set>
 #include <span>
 
+#include "taut/bounds/contact_forms.h"
 #include "taut/bounds/scene_content.h"
-#include "taut/hull/contact/contact_exits.h"
 #include "taut/hull/contact/contact_planes.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/in_line_contacts.h"
 #include "taut/hull/contact/level_sides.h"
@@ -135,9 +136,9 @@ class GraphTracer {
   void find_settled(const std::vector<CulledCell>& cells);
   bool is_settled(const Contact& c) const;
   void part_samples(const std::vector<Sample>& samples);
-  void part(const Sighting& a, const Sighting& b, int depth);
+  void part(const SupportSample& a, const SupportSample& b, int depth);
   void part_about(const SupportingPole& pole);
-  void part_closely(const Sighting& a, const Sighting& b, int depth);
+  void part_closely(const SupportSample& a, const SupportSample& b, int depth);
   void part_cells(const std::vector<CulledCell>& cells);
   void part_sides(std::span<const CulledCell> cells);
   void part_beside(const FreeEnd& end);
@@ -246,7 +247,7 @@ void GraphTracer::add_pole(const SupportingPole& pole) {
   const dvec3 x = geometry_.point(pole.contact);
   const bool known = std::any_of(poles_.begin(), poles_.end(), [&](const SupportingPole& other) {
     return glm::distance(other.n, pole.n) < same_plane &&
-           glm::distance(geometry_.point(other.contact), x) < same_branch;
+           glm::distance(geometry_.point(other.contact), x) < same_branch_distance;
   });
   if (!known) poles_.push_back(pole);
 }
@@ -268,10 +269,10 @@ bool GraphTracer::is_settled(const Contact& c) const {
   return c.kind == SourceKind::face && settled_.count({c.instance, c.element}) > 0;
 }
 
-/// Finds and traces the curves that the great arc between two sightings crosses.
-void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
+/// Finds and traces the curves that the great arc between two support_samples crosses.
+void GraphTracer::part(const SupportSample& a, const SupportSample& b, int depth) {
   if (given_up() || is_settled(a.contact) || is_settled(b.contact)) return;
-  if (are_joined(geometry_, a, b)) return;
+  if (same_branch(geometry_, a, b)) return;
   if (depth > depth_limit || glm::distance(a.n, b.n) < narrow) {
     if (level_way(geometry_, a.contact, b.contact, a.n)) return;
     // Two samples on the curve itself.
@@ -287,7 +288,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
     return;
   }
   if (glm::dot(a.n, b.n) < nearly_opposite) {  // no great arc to speak of
-    const Sighting aside = seen(geometry_, query_, tangent_frame(a.n)[0], a.contact);
+    const SupportSample aside = seen(geometry_, query_, tangent_frame(a.n)[0], a.contact);
     part(a, aside, depth + 1);
     part(aside, b, depth + 1);
     return;
@@ -299,7 +300,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   const bool divides =
       seed && glm::distance(seed->n, a.n) > least && glm::distance(seed->n, b.n) > least;
   if (seed && !divides) {
-    const Sighting there = seen(geometry_, query_, seed->n, seed->contact[0]);
+    const SupportSample there = seen(geometry_, query_, seed->n, seed->contact[0]);
     if (glm::dot(there.x, seed->n) <= glm::dot(seed->jet[0].x, seed->n) + geometry_.tie()) {
       trace(*seed);
       return;
@@ -307,7 +308,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
   }
   dvec3 n = divides ? seed->n : glm::normalize(a.n + b.n);
   if (is_in_plane(n)) n = glm::normalize(a.n + beside_plane * b.n);
-  const Sighting middle = seen(geometry_, query_, n, a.contact);
+  const SupportSample middle = seen(geometry_, query_, n, a.contact);
   if (divides && glm::dot(middle.x, n) <= glm::dot(seed->jet[0].x, n) + geometry_.tie()) {
     trace(*seed);
     return;
@@ -319,7 +320,7 @@ void GraphTracer::part(const Sighting& a, const Sighting& b, int depth) {
 /// Finds and traces the curves between every two neighbours on the samples' polytope.
 void GraphTracer::part_samples(const std::vector<Sample>& samples) {
   if (given_up()) return;
-  std::vector<Sighting> sightings;
+  std::vector<SupportSample> support_samples;
   std::vector<dvec3> points;
   Box box;
   for (const Sample& s : samples) {
@@ -328,7 +329,7 @@ void GraphTracer::part_samples(const std::vector<Sample>& samples) {
     const dvec3 x = geometry_.point(c);
     box.include(x);
     points.push_back(x);
-    sightings.push_back({s.n, c, x});
+    support_samples.push_back({s.n, c, x});
   }
   PointHull hull(box);
   hull.add(points);
@@ -338,7 +339,7 @@ void GraphTracer::part_samples(const std::vector<Sample>& samples) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = f.vertex[k];
       const int b = f.vertex[(k + 1) % 3];
-      if (a < b) part(sightings[std::size_t(a)], sightings[std::size_t(b)], 0);
+      if (a < b) part(support_samples[std::size_t(a)], support_samples[std::size_t(b)], 0);
     }
   }
 }
@@ -347,7 +348,7 @@ void GraphTracer::part_samples(const std::vector<Sample>& samples) {
 void GraphTracer::part_about(const SupportingPole& pole) {
   if (given_up()) return;
   const std::array<dvec3, 2> frame = tangent_frame(pole.n);
-  std::vector<Sighting> circle;
+  std::vector<SupportSample> circle;
   circle.reserve(circle_samples);
   for (int k = 0; k < circle_samples; ++k) {
     const double angle = 2 * std::numbers::pi * k / circle_samples;
@@ -362,12 +363,12 @@ void GraphTracer::part_about(const SupportingPole& pole) {
 
 /// Halfway between two whose contacts are farther apart than to first order, the two branches may
 /// be there only near the curve: a climb from farther off would lead from the one to the other.
-void GraphTracer::part_closely(const Sighting& a, const Sighting& b, int depth) {
+void GraphTracer::part_closely(const SupportSample& a, const SupportSample& b, int depth) {
   if (depth == 0 || given_up() || (is_near(geometry_, a, b) && is_near(geometry_, b, a))) {
     part(a, b, 0);
     return;
   }
-  const Sighting middle = seen(geometry_, query_, glm::normalize(a.n + b.n), a.contact);
+  const SupportSample middle = seen(geometry_, query_, glm::normalize(a.n + b.n), a.contact);
   part_closely(a, middle, depth - 1);
   part_closely(middle, b, depth - 1);
 }

@@ -9,7 +9,10 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/trace/merging.h"
 
 namespace taut {
@@ -18,14 +21,15 @@ namespace {
 /// Halvings of a side after which a curve that Newton's method does not find is given up.
 constexpr int halving_limit = 36;
 
-struct Sighting {
+struct SupportSample {
   bool supports = false;
   dvec3 n = dvec3(0.0);  ///< zero where the patch has no normal
   Contact winner;
 };
 
 /// Whether the patch's point supports the model in the direction of its normal, or what does.
-Sighting looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c, int sign) {
+SupportSample looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c,
+                     int sign) {
   const dvec3 n = double(sign) * unit_normal(geometry, c);
   if (n == dvec3(0.0)) return {};
   const Support top = query(n, c);
@@ -42,7 +46,7 @@ class Lookout {
         query_(query),
         diameter_(geometry.scene().frame().length_to_frame(geometry.scene().diagonal())) {}
 
-  Sighting operator()(const Contact& c, int sign) {
+  SupportSample operator()(const Contact& c, int sign) {
     const dvec3 n = double(sign) * unit_normal(geometry_, c);
     if (n == dvec3(0.0)) return {};
     const dvec3 x = geometry_.point(c);
@@ -95,7 +99,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
                                            std::span<const CulledCell> cells) {
   using Place = std::tuple<int, double, double>;
   // Of the cells of one patch.
-  std::map<Place, Sighting> sightings;
+  std::map<Place, SupportSample> support_samples;
   std::set<std::pair<Place, Place>> sides;
   std::pair<int, int> patch(-1, -1);
   Lookout look(geometry, query);
@@ -103,7 +107,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
   for (const CulledCell& cell : cells) {
     if (patch != std::pair(cell.instance, cell.patch)) {
       patch = {cell.instance, cell.patch};
-      sightings.clear();
+      support_samples.clear();
       sides.clear();
     }
     if (cell.state != CellState::mixed ||
@@ -118,12 +122,12 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
       if (!(sign > 0 ? cell.signs.plus : cell.signs.minus)) continue;
       std::array<Contact, 4> contacts;
       std::array<Place, 4> places;
-      std::array<const Sighting*, 4> seen{};
+      std::array<const SupportSample*, 4> seen{};
       for (std::size_t k = 0; k < 4; ++k) {
         const dvec2& at = corners[k];
         contacts[k] = {cell.instance, SourceKind::face, cell.patch, at.x, at.y};
         places[k] = {sign, at.x, at.y};
-        const auto [found, is_new] = sightings.try_emplace(places[k]);
+        const auto [found, is_new] = support_samples.try_emplace(places[k]);
         if (is_new) found->second = look(contacts[k], sign);
         seen[k] = &found->second;
       }
@@ -155,7 +159,7 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
   for (int k = 0; k < halving_limit; ++k) {
     Contact middle = on;
     middle.*free = 0.5 * (on.*free + beyond.off.*free);
-    const Sighting there = looked(geometry, query, middle, change.sign);
+    const SupportSample there = looked(geometry, query, middle, change.sign);
     if (there.n == dvec3(0.0)) return std::nullopt;
     if (there.supports) {
       on = middle;

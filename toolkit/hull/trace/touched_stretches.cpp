@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "taut/hull/contact/contact_exits.h"
+#include "taut/bounds/poles.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/parabolic_sides.h"
 #include "taut/hull/contact/sign_changes.h"
@@ -232,8 +232,7 @@ bool TouchedEdge::is_left(const std::vector<Place>& places, SupportQuery& query)
   for (std::size_t k = places_queried; k + 1 < places.size(); k += places_queried) {
     const std::optional<Contact> c = highest_beside(places[k], turn_beside);
     if (!c) return false;
-    const dvec3 normal = unit_normal(geometry_, *c);
-    const dvec3 n = glm::dot(normal, n_) < 0 ? -normal : normal;
+    const dvec3 n = aligned(unit_normal(geometry_, *c), n_);
     if (query(n, *c).h <= glm::dot(geometry_.point(*c), n) + geometry_.tie()) return false;
   }
   return true;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_geometry.h"
 #include "taut/hull/cull/culling.h"
 #include "taut/hull/result/hull_boundary.h"
 

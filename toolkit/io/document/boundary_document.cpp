@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_sources.h"
 
 namespace taut {

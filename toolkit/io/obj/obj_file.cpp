@@ -8,7 +8,6 @@
 
 #include "taut/core/tolerances.h"
 #include "taut/io/mesh/obj_reference.h"
-#include "taut/io/obj/obj_tags.h"
 
 namespace taut {
 namespace {

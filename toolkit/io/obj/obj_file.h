@@ -6,8 +6,8 @@
 
 #include "taut/core/geometry.h"
 #include "taut/core/progress.h"
+#include "taut/io/obj/obj_tags.h"
 #include "taut/io/text/text_scanner.h"
-#include "taut/surface/control_cage.h"
 
 namespace taut {
 
@@ -50,17 +50,6 @@ struct ObjElement {
   std::vector<ObjLoop> loops;
   std::string name;  ///< of the last `g` or `o`, may be empty
   long line = 0;
-};
-
-/// OpenSubdiv's tags of a subdivision cage. Vertices and faces are in range, faces are polygons in
-/// their order.
-struct ObjTags {
-  std::vector<CageCrease> creases;
-  std::vector<CageCorner> corners;
-  std::vector<int> holes;
-  CageBoundary boundary = CageBoundary::edge_and_corner;
-  bool chaikin = false;
-  bool smooth_triangles = false;
 };
 
 /// What an OBJ file holds of geometry, in the file's own terms.

@@ -1,12 +1,24 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "taut/io/obj/obj_file.h"
 #include "taut/io/text/text_scanner.h"
+#include "taut/surface/control_cage.h"
 
 namespace taut {
+
+/// OpenSubdiv's tags of a subdivision cage. Vertices and faces are in range, faces are polygons in
+/// their order.
+struct ObjTags {
+  std::vector<CageCrease> creases;
+  std::vector<CageCorner> corners;
+  std::vector<int> holes;
+  CageBoundary boundary = CageBoundary::edge_and_corner;
+  bool chaikin = false;
+  bool smooth_triangles = false;
+};
 
 /// Reads the tags that OpenSubdiv writes into OBJ files: `t NAME I/F/S`, behind which stand I
 /// integers, F numbers and S words. Indices count from 0.

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/local_curvature.h"
 
 #include <cmath>
 
@@ -32,73 +32,75 @@ dvec2 split(const Form& form, double& flat, double& steep) {
 
 }  // namespace
 
-std::optional<SurfaceBend> surface_bend(const ContactGeometry& geometry, const Contact& c) {
+std::optional<SurfaceCurvature> surface_curvature(const ContactGeometry& geometry,
+                                                  const Contact& c) {
   const PatchJet3 j = geometry.patch_jet(c);
   const dvec3 normal = glm::cross(j.Su, j.Sv);
   const double speed = glm::length(j.Su);
-  SurfaceBend bend;
-  bend.area = glm::length(normal);
-  if (!(speed > least_speed) || !(bend.area > least_sine * speed * glm::length(j.Sv)) ||
-      !(bend.area > least_speed * speed)) {
+  SurfaceCurvature local;
+  local.area = glm::length(normal);
+  if (!(speed > least_speed) || !(local.area > least_sine * speed * glm::length(j.Sv)) ||
+      !(local.area > least_speed * speed)) {
     return std::nullopt;
   }
-  bend.x = j.S;
-  bend.n = normal / bend.area;
+  local.x = j.S;
+  local.n = normal / local.area;
   // Rates of the parameters along two orthogonal tangents of unit length, the first along Su.
   const dvec2 a(1 / speed, 0);
-  const double across = bend.area / speed;
+  const double across = local.area / speed;
   const dvec2 b(-glm::dot(j.Su, j.Sv) / (speed * speed * across), 1 / across);
-  const double uu = glm::dot(j.Suu, bend.n);
-  const double uv = glm::dot(j.Suv, bend.n);
-  const double vv = glm::dot(j.Svv, bend.n);
+  const double uu = glm::dot(j.Suu, local.n);
+  const double uv = glm::dot(j.Suv, local.n);
+  const double vv = glm::dot(j.Svv, local.n);
   const auto second = [&](const dvec2& p, const dvec2& q) {
     return uu * p.x * q.x + uv * (p.x * q.y + p.y * q.x) + vv * p.y * q.y;
   };
-  const dvec2 e = split({second(a, a), second(a, b), second(b, b)}, bend.flat, bend.steep);
-  if (bend.steep > 0) {
-    bend.n = -bend.n;
-    bend.flat = -bend.flat;
-    bend.steep = -bend.steep;
+  const dvec2 e = split({second(a, a), second(a, b), second(b, b)}, local.flat, local.steep);
+  if (local.steep > 0) {
+    local.n = -local.n;
+    local.flat = -local.flat;
+    local.steep = -local.steep;
   }
-  bend.rate = e.x * a + e.y * b;
-  bend.along = unit(bend.rate.x * j.Su + bend.rate.y * j.Sv);
-  const double u = bend.rate.x;
-  const double v = bend.rate.y;
+  local.rate = e.x * a + e.y * b;
+  local.along = unit(local.rate.x * j.Su + local.rate.y * j.Sv);
+  const double u = local.rate.x;
+  const double v = local.rate.y;
   const dvec3 third =
       u * u * u * j.Suuu + 3 * u * v * (u * j.Suuv + v * j.Suvv) + v * v * v * j.Svvv;
-  bend.cubic = glm::dot(third, bend.n);
-  bend.third = glm::length(third);
-  return bend;
+  local.cubic = glm::dot(third, local.n);
+  local.third = glm::length(third);
+  return local;
 }
 
-std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Contact& c) {
+std::optional<CurveCurvature> curve_curvature(const ContactGeometry& geometry, const Contact& c) {
   const CurveJet j = geometry.curve_jet(c);
   const double speed = glm::length(j.ct);
   if (!(speed > least_speed)) return std::nullopt;
-  CurveBend bend;
-  bend.x = j.c;
-  bend.along = j.ct / speed;
-  bend.second = j.ctt / (speed * speed);
-  bend.third = j.cttt / (speed * speed * speed);
-  const dvec3 cross = glm::cross(bend.along, bend.second);
-  bend.curvature = glm::length(cross);
-  bend.binormal = unit(cross);
-  bend.twist = glm::dot(cross, bend.third);
-  return bend;
+  CurveCurvature local;
+  local.x = j.c;
+  local.along = j.ct / speed;
+  local.second = j.ctt / (speed * speed);
+  local.third = j.cttt / (speed * speed * speed);
+  const dvec3 cross = glm::cross(local.along, local.second);
+  local.curvature = glm::length(cross);
+  local.binormal = unit(cross);
+  local.twist = glm::dot(cross, local.third);
+  return local;
 }
 
-double twist_rounding(const ContactGeometry& geometry, const Contact& c, const CurveBend& bend) {
+double twist_rounding(const ContactGeometry& geometry, const Contact& c,
+                      const CurveCurvature& local) {
   const double degree = geometry.piece(c).bezier.degree();
   // Differences of order k are of 2^k roundings, times no more than the degree to the power k.
   const double rate = 2 * degree / glm::length(geometry.curve_jet(c).ct);
-  return geometry.rounding() * rate * rate * (rate * bend.curvature + glm::length(bend.third));
+  return geometry.rounding() * rate * rate * (rate * local.curvature + glm::length(local.third));
 }
 
 bool ends_straight(const ContactGeometry& geometry, const Contact& c) {
   if (c.kind != SourceKind::edge || (c.u != 0 && c.u != 1)) return false;
   const ContactJet j = geometry.jet(c);
-  const double bend = glm::length(glm::cross(unit(j.dx[0]), j.dxx));
-  return bend < std::sqrt(geometry.rounding()) * glm::dot(j.dx[0], j.dx[0]);
+  const double bent = glm::length(glm::cross(unit(j.dx[0]), j.dxx));
+  return bent < std::sqrt(geometry.rounding()) * glm::dot(j.dx[0], j.dx[0]);
 }
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/coincidences.h"
+#include "taut/bounds/repeated_elements.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "models.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_geometry.h"
 
 namespace taut {
 namespace {
@@ -58,7 +58,7 @@ dvec3 point_of(const PlacedElement& e, double u, double v) {
   return point(BezierPatch{e.degree_u, e.degree_v, e.points}, u, v);
 }
 
-TEST(Coincidences, PatchesUpToReversalAndExchange) {
+TEST(RepeatedElements, PatchesUpToReversalAndExchange) {
   const PlacedElement first = patch_of(0, skew_net());
   for (unsigned symmetry = 0; symmetry < 8; ++symmetry) {
     SCOPED_TRACE(symmetry);
@@ -67,7 +67,7 @@ TEST(Coincidences, PatchesUpToReversalAndExchange) {
     other.instance = 3;
     other.element = 7;
     for (dvec4& p : other.points) p *= 2.5;  // another factor of the weights
-    const Coincidences same({first, other}, tolerance);
+    const RepeatedElements same({first, other}, tolerance);
     const Contact c{3, SourceKind::face, 7, 0.3, 0.8};
     EXPECT_TRUE(same.repeats(c));
     EXPECT_FALSE(same.repeats({0, SourceKind::face, 0, 0.3, 0.8}));
@@ -77,7 +77,7 @@ TEST(Coincidences, PatchesUpToReversalAndExchange) {
   }
 }
 
-TEST(Coincidences, PiecesUpToReversal) {
+TEST(RepeatedElements, PiecesUpToReversal) {
   Random random(32);
   const PlacedElement first = piece_of(4, random_curve(random, 3, 5).points);
   for (const bool reversed : {false, true}) {
@@ -85,7 +85,7 @@ TEST(Coincidences, PiecesUpToReversal) {
     other.element = 9;
     if (reversed) std::reverse(other.points.begin(), other.points.end());
     for (dvec4& p : other.points) p *= 0.3;
-    const Coincidences same({first, other}, tolerance);
+    const RepeatedElements same({first, other}, tolerance);
     const Contact c{0, SourceKind::edge, 9, 0.3, 0};
     ASSERT_TRUE(same.repeats(c));
     EXPECT_EQ(same.reversed(c), reversed);
@@ -97,24 +97,26 @@ TEST(Coincidences, PiecesUpToReversal) {
 }
 
 /// One number of a copy changed: the same just below the tolerance, different just above it.
-TEST(Coincidences, ToleranceIsSharp) {
+TEST(RepeatedElements, ToleranceIsSharp) {
   const std::vector<dvec4> net = skew_net();
   for (std::size_t k = 0; k < net.size(); ++k) {
     for (const double share : {0.9, 1.1}) {
       for (const int axis : {0, 1, 2}) {
         std::vector<dvec4> moved = net;
         moved[k][axis] += 1e-6 * share * net[k].w;
-        EXPECT_EQ(Coincidences({patch_of(0, net), patch_of(1, moved)}, 1e-6).empty(), share > 1);
+        EXPECT_EQ(RepeatedElements({patch_of(0, net), patch_of(1, moved)}, 1e-6).empty(),
+                  share > 1);
       }
       // A weight alone; that of the first point is what the others are compared with.
       std::vector<dvec4> heavier = net;
       heavier[k] *= 1 + 1e-6 * share;
-      EXPECT_EQ(Coincidences({patch_of(0, net), patch_of(1, heavier)}, 1e-6).empty(), share > 1);
+      EXPECT_EQ(RepeatedElements({patch_of(0, net), patch_of(1, heavier)}, 1e-6).empty(),
+                share > 1);
     }
   }
 }
 
-TEST(Coincidences, WhatDiffers) {
+TEST(RepeatedElements, WhatDiffers) {
   const std::vector<dvec4> net = skew_net();
   Random random(33);
   const std::vector<dvec4> curve = random_curve(random, 2, 1).points;
@@ -138,7 +140,7 @@ TEST(Coincidences, WhatDiffers) {
       {"vertices apart", vertex_of(0, {1, 2, 3}), vertex_of(1, {1, 2, 3 + 2 * tolerance})},
   };
   for (const Case& each : cases) {
-    const Coincidences none({each.a, each.b}, tolerance);
+    const RepeatedElements none({each.a, each.b}, tolerance);
     EXPECT_TRUE(none.empty() && none.all().empty()) << each.name;
     EXPECT_FALSE(none.repeats({each.b.instance, each.b.kind, each.b.element, 0, 0}));
     const Contact c{each.b.instance, each.b.kind, each.b.element, 0.25, 0.75};
@@ -147,7 +149,7 @@ TEST(Coincidences, WhatDiffers) {
   }
 }
 
-TEST(Coincidences, ManyCopies) {
+TEST(RepeatedElements, ManyCopies) {
   // Copies of copies lead to the first one of all, in whatever order they are given.
   const PlacedElement patch = patch_of(0, skew_net());
   std::vector<PlacedElement> all = {patch};
@@ -159,7 +161,7 @@ TEST(Coincidences, ManyCopies) {
     all.push_back(copy);
   }
   for (int k = 0; k < 20; ++k) all.push_back(vertex_of(k, {0.1 * (k % 5), 0.2, 0.3}));
-  const Coincidences same(all, tolerance);
+  const RepeatedElements same(all, tolerance);
   EXPECT_EQ(same.all().size(), 19U + 15U);
   for (int k = 0; k < 20; ++k) {
     const Contact at = same.first({0, SourceKind::face, k, 0.3, 0.8});
@@ -172,14 +174,14 @@ TEST(Coincidences, ManyCopies) {
 }
 
 /// Each within the tolerance of the one before it: first() ends at one that repeats no other.
-TEST(Coincidences, ChainsOfNearlyEqualVertices) {
+TEST(RepeatedElements, ChainsOfNearlyEqualVertices) {
   std::vector<PlacedElement> chain;
   chain.reserve(10);
   for (int k = 0; k < 10; ++k) {
     const int place = (7 * k) % 10;  // not in the order in which they lie
     chain.push_back(vertex_of(k, {0.7 * tolerance * place, 0, 0}));
   }
-  const Coincidences same(chain, tolerance);
+  const RepeatedElements same(chain, tolerance);
   EXPECT_FALSE(same.empty());
   for (int k = 0; k < 10; ++k) {
     const Contact c{0, SourceKind::vertex, k, 0, 0};

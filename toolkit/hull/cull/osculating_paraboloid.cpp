@@ -1,4 +1,4 @@
-#include "taut/hull/cull/fall_map.h"
+#include "taut/hull/cull/osculating_paraboloid.h"
 
 #include <cmath>
 
@@ -10,8 +10,8 @@ constexpr double flat_share = 1e-10;
 
 }  // namespace
 
-std::optional<FallMap> FallMap::about(const ConcavePatch& patch, const dvec2& p,
-                                      const dvec3& axis) {
+std::optional<OsculatingParaboloid> OsculatingParaboloid::about(const ConcavePatch& patch,
+                                                                const dvec2& p, const dvec3& axis) {
   const PatchJet2 jet = jet2(patch.bezier(), p.x, p.y);
   dvec3 n = glm::cross(jet.Su, jet.Sv);
   const double volume = glm::dot(n, axis);
@@ -24,7 +24,7 @@ std::optional<FallMap> FallMap::about(const ConcavePatch& patch, const dvec2& p,
   if (!(uu > 0 && rest > flat_share * vv)) return {};
   const dvec3 to_u = glm::cross(jet.Sv, axis) / volume;
   const dvec3 to_v = glm::cross(axis, jet.Su) / volume;
-  FallMap map;
+  OsculatingParaboloid map;
   map.center_ = jet.S;
   map.uu_ = std::sqrt(uu);
   map.uv_ = uv / map.uu_;
@@ -34,7 +34,7 @@ std::optional<FallMap> FallMap::about(const ConcavePatch& patch, const dvec2& p,
   return map;
 }
 
-dvec2 FallMap::step(const dvec2& to) const {
+dvec2 OsculatingParaboloid::step(const dvec2& to) const {
   const double dv = to.y / vv_;
   return {(to.x - uv_ * dv) / uu_, dv};
 }

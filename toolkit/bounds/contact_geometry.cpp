@@ -1,4 +1,4 @@
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 
 #include <algorithm>
 #include <cassert>
@@ -156,7 +156,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop)
     for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
     find_straight(part, own);
   }
-  find_coincidences();
+  find_repeated_elements();
 }
 
 PlacedElement ContactGeometry::placed(const Contact& c) const {
@@ -205,7 +205,7 @@ void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
   }
 }
 
-void ContactGeometry::find_coincidences() {
+void ContactGeometry::find_repeated_elements() {
   const Model& model = scene_.model();
   std::vector<PlacedElement> all;
   for (int i = 0; i < int(model.instances().size()); ++i) {
@@ -217,8 +217,8 @@ void ContactGeometry::find_coincidences() {
     add(SourceKind::edge, part.pieces().size());
     add(SourceKind::vertex, part.vertices().size());
   }
-  coincidences_ = Coincidences(all, tie_);
-  for (const Contact& c : coincidences_.all()) share(c);
+  repeated_elements_ = RepeatedElements(all, tie_);
+  for (const Contact& c : repeated_elements_.all()) share(c);
   place_points(all);
 }
 
@@ -251,7 +251,7 @@ void ContactGeometry::place_points(const std::vector<PlacedElement>& all) {
       if (glm::any(glm::lessThan(p->x, lower)) || glm::any(glm::greaterThan(p->x, upper))) continue;
       const double t = nearest_parameter(curve, p->x);
       if (glm::distance(taut::point(curve, t), p->x) > tie_) continue;
-      coincidences_.place(p->vertex, {c.instance, c.kind, c.element, t, 0});
+      repeated_elements_.place(p->vertex, {c.instance, c.kind, c.element, t, 0});
     }
   }
 }
@@ -271,7 +271,7 @@ void ContactGeometry::share(const Contact& repeated) {
     }
   };
   if (repeated.kind == SourceKind::edge) {
-    const bool reversed = coincidences_.reversed(repeated);
+    const bool reversed = repeated_elements_.reversed(repeated);
     const auto add = [&](PieceSide side, std::vector<PieceSide>& list) {
       if (is_repeated({side.instance, SourceKind::face, side.patch, 0, 0})) return;
       side.reversed = side.reversed != reversed;

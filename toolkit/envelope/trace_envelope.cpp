@@ -1,4 +1,4 @@
-#include "taut/envelope/envelope_map.h"
+#include "taut/envelope/trace_envelope.h"
 
 #include <algorithm>
 #include <optional>

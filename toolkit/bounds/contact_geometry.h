@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <vector>
 
+#include "taut/bounds/repeated_elements.h"
 #include "taut/bounds/scene.h"
-#include "taut/hull/contact/coincidences.h"
 
 namespace taut {
 
@@ -79,9 +79,9 @@ class ContactGeometry {
 
   /// The same point on the first of the elements that coincide with the contact's, within
   /// tie(); of a point beside which no edge ends and that lies on an edge, on the edge.
-  Contact first(const Contact& c) const { return coincidences_.first(c); }
+  Contact first(const Contact& c) const { return repeated_elements_.first(c); }
   /// The contact's element coincides with an earlier one. Contacts are told as ones of the first.
-  bool is_repeated(const Contact& c) const { return coincidences_.repeats(c); }
+  bool is_repeated(const Contact& c) const { return repeated_elements_.repeats(c); }
 
   /// A side of a patch, not a ruled one, that lies on an edge's piece.
   struct PieceSide {
@@ -138,7 +138,7 @@ class ContactGeometry {
   void start_evaluation() const;
   PlacedElement placed(const Contact& c) const;
   void find_straight(const Part& part, PartElements& own) const;
-  void find_coincidences();
+  void find_repeated_elements();
   void place_points(const std::vector<PlacedElement>& all);
   void share(const Contact& repeated);
 
@@ -148,7 +148,7 @@ class ContactGeometry {
   double rounding_ = 0;
   double tie_ = 0;
   std::vector<PartElements> parts_;
-  Coincidences coincidences_;
+  RepeatedElements repeated_elements_;
   /// Of elements that others repeat: by instance and element.
   using Place = std::pair<int, int>;
   std::map<Place, std::vector<PieceSide>> shared_sides_;

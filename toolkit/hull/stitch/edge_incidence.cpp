@@ -1,4 +1,4 @@
-#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/edge_incidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +22,8 @@ double turn(const ContactJet& edge, const dvec3& n, const dvec3& towards) {
 
 }  // namespace
 
-CreaseTracks::CreaseTracks(const ContactGeometry& geometry, const SeparatingGraph& graph,
-                           const std::vector<TrimRegion>& regions) {
+EdgeIncidence::EdgeIncidence(const ContactGeometry& geometry, const SeparatingGraph& graph,
+                             const std::vector<TrimRegion>& regions) {
   for (int a = 0; a < int(graph.arcs.size()); ++a) {
     add_arc(geometry, graph.arcs[std::size_t(a)], a);
   }
@@ -37,7 +37,7 @@ CreaseTracks::CreaseTracks(const ContactGeometry& geometry, const SeparatingGrap
 
 /// The parameter along the edge grows or falls along an arc, and turns where a ruling is tangent to
 /// the edge.
-void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index) {
+void EdgeIncidence::add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index) {
   const ContactSystem system(geometry);
   for (int p = 0; p < int(arc.pieces.size()); ++p) {
     const std::vector<Ruling>& rulings = arc.pieces[std::size_t(p)].rulings;
@@ -53,7 +53,7 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
         const std::optional<Ruling> r = ruling_between(system, a, b, s);
         return r ? side(*r) : (1 - s) * side(a) + s * side(b);
       };
-      Crease& own = creases_[{first.instance, first.element}];
+      Edge& own = edges_[{first.instance, first.element}];
       const auto add = [&](double from, double to, double sense) {
         if (std::abs(to - from) < same_parameter) return;
         own.intervals.push_back({std::min(from, to),
@@ -94,19 +94,19 @@ void CreaseTracks::add_arc(const ContactGeometry& geometry, const SeparatingArc&
 }
 
 /// The facet lies to the left of its sides.
-void CreaseTracks::add_facet(const FacetNode& node, int index) {
+void EdgeIncidence::add_facet(const FacetNode& node, int index) {
   for (std::size_t k = 0; k < node.sides.size(); ++k) {
     if (!node.is_curved(k)) continue;
     const EdgeStretch& s = node.sides[k];
-    creases_[{s.instance, s.piece}].intervals.push_back({std::min(s.from, s.to),
-                                                         std::max(s.from, s.to),
-                                                         s.from < s.to,
-                                                         {-1, -1, 0, 0, -1, 0, 0, index}});
+    edges_[{s.instance, s.piece}].intervals.push_back({std::min(s.from, s.to),
+                                                       std::max(s.from, s.to),
+                                                       s.from < s.to,
+                                                       {-1, -1, 0, 0, -1, 0, 0, index}});
   }
 }
 
-void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion& region,
-                              int index) {
+void EdgeIncidence::add_region(const ContactGeometry& geometry, const TrimRegion& region,
+                               int index) {
   const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
   const Patch& patch = geometry.part(any).patches()[std::size_t(region.patch)];
   for (std::size_t l = 0; l < region.loops.size(); ++l) {
@@ -123,13 +123,13 @@ void CreaseTracks::add_region(const ContactGeometry& geometry, const TrimRegion&
       const double from = first.u;
       const double to = on_piece(s.to).u;
       // The region lies to the left of its outline.
-      creases_[{first.instance, first.element}].intervals.push_back(
+      edges_[{first.instance, first.element}].intervals.push_back(
           {std::min(from, to), std::max(from, to), from < to, {-1, -1, 0, 0, index, l, k, -1}});
     }
   }
 }
 
-std::vector<double> CreaseTracks::Crease::ends() const {
+std::vector<double> EdgeIncidence::Edge::ends() const {
   std::vector<double> all;
   for (const Interval& i : intervals) {
     all.push_back(i.from);
@@ -143,15 +143,15 @@ std::vector<double> CreaseTracks::Crease::ends() const {
   return distinct;
 }
 
-std::vector<CreaseTracks::Stretch> CreaseTracks::overlay() const {
+std::vector<EdgeIncidence::Stretch> EdgeIncidence::overlay() const {
   std::vector<Stretch> result;
-  for (const auto& [place, crease] : creases_) {
-    const std::vector<double> ends = crease.ends();
+  for (const auto& [place, edge] : edges_) {
+    const std::vector<double> ends = edge.ends();
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
       Stretch s{place.first, place.second, ends[k], ends[k + 1], {}, {}};
       const double middle = 0.5 * (s.from + s.to);
-      for (const Interval& i : crease.intervals) {
-        if (i.from < middle && middle < i.to) (i.low ? s.low : s.high) = i.track;
+      for (const Interval& i : edge.intervals) {
+        if (i.from < middle && middle < i.to) (i.low ? s.low : s.high) = i.neighbor;
       }
       if (!s.low.empty() || !s.high.empty()) result.push_back(s);
     }
@@ -159,11 +159,11 @@ std::vector<CreaseTracks::Stretch> CreaseTracks::overlay() const {
   return result;
 }
 
-std::vector<double> CreaseTracks::breaks(int instance, int piece, bool reversed, double from,
-                                         double to) const {
+std::vector<double> EdgeIncidence::breaks(int instance, int piece, bool reversed, double from,
+                                          double to) const {
   std::vector<double> result;
-  const auto found = creases_.find({instance, piece});
-  if (found == creases_.end()) return result;
+  const auto found = edges_.find({instance, piece});
+  if (found == edges_.end()) return result;
   for (const double end : found->second.ends()) {
     const double t = reversed ? 1 - end : end;
     if (t > std::min(from, to) + same_parameter && t < std::max(from, to) - same_parameter) {

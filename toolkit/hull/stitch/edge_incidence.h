@@ -12,14 +12,14 @@ namespace taut {
 /// touches, the directions that support it make an arc across the tangent; beyond its two ends lies
 /// the surface to the left and to the right of the edge: a patch that ends in it, a scroll, or a
 /// facet of which it is a side.
-class CreaseTracks {
+class EdgeIncidence {
  public:
-  CreaseTracks(const ContactGeometry& geometry, const SeparatingGraph& graph,
-               const std::vector<TrimRegion>& regions);
+  EdgeIncidence(const ContactGeometry& geometry, const SeparatingGraph& graph,
+                const std::vector<TrimRegion>& regions);
 
   /// One side of a stretch of an edge: a piece of an arc, a stretch of a region's outline, or a
   /// facet.
-  struct Track {
+  struct Neighbor {
     int arc = -1;
     int piece = -1;
     int contact = 0;   ///< which of the piece's contacts lies on the edge
@@ -36,8 +36,8 @@ class CreaseTracks {
     int piece = -1;
     double from = 0;
     double to = 0;
-    Track low;   ///< to the left
-    Track high;  ///< to the right
+    Neighbor low;   ///< to the left
+    Neighbor high;  ///< to the right
   };
   /// All stretches of edges on the hull along which nothing changes.
   std::vector<Stretch> overlay() const;
@@ -50,9 +50,9 @@ class CreaseTracks {
   struct Interval {
     double from, to;
     bool low;
-    Track track;
+    Neighbor neighbor;
   };
-  struct Crease {
+  struct Edge {
     std::vector<Interval> intervals;
     std::vector<double> ends() const;
   };
@@ -60,7 +60,7 @@ class CreaseTracks {
   void add_facet(const FacetNode& node, int index);
   void add_region(const ContactGeometry& geometry, const TrimRegion& region, int index);
 
-  std::map<std::pair<int, int>, Crease> creases_;  // by instance and piece
+  std::map<std::pair<int, int>, Edge> edges_;  // by instance and piece
 };
 
 }  // namespace taut

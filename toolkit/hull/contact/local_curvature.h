@@ -2,13 +2,13 @@
 
 #include <optional>
 
-#include "taut/hull/contact/contact_geometry.h"
+#include "taut/bounds/contact_geometry.h"
 
 namespace taut {
 
-/// How a surface bends at a point of it, up to third order, in the scene's frame: what tells where
-/// its parabolic curve runs and where on it the cusps of Gauss are.
-struct SurfaceBend {
+/// The curvature of a surface at a point, and its change, up to third order, in the scene's frame:
+/// what tells where the surface's parabolic curve runs and where on it the cusps of Gauss are.
+struct SurfaceCurvature {
   dvec3 x = dvec3(0.0);
   /// Unit normal on the side from which the surface bends away most: the outward one wherever a
   /// supporting plane can touch.
@@ -32,10 +32,11 @@ struct SurfaceBend {
 
 /// None where the parameters fail: tangents that vanish or are parallel.
 /// @pre kind face; parameters may leave [0, 1] by a little
-std::optional<SurfaceBend> surface_bend(const ContactGeometry& geometry, const Contact& c);
+std::optional<SurfaceCurvature> surface_curvature(const ContactGeometry& geometry,
+                                                  const Contact& c);
 
-/// How a curve bends at a point of it, up to third order, in the scene's frame.
-struct CurveBend {
+/// The curvature and torsion of a curve at a point, up to third order, in the scene's frame.
+struct CurveCurvature {
   dvec3 x = dvec3(0.0);
   dvec3 along = dvec3(0.0);     ///< unit tangent
   dvec3 binormal = dvec3(0.0);  ///< unit; zero where the curvature vanishes
@@ -47,11 +48,12 @@ struct CurveBend {
 };
 
 /// None where the curve stands still. @pre kind edge
-std::optional<CurveBend> curve_bend(const ContactGeometry& geometry, const Contact& c);
+std::optional<CurveCurvature> curve_curvature(const ContactGeometry& geometry, const Contact& c);
 
 /// What the rounding of control points may make of the twist of an edge's piece, which the third
-/// power of its length divides. @pre kind edge, the bend is there
-double twist_rounding(const ContactGeometry& geometry, const Contact& c, const CurveBend& bend);
+/// power of its length divides. @pre kind edge, `local` is at c
+double twist_rounding(const ContactGeometry& geometry, const Contact& c,
+                      const CurveCurvature& local);
 
 /// It is on an edge, at the end of a piece that has no curvature there but for rounding.
 bool ends_straight(const ContactGeometry& geometry, const Contact& c);

@@ -1,4 +1,4 @@
-#include "taut/hull/mesh/kept_chords.h"
+#include "taut/hull/mesh/constrained_edges.h"
 
 #include <algorithm>
 
@@ -6,9 +6,9 @@
 
 namespace taut {
 
-KeptChords::KeptChords(const ContactGeometry& geometry, const HullBoundary& boundary,
-                       const ContactFaces& faces, const std::vector<CurveChord>& chords,
-                       double least)
+ConstrainedEdges::ConstrainedEdges(const ContactGeometry& geometry, const HullBoundary& boundary,
+                                   const ContactFaces& faces, const std::vector<CurveChord>& chords,
+                                   double least)
     : geometry_(geometry),
       boundary_(boundary),
       faces_(faces),
@@ -17,13 +17,13 @@ KeptChords::KeptChords(const ContactGeometry& geometry, const HullBoundary& boun
   for (const CurveChord& chord : chords) add(chord);
 }
 
-void KeptChords::add(const CurveChord& chord) {
+void ConstrainedEdges::add(const CurveChord& chord) {
   chords_.emplace(std::minmax(chord.a, chord.b), chord);
 }
 
 /// Across pieces, where one of them ends, unless that is one of the chord's ends already. None if
 /// no exact ruling is found there.
-std::optional<ArcPlace> KeptChords::middle_of(const CurveChord& chord) const {
+std::optional<ArcPlace> ConstrainedEdges::middle_of(const CurveChord& chord) const {
   const ArcPlace& from = chord.from;
   const ArcPlace& to = chord.to;
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(from.arc)].pieces;
@@ -50,7 +50,7 @@ std::optional<ArcPlace> KeptChords::middle_of(const CurveChord& chord) const {
                   to.ruling);
 }
 
-std::optional<KeptEdges::Middle> KeptChords::middle(int a, int b) const {
+std::optional<EdgeConstraints::Middle> ConstrainedEdges::middle(int a, int b) const {
   const auto found = chords_.find(std::minmax(a, b));
   if (found == chords_.end()) return std::nullopt;
   const CurveChord& chord = found->second;
@@ -65,7 +65,7 @@ std::optional<KeptEdges::Middle> KeptChords::middle(int a, int b) const {
   return Middle{{r.n, c}, geometry_.scene().frame().to_model(geometry_.point(c))};
 }
 
-void KeptChords::bisect(int a, int b, int middle) {
+void ConstrainedEdges::bisect(int a, int b, int middle) {
   const auto found = chords_.find(std::minmax(a, b));
   const CurveChord chord = found->second;
   chords_.erase(found);

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/concave_dome.h"
+#include "taut/hull/cull/convex_cap.h"
 
 #include <algorithm>
 #include <array>
@@ -32,18 +32,19 @@ const std::array<dvec2, 8> spokes = {
 const std::array<dvec2, 5> probes = {dvec2(0.5, 0.5), {0, 0}, {0, 1}, {1, 0}, {1, 1}};
 /// Levels of a patch's tree.
 constexpr int level_limit = 80;
-/// Quarterings of a cell of which the parts are looked for in a dome.
+/// Quarterings of a cell of which the parts are looked for in a cap.
 constexpr int cover_depth = 4;
 
 /// A point of a patch, over a disc, where it is not curved one way.
-bool bends_at(const ConcavePatch& surface, const dvec2& p, const FallMap& map, double radius) {
+bool bends_at(const ConcavePatch& surface, const dvec2& p, const OsculatingParaboloid& map,
+              double radius) {
   return glm::length(map(point(surface.bezier(), p.x, p.y))) < radius &&
          !(surface.curvature(p) > 0);
 }
 
 /// Some points of a patch over a disc about one of them are not curved one way: there is no need to
 /// look at the whole disc.
-bool bends_within(const ConcavePatch& surface, const dvec2& middle, const FallMap& map,
+bool bends_within(const ConcavePatch& surface, const dvec2& middle, const OsculatingParaboloid& map,
                   double radius) {
   for (const dvec2& d : spokes) {
     const dvec2 p = glm::clamp(middle + map.step(0.9 * radius * d), 0.0, 1.0);
@@ -134,7 +135,8 @@ void take_side(NetShape shape, const std::vector<dvec2>& net, Side side,
 /// The surface over a disc, as far as it is joined to the disc's centre.
 class Walk {
  public:
-  Walk(ConcaveSurfaces& surfaces, int part, const dvec3& axis, const FallMap& map, double radius)
+  Walk(ConcaveSurfaces& surfaces, int part, const dvec3& axis, const OsculatingParaboloid& map,
+       double radius)
       : surfaces_(surfaces),
         number_(surfaces.next_walk()),
         part_(part),
@@ -159,8 +161,8 @@ class Walk {
   }
 
   /// What lies over the disc, joined to the centre over it.
-  std::vector<ConcaveDome::Piece> inside() const {
-    std::vector<ConcaveDome::Piece> result;
+  std::vector<ConvexCap::Piece> inside() const {
+    std::vector<ConvexCap::Piece> result;
     std::vector<bool> known(pieces_.size(), false);
     std::vector<int> waiting;
     const auto add = [&](int index) {
@@ -279,7 +281,7 @@ class Walk {
   int part_;
   const std::vector<Patch>& patches_;
   dvec3 axis_;
-  const FallMap& map_;
+  const OsculatingParaboloid& map_;
   double radius_;
   double curvature_ = 0;
   std::vector<Piece> pieces_;
@@ -290,10 +292,10 @@ class Walk {
 };
 
 /// All of the rectangle is in the pieces, which are of its patch.
-bool are_covering(std::span<const ConcaveDome::Piece> pieces, const ParameterRectangle& cell,
+bool are_covering(std::span<const ConvexCap::Piece> pieces, const ParameterRectangle& cell,
                   int depth) {
   bool meets = false;
-  for (const ConcaveDome::Piece& piece : pieces) {
+  for (const ConvexCap::Piece& piece : pieces) {
     if (piece.cell.contains(cell)) return true;
     meets = meets || piece.cell.overlaps(cell);
   }
@@ -333,28 +335,28 @@ std::size_t ConcaveSurfaces::node_count() const {
   return nodes;
 }
 
-bool ConcaveDome::covers(int patch, const ParameterRectangle& cell) const {
+bool ConvexCap::covers(int patch, const ParameterRectangle& cell) const {
   const auto [first, last] =
       std::equal_range(pieces.begin(), pieces.end(), Piece{patch, {}, {}},
                        [](const Piece& a, const Piece& b) { return a.patch < b.patch; });
   return are_covering({first, last}, cell, 0);
 }
 
-bool ConcaveDome::faces(const NormalPyramid& pyramid, double sign) const {
+bool ConvexCap::faces(const NormalPyramid& pyramid, double sign) const {
   return std::all_of(pyramid.corners.begin(), pyramid.corners.end(),
                      [&](const dvec3& n) { return sign * glm::dot(n, axis) > 0; });
 }
 
-std::optional<ConcaveDome> concave_dome(ConcaveSurfaces& surfaces, int part, int patch,
-                                        const ParameterRectangle& cell, const dvec3& axis,
-                                        const FallMap& map, double radius) {
+std::optional<ConvexCap> convex_cap(ConcaveSurfaces& surfaces, int part, int patch,
+                                    const ParameterRectangle& cell, const dvec3& axis,
+                                    const OsculatingParaboloid& map, double radius) {
   if (bends_within(surfaces.patch(part, patch), cell.middle(), map, radius)) return {};
   Walk walk(surfaces, part, axis, map, radius);
   if (!walk.run(patch, cell)) return {};
-  ConcaveDome dome{axis, map, radius, walk.inside()};
-  std::stable_sort(dome.pieces.begin(), dome.pieces.end(),
+  ConvexCap cap{axis, map, radius, walk.inside()};
+  std::stable_sort(cap.pieces.begin(), cap.pieces.end(),
                    [](const auto& a, const auto& b) { return a.patch < b.patch; });
-  return dome;
+  return cap;
 }
 
 }  // namespace taut

@@ -11,12 +11,12 @@
 namespace taut {
 
 /// The chords of a boundary's curves, bisected by exact rulings.
-class KeptChords : public KeptEdges {
+class ConstrainedEdges : public EdgeConstraints {
  public:
   /// Chords no longer than `least` (in model units) are not bisected. All but the chords must
   /// outlive it.
-  KeptChords(const ContactGeometry& geometry, const HullBoundary& boundary,
-             const ContactFaces& faces, const std::vector<CurveChord>& chords, double least);
+  ConstrainedEdges(const ContactGeometry& geometry, const HullBoundary& boundary,
+                   const ContactFaces& faces, const std::vector<CurveChord>& chords, double least);
 
   std::optional<Middle> middle(int a, int b) const override;
   void bisect(int a, int b, int middle) override;

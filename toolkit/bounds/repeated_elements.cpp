@@ -1,4 +1,4 @@
-#include "taut/hull/contact/coincidences.h"
+#include "taut/bounds/repeated_elements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ bool agree(const PlacedElement& a, const PlacedElement& b, bool swapped, bool re
 
 }  // namespace
 
-Coincidences::Coincidences(const std::vector<PlacedElement>& elements, double tolerance) {
+RepeatedElements::RepeatedElements(const std::vector<PlacedElement>& elements, double tolerance) {
   std::vector<dvec3> middles;
   middles.reserve(elements.size());
   for (const PlacedElement& e : elements) middles.push_back(middle(e));
@@ -78,7 +78,7 @@ Coincidences::Coincidences(const std::vector<PlacedElement>& elements, double to
   }
 }
 
-Contact Coincidences::first(const Contact& c) const {
+Contact RepeatedElements::first(const Contact& c) const {
   if (empty()) return c;
   Contact at = c;
   // Copies of copies, too.
@@ -96,13 +96,13 @@ Contact Coincidences::first(const Contact& c) const {
   return at;
 }
 
-bool Coincidences::reversed(const Contact& c) const {
+bool RepeatedElements::reversed(const Contact& c) const {
   Contact low = c;
   low.u = 0;
   return first(low).u != 0;
 }
 
-std::vector<Contact> Coincidences::all() const {
+std::vector<Contact> RepeatedElements::all() const {
   std::vector<Contact> result;
   result.reserve(repeats_.size());
   for (const auto& entry : repeats_) {

@@ -7,12 +7,14 @@
 
 namespace taut {
 
-/// Coordinates in the plane normal to an axis, about a point of a surface, in which the surface
-/// falls below its tangent plane by half the square of the distance, to second order.
-class FallMap {
+/// The paraboloid that osculates a surface at a point, by coordinates about that point in the plane
+/// normal to an axis: the surface falls below its tangent plane by half the square of the distance
+/// in them, to second order.
+class OsculatingParaboloid {
  public:
   /// None if it does not fall to all sides, away from the axis. Of a stand-in, distances count.
-  static std::optional<FallMap> about(const ConcavePatch& patch, const dvec2& p, const dvec3& axis);
+  static std::optional<OsculatingParaboloid> about(const ConcavePatch& patch, const dvec2& p,
+                                                   const dvec3& axis);
 
   dvec2 operator()(const dvec3& p) const {
     return {glm::dot(p - center_, x_), glm::dot(p - center_, y_)};

@@ -1,4 +1,4 @@
-#include "taut/hull/contact/contact_bends.h"
+#include "taut/hull/contact/local_curvature.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ Contact on_patch(int patch, double u, double v) { return {0, SourceKind::face, p
 Contact on_piece(int piece, double t) { return {0, SourceKind::edge, piece, t, 0}; }
 
 /// Lengths are in the scene's frame; `scale` is what they are multiplied by there.
-TEST(SurfaceBend, OfATorus) {
+TEST(SurfaceCurvature, OfATorus) {
   const Scene scene = make_scene(mapped(torus(3, 1), skew_rotation()));
   const ContactGeometry geometry(scene);
   const double scale = scene.frame().scale;
@@ -24,7 +24,7 @@ TEST(SurfaceBend, OfATorus) {
   for (int k = 0; k < 200; ++k) {
     const Contact c =
         on_patch(pick(random, 0, patches - 1), uniform(random, 0, 1), uniform(random, 0, 1));
-    const std::optional<SurfaceBend> bend = surface_bend(geometry, c);
+    const std::optional<SurfaceCurvature> bend = surface_curvature(geometry, c);
     ASSERT_TRUE(bend.has_value());
     const dvec3 x = glm::transpose(skew_rotation()) * scene.frame().to_model(bend->x);
     // Across the meridian the curvature is cos t / (R + r cos t), seen from outside.
@@ -42,7 +42,7 @@ TEST(SurfaceBend, OfATorus) {
 }
 
 /// z = x^3 - y^2 over [0, 1]^2, bent at the origin along x with the cubic 6.
-TEST(SurfaceBend, OnAParabolicCurve) {
+TEST(SurfaceCurvature, OnAParabolicCurve) {
   BezierPatch patch{3, 2, {}};
   for (int i = 0; i <= 3; ++i) {
     for (int j = 0; j <= 2; ++j) {
@@ -52,7 +52,7 @@ TEST(SurfaceBend, OnAParabolicCurve) {
   const Scene scene = make_scene(of_patch(patch));
   const ContactGeometry geometry(scene);
   const double scale = scene.frame().scale;
-  const std::optional<SurfaceBend> bend = surface_bend(geometry, on_patch(0, 0, 0));
+  const std::optional<SurfaceCurvature> bend = surface_curvature(geometry, on_patch(0, 0, 0));
   ASSERT_TRUE(bend.has_value());
   EXPECT_LT(glm::distance(bend->n, dvec3(0, 0, 1)), 1e-15);
   EXPECT_NEAR(bend->flat, 0, 1e-15);
@@ -61,21 +61,21 @@ TEST(SurfaceBend, OnAParabolicCurve) {
   EXPECT_NEAR(bend->cubic * scale * scale, 6 * bend->along.x, 1e-12);
 }
 
-TEST(SurfaceBend, NoneAtPoles) {
+TEST(SurfaceCurvature, NoneAtPoles) {
   const Scene scene = make_scene(sphere());
   const ContactGeometry geometry(scene);
-  EXPECT_FALSE(surface_bend(geometry, on_patch(0, 0.3, 0)).has_value());
+  EXPECT_FALSE(surface_curvature(geometry, on_patch(0, 0.3, 0)).has_value());
 }
 
 /// (t, t^2, t^3): first derivatives (1, 2t, 3t^2), (0, 2, 6t), (0, 0, 6), with determinant 12.
-TEST(CurveBend, OfATwistedCubic) {
+TEST(CurveCurvature, OfATwistedCubic) {
   const dmat3 turn = skew_rotation();
   const Scene scene = make_scene(mapped({{}, {twisted_cubic()}, {}}, turn));
   const ContactGeometry geometry(scene);
   const double scale = scene.frame().scale;
   for (int k = 0; k <= 10; ++k) {
     const double t = 0.1 * k;
-    const std::optional<CurveBend> bend = curve_bend(geometry, on_piece(0, t));
+    const std::optional<CurveCurvature> bend = curve_curvature(geometry, on_piece(0, t));
     ASSERT_TRUE(bend.has_value());
     const dvec3 first(1, 2 * t, 3 * t * t);
     const dvec3 second(0, 2, 6 * t);
@@ -92,9 +92,10 @@ TEST(CurveBend, OfATwistedCubic) {
   }
 }
 
-TEST(CurveBend, HasNoBinormalWhereItIsStraight) {
+TEST(CurveCurvature, HasNoBinormalWhereItIsStraight) {
   const Scene scene = make_scene({{}, {segment({0, 0, 0}, {1, 2, 3}), twisted_cubic()}, {}});
-  const std::optional<CurveBend> bend = curve_bend(ContactGeometry(scene), on_piece(0, 0.3));
+  const std::optional<CurveCurvature> bend =
+      curve_curvature(ContactGeometry(scene), on_piece(0, 0.3));
   ASSERT_TRUE(bend.has_value());
   EXPECT_EQ(bend->curvature, 0);
   EXPECT_EQ(bend->binormal, dvec3(0.0));
@@ -119,7 +120,7 @@ TEST(TwistRounding, TellsPlaneCurves) {
         make_scene({{}, {segment({-1, -1, -1}, {1, 1, 1}), piece(size, height)}, {}});
     const ContactGeometry geometry(scene);
     for (const double t : {0.0, 0.3, 1.0}) {
-      const std::optional<CurveBend> bend = curve_bend(geometry, on_piece(1, t));
+      const std::optional<CurveCurvature> bend = curve_curvature(geometry, on_piece(1, t));
       ASSERT_TRUE(bend.has_value());
       const double rounding = twist_rounding(geometry, on_piece(1, t), *bend);
       if (height == 0) {

@@ -1,4 +1,4 @@
-#include "taut/hull/stitch/crease_tracks.h"
+#include "taut/hull/stitch/edge_incidence.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-struct Tracked : TracedScene {
+struct EdgeScene : TracedScene {
   using TracedScene::TracedScene;
 
-  /// Tracks of arcs name a contact on the edge that passes the stretch the way they say.
-  void expect_names_contacts(const CreaseTracks::Stretch& s) const {
-    for (const CreaseTracks::Track& t : {s.low, s.high}) {
+  /// Neighbours on arcs name a contact on the edge that passes the stretch the way they say.
+  void expect_names_contacts(const EdgeIncidence::Stretch& s) const {
+    for (const EdgeIncidence::Neighbor& t : {s.low, s.high}) {
       if (t.empty()) continue;
       EXPECT_EQ((t.arc >= 0 ? 1 : 0) + (t.region >= 0 ? 1 : 0) + (t.node >= 0 ? 1 : 0), 1);
       if (t.arc < 0) continue;
@@ -45,61 +45,61 @@ struct Tracked : TracedScene {
   }
 };
 
-TEST(CreaseTracks, TwistedCubic) {
+TEST(EdgeIncidence, TwistedCubic) {
   // The curve is a crease all along, between the cones from its two ends.
-  const Tracked cubic({{}, {twisted_cubic()}, {}});
+  const EdgeScene cubic({{}, {twisted_cubic()}, {}});
   EXPECT_TRUE(cubic.unresolved.empty());
-  const CreaseTracks tracks(cubic.geometry, cubic.graph, cubic.regions);
-  const auto stretches = tracks.overlay();
+  const EdgeIncidence incidence(cubic.geometry, cubic.graph, cubic.regions);
+  const auto stretches = incidence.overlay();
   ASSERT_EQ(stretches.size(), 1U);
-  const CreaseTracks::Stretch& s = stretches[0];
+  const EdgeIncidence::Stretch& s = stretches[0];
   EXPECT_TRUE(s.from == 0 && s.to == 1 && s.piece == 0);
   EXPECT_FALSE(s.low.empty() || s.high.empty());
-  EXPECT_TRUE(tracks.breaks(0, 0, false, 0, 1).empty());
+  EXPECT_TRUE(incidence.breaks(0, 0, false, 0, 1).empty());
   cubic.expect_names_contacts(s);
   // To the left seen from outside along the curve lies the cone from its beginning, which the
   // osculating planes' side tells: b . (apex - x) changes sign between the two ends.
-  const auto apex = [&](const CreaseTracks::Track& t) {
+  const auto apex = [&](const EdgeIncidence::Neighbor& t) {
     const Ruling& r = cubic.graph.arcs[std::size_t(t.arc)].pieces[std::size_t(t.piece)].rulings[0];
     return r.point[r.contact[0].kind == SourceKind::vertex ? 0 : 1];
   };
   EXPECT_GT(glm::distance(apex(s.low), apex(s.high)), 0.5);
 }
 
-TEST(CreaseTracks, OverlayOfRandomCurves) {
+TEST(EdgeIncidence, OverlayOfRandomCurves) {
   int stretches = 0;
   for (const unsigned seed : {1U, 2U, 4U, 5U}) {
     Random random(400 + seed);
-    const Tracked curve({{}, {as_nurbs(random_curve(random, 5, 3))}, {}});
+    const EdgeScene curve({{}, {as_nurbs(random_curve(random, 5, 3))}, {}});
     if (!curve.unresolved.empty()) continue;
-    const CreaseTracks tracks(curve.geometry, curve.graph, curve.regions);
-    for (const CreaseTracks::Stretch& s : tracks.overlay()) {
+    const EdgeIncidence incidence(curve.geometry, curve.graph, curve.regions);
+    for (const EdgeIncidence::Stretch& s : incidence.overlay()) {
       EXPECT_LT(s.from, s.to);
       EXPECT_FALSE(s.low.empty() || s.high.empty());
       curve.expect_names_contacts(s);
       // Where it changes, and nowhere else, other stretches of the piece begin.
-      EXPECT_TRUE(tracks.breaks(s.instance, s.piece, false, s.from, s.to).empty());
+      EXPECT_TRUE(incidence.breaks(s.instance, s.piece, false, s.from, s.to).empty());
       ++stretches;
     }
   }
   EXPECT_GT(stretches, 4);
 }
 
-TEST(CreaseTracks, BordersOfPatches) {
+TEST(EdgeIncidence, BordersOfPatches) {
   // Two bowls that look at each other: their rims are on the hull in part, with the bowl on the
   // one side and the scroll between them on the other.
   const dmat3 over(1, 0, 0, 0, -1, 0, 0, 0, -1);
-  const Tracked bowls(spherical_cap(1) + shifted(mapped(spherical_cap(1), over), {0.3, 0.1, -1}));
+  const EdgeScene bowls(spherical_cap(1) + shifted(mapped(spherical_cap(1), over), {0.3, 0.1, -1}));
   EXPECT_TRUE(bowls.unresolved.empty());
-  const CreaseTracks tracks(bowls.geometry, bowls.graph, bowls.regions);
-  const auto stretches = tracks.overlay();
+  const EdgeIncidence incidence(bowls.geometry, bowls.graph, bowls.regions);
+  const auto stretches = incidence.overlay();
   EXPECT_GE(stretches.size(), 4U);
-  for (const CreaseTracks::Stretch& s : stretches) {
+  for (const EdgeIncidence::Stretch& s : stretches) {
     EXPECT_NE(s.low.arc >= 0, s.high.arc >= 0);
     EXPECT_NE(s.low.region >= 0, s.high.region >= 0);
     bowls.expect_names_contacts(s);
-    const auto all = tracks.breaks(s.instance, s.piece, false, 0, 1);
-    const auto back = tracks.breaks(s.instance, s.piece, true, 1, 0);
+    const auto all = incidence.breaks(s.instance, s.piece, false, 0, 1);
+    const auto back = incidence.breaks(s.instance, s.piece, true, 1, 0);
     ASSERT_EQ(all.size(), back.size());
     for (std::size_t k = 0; k < all.size(); ++k) EXPECT_NEAR(all[k], 1 - back[k], 1e-15);
     for (std::size_t k = 0; k + 1 < all.size(); ++k) EXPECT_LT(all[k], all[k + 1]);
@@ -109,7 +109,7 @@ TEST(CreaseTracks, BordersOfPatches) {
 /// What lies beside edges, by its kind.
 enum class Beside { nothing, scroll, patch, facet };
 
-Beside kind_of(const CreaseTracks::Track& t) {
+Beside kind_of(const EdgeIncidence::Neighbor& t) {
   if (t.arc >= 0) return Beside::scroll;
   if (t.region >= 0) return Beside::patch;
   return t.node >= 0 ? Beside::facet : Beside::nothing;
@@ -122,8 +122,8 @@ struct FacetCase {
   double length;
 };
 
-/// Facets are tracks of the edges that they have for sides, and lie to their left.
-TEST(CreaseTracks, FacetsWithCurvedSides) {
+/// Facets are neighbours of the edges that they have for sides, and lie to their left.
+TEST(EdgeIncidence, FacetsWithCurvedSides) {
   constexpr double pi = 3.14159265358979323846;
   const std::vector<FacetCase> cases = {
       {"cylinder", cylinder(1, 2), Beside::scroll, 4 * pi},
@@ -139,11 +139,11 @@ TEST(CreaseTracks, FacetsWithCurvedSides) {
   for (const FacetCase& each : cases) {
     for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
       SCOPED_TRACE(each.name);
-      const Tracked scene(mapped(each.shape, turn));
+      const EdgeScene scene(mapped(each.shape, turn));
       EXPECT_TRUE(scene.unresolved.empty());
-      const CreaseTracks tracks(scene.geometry, scene.graph, scene.regions);
+      const EdgeIncidence incidence(scene.geometry, scene.graph, scene.regions);
       double length = 0;
-      for (const CreaseTracks::Stretch& s : tracks.overlay()) {
+      for (const EdgeIncidence::Stretch& s : incidence.overlay()) {
         scene.expect_names_contacts(s);
         if (s.low.node < 0 && s.high.node < 0) continue;
         const bool low = s.low.node >= 0;
@@ -171,11 +171,11 @@ TEST(CreaseTracks, FacetsWithCurvedSides) {
   }
 }
 
-TEST(CreaseTracks, NothingWithoutEdges) {
-  const Tracked ball(sphere(1));
-  const CreaseTracks tracks(ball.geometry, ball.graph, ball.regions);
-  EXPECT_TRUE(tracks.overlay().empty());
-  EXPECT_TRUE(tracks.breaks(0, 0, false, 0, 1).empty());
+TEST(EdgeIncidence, NothingWithoutEdges) {
+  const EdgeScene ball(sphere(1));
+  const EdgeIncidence incidence(ball.geometry, ball.graph, ball.regions);
+  EXPECT_TRUE(incidence.overlay().empty());
+  EXPECT_TRUE(incidence.breaks(0, 0, false, 0, 1).empty());
 }
 
 }  // namespace

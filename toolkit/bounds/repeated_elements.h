@@ -20,13 +20,13 @@ struct PlacedElement {
 
 /// Which elements of a scene coincide: copies of models, faces that touch each other all over, the
 /// common edge of two solids.
-class Coincidences {
+class RepeatedElements {
  public:
-  Coincidences() = default;
+  RepeatedElements() = default;
   /// Two elements of a kind are the same if their control points are, within the tolerance, and
   /// their weights, up to a common factor: for patches also after reversing and exchanging u and v,
   /// for pieces after reversing.
-  Coincidences(const std::vector<PlacedElement>& elements, double tolerance);
+  RepeatedElements(const std::vector<PlacedElement>& elements, double tolerance);
 
   /// Lets a vertex be a point of an edge, unless it is one already.
   void place(const Contact& vertex, const Contact& on_edge) {

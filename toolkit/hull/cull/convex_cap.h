@@ -12,7 +12,7 @@
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
 #include "taut/hull/cull/concave_patch.h"
-#include "taut/hull/cull/fall_map.h"
+#include "taut/hull/cull/osculating_paraboloid.h"
 
 namespace taut {
 
@@ -51,7 +51,7 @@ class ConcaveSurfaces {
 /// Joins that are declared smooth (FacePatch) are taken to be so: what they miss is within the
 /// model's deviation bound. In corners that are no vertices, and at poles, the angles of the
 /// patches are taken to sum to a full turn.
-struct ConcaveDome {
+struct ConvexCap {
   /// A rectangle of a patch that lies over the disc, on the graph.
   struct Piece {
     int patch;
@@ -60,7 +60,7 @@ struct ConcaveDome {
   };
 
   dvec3 axis;
-  FallMap map;
+  OsculatingParaboloid map;
   double radius;
   std::vector<Piece> pieces;  ///< by patch; they do not overlap
 
@@ -71,10 +71,10 @@ struct ConcaveDome {
   bool faces(const NormalPyramid& pyramid, double sign) const;
 };
 
-/// The dome over a disc about a cell. None if it is not certain that the surface is concave over
+/// The cap over a disc about a cell. None if it is not certain that the surface is concave over
 /// the disc and goes on all over it.
-std::optional<ConcaveDome> concave_dome(ConcaveSurfaces& surfaces, int part, int patch,
-                                        const ParameterRectangle& cell, const dvec3& axis,
-                                        const FallMap& map, double radius);
+std::optional<ConvexCap> convex_cap(ConcaveSurfaces& surfaces, int part, int patch,
+                                    const ParameterRectangle& cell, const dvec3& axis,
+                                    const OsculatingParaboloid& map, double radius);
 
 }  // namespace taut

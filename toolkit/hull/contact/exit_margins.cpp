@@ -1,0 +1,65 @@
+#include "taut/hull/contact/exit_margins.h"
+
+namespace taut {
+
+LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                           const ContactExit& exit) {
+  const Contact& c = s.contact[std::size_t(i)];
+  LinearEquation e;
+  dvec2& parameter = e.parameter[std::size_t(i)];
+  if (exit.kind == ContactExit::Kind::side) {
+    const Side side = all_sides[std::size_t(exit.index)];
+    const int a = along_v(side) ? 0 : 1;
+    const double value = a == 0 ? c.u : c.v;
+    e.residual = at_upper_end(side) ? 1 - value : value;
+    parameter[a] = at_upper_end(side) ? -1 : 1;
+  } else if (exit.kind == ContactExit::Kind::end) {
+    e.residual = exit.index == 0 ? c.u : 1 - c.u;
+    parameter.x = exit.index == 0 ? 1 : -1;
+  } else if (exit.kind == ContactExit::Kind::face) {
+    const ContactGeometry::PieceSide& side = geometry.sides(c)[std::size_t(exit.index)];
+    const ContactJet j = geometry.jet(on_side(c, side));
+    const dvec3 in = inward_derivative(j, side.side);
+    const double length = glm::length(in);
+    if (length == 0) return e;
+    e.n = -in / length;
+    e.residual = glm::dot(e.n, s.n);
+    const double sense = (side.reversed ? -1.0 : 1.0) * (at_upper_end(side.side) ? -1.0 : 1.0);
+    parameter.x = -sense * glm::dot(j.dxy, s.n) / length;
+  } else {
+    const ContactGeometry::PieceEnd& end = geometry.ends(c)[std::size_t(exit.index)];
+    const dvec3 away = tangent_from(geometry, c, end);
+    const double length = glm::length(away);
+    if (length == 0) return e;
+    e.n = -away / length;
+    e.residual = glm::dot(e.n, s.n);
+  }
+  return e;
+}
+
+double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit) {
+  switch (exit.kind) {
+    case ContactExit::Kind::side:
+      return glm::length(geometry.jet(c).dx[along_v(all_sides[std::size_t(exit.index)]) ? 0 : 1]);
+    case ContactExit::Kind::end:
+      return glm::length(geometry.jet(c).dx[0]);
+    case ContactExit::Kind::face: {
+      const ContactGeometry::PieceSide& side = geometry.sides(c)[std::size_t(exit.index)];
+      return glm::length(inward_derivative(geometry.jet(on_side(c, side)), side.side));
+    }
+    case ContactExit::Kind::edge:
+      return glm::length(tangent_from(geometry, c, geometry.ends(c)[std::size_t(exit.index)]));
+  }
+  return 0;
+}
+
+bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                  const ContactExit& exit) {
+  const auto k = std::size_t(i);
+  const LinearEquation e = exit_margin(geometry, s, i, exit);
+  const dvec3 inward = i == 0 ? s.d() : -s.d();
+  const std::optional<dvec2> rate = parameter_rate(s.jet[k], s.n, inward);
+  return rate && glm::dot(e.parameter[k], *rate) < 0;
+}
+
+}  // namespace taut

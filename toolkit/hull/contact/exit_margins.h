@@ -1,0 +1,22 @@
+#pragma once
+
+#include "taut/bounds/contact_exits.h"
+#include "taut/hull/contact/contact_system.h"
+
+namespace taut {
+
+/// The exit's margin of contact i, linearised: a parameter's distance from its end, or the sine of
+/// the angle by which the direction misses the face's normal or the plane across the edge.
+LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                           const ContactExit& exit);
+
+/// The length of the derivative by which the exit's margin is measured at a contact: what rounding
+/// moves the margin by is a length over it.
+double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
+
+/// Of two contacts that part, i the one of them: where the direction turns into its own region, it
+/// moves over the exit at which it stands. False where its element is flat.
+bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
+                  const ContactExit& exit);
+
+}  // namespace taut
