@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -311,6 +312,34 @@ TEST(PreciseHull, OrderOfInstancesDoesNotMatter) {
   EXPECT_EQ(counts(*a.boundary), counts(*b.boundary));
   const double volume = measures_of(scene, a).volume;
   EXPECT_NEAR(measures_of(other, b).volume, volume, 1e-11 * volume);
+}
+
+/// What a hull took, but for the time.
+std::array<long, 5> efforts(const HullStatistics& s) {
+  return {s.support_queries, s.newton_iterations, s.cells, s.cells_kept, s.cells_searched};
+}
+
+/// The same hull, of the first of the copies, at the same effort.
+TEST(PreciseHull, OfExactCopies) {
+  const Model once = make_model(teapot());
+  const Hull hull = precise_hull(Scene(once, {.threads = 1, .progress = {}}), options());
+  Model instances = once;
+  instances.add_instance(0, RigidMotion{});
+  instances.add_instance(0, RigidMotion{});
+  Model parts = once;
+  parts.add_part(once.parts()[0], 0);
+  for (const Model& model : {instances, parts}) {
+    const Hull copied = precise_hull(Scene(model, {.threads = 1, .progress = {}}), options());
+    EXPECT_EQ(efforts(copied.statistics), efforts(hull.statistics));
+    EXPECT_EQ(copied.distance_bound, hull.distance_bound);
+    EXPECT_EQ(counts(*copied.boundary), counts(*hull.boundary));
+    expect_complete(*copied.boundary);
+    ASSERT_EQ(copied.mesh.n_vertices(), hull.mesh.n_vertices());
+    for (const auto v : hull.mesh.vertices()) EXPECT_EQ(copied.mesh.point(v), hull.mesh.point(v));
+    for (std::size_t k = 0; k < hull.boundary->faces.size(); ++k) {
+      EXPECT_EQ(copied.boundary->faces[k].source, hull.boundary->faces[k].source);
+    }
+  }
 }
 
 TEST(PreciseHull, Cancelled) {

@@ -14,11 +14,11 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
   Stopwatch watch;
   options.progress.update("cull", 0);
   Culling culling = cull(scene, map,
-                         {.levels = culling_levels(scene.model().patch_count()),
+                         {.levels = culling_levels(scene.patch_count()),
                           .threads = options.threads,
                           .progress = options.progress});
   const auto finest = double(culling.levels.empty() ? 0 : culling.levels.size() - 1);
-  statistics.cells = std::lround(scene.model().patch_count() * std::exp2(2 * finest));
+  statistics.cells = std::lround(scene.patch_count() * std::exp2(2 * finest));
   statistics.cells_kept = std::lround(double(statistics.cells) * (1 - culling.removed_share()));
   statistics.seconds_cull += watch.lap();
 

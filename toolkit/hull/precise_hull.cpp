@@ -30,7 +30,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   statistics.support_queries = query.queries();
   statistics.newton_iterations = query.newton_iterations();
   Stopwatch watch;
-  const GaussMap map(scene, {.levels = culling_levels(scene.model().patch_count()),
+  const GaussMap map(scene, {.levels = culling_levels(scene.patch_count()),
                              .threads = options.threads,
                              .progress = options.progress});
   statistics.seconds_gauss_map = watch.lap();

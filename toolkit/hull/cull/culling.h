@@ -63,7 +63,7 @@ struct Culling {
   /// middles of cells that are on.
   std::vector<Sample> samples;
   std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
-  std::vector<CulledCell> cells;    ///< cover every patch of every instance once
+  std::vector<CulledCell> cells;    ///< cover every patch of every distinct instance once
   std::vector<CullingLevel> levels;
   long support_queries = 0;
 
