@@ -342,6 +342,37 @@ TEST(PreciseHull, OfExactCopies) {
   }
 }
 
+/// One culling serves rounds that differ in samples: they cull no more, and find the same.
+TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
+  const Scene scene = make_scene(truth_named("three spheres").shape);
+  std::vector<std::string> steps;
+  HullOptions told = options();
+  told.progress.report = [&](std::string_view step, double) { steps.emplace_back(step); };
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  HullStatistics culled;
+  const Culling culling = culling_of(scene, map, told, culled);
+  EXPECT_EQ(culled.support_queries, culling.support_queries);
+  const ContactGeometry geometry(scene);
+  steps.clear();
+  SupportQuery query(scene);
+  std::vector<Sample> more;
+  HullStatistics all;
+  const HullBoundary whole = exact_boundary(scene, map, options(), all);
+  for (int round = 0; round < 3; ++round) {
+    HullStatistics own;
+    const HullBoundary boundary = exact_boundary(geometry, culling, told, own, more);
+    EXPECT_EQ(counts(boundary), counts(whole));
+    if (round == 0) {
+      EXPECT_EQ(own.support_queries + culled.support_queries, all.support_queries);
+    }
+    Random random(unsigned(round) + 1);
+    const dvec3 n = random_direction(random);
+    more.push_back({n, query(n).contact});
+  }
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), "trace"), 3);
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
+}
+
 TEST(PreciseHull, Cancelled) {
   const Scene scene = make_scene(blob(1));
   std::stop_source source;

@@ -35,10 +35,11 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
                              .progress = options.progress});
   statistics.seconds_gauss_map = watch.lap();
   const ContactGeometry geometry(scene, options.progress.stop);
+  const Culling culling = culling_of(scene, map, options, statistics);
   std::vector<Sample> found;
   for (int round = 0;; ++round) {
-    auto boundary =
-        std::make_shared<HullBoundary>(exact_boundary(scene, map, options, statistics, found));
+    auto boundary = std::make_shared<HullBoundary>(
+        exact_boundary(geometry, culling, options, statistics, found));
     std::vector<Sample> strays;
     try {
       Hull hull = boundary_mesh(scene, geometry, boundary, options, &strays);
