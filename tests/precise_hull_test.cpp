@@ -19,6 +19,7 @@
 #include "taut/core/error.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
+#include "taut/hull/stitch/stitch.h"
 #include "truths.h"
 
 namespace taut {
@@ -371,6 +372,23 @@ TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
   }
   EXPECT_EQ(std::count(steps.begin(), steps.end(), "trace"), 3);
   EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
+}
+
+/// Those of culling, of tracing and stitching, and of the refinement of cells between them.
+TEST(ExactBoundary, CountsAllQueries) {
+  const Scene scene = make_scene(teapot());
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  HullStatistics statistics;
+  exact_boundary(scene, map, options(), statistics);
+  HullStatistics culled;
+  const Culling culling = culling_of(scene, map, options(), culled);
+  const ContactGeometry geometry(scene);
+  SupportQuery query(scene);
+  SeparatingGraph graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
+  const long refined = graph.support_queries;
+  EXPECT_GT(refined, 0);
+  stitch(geometry, query, std::move(graph), culling.cells);
+  EXPECT_EQ(statistics.support_queries, culled.support_queries + query.queries() + refined);
 }
 
 TEST(PreciseHull, Cancelled) {

@@ -34,6 +34,7 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& cull
   SupportQuery query(geometry.scene(), options.progress.stop);
   SeparatingGraph graph =
       trace_separating_curves(geometry, query, samples, culling.cells, options.progress);
+  statistics.support_queries += graph.support_queries;
   statistics.newton_iterations += graph.newton_iterations;
   statistics.cells_searched = graph.cells_searched;
   statistics.seconds_trace += watch.lap();

@@ -556,6 +556,10 @@ std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& c
   return result;
 }
 
+long CellRefinement::support_queries() const {
+  return long(content_->spread.samples().size()) + content_->tools.query.queries();
+}
+
 std::set<std::pair<int, int>> mixed_patches(const std::vector<CulledCell>& cells) {
   std::set<std::pair<int, int>> patches;
   for (const CulledCell& cell : cells) {

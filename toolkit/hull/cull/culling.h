@@ -111,6 +111,9 @@ class CellRefinement {
   /// @pre they are mixed, those of a patch follow each other
   std::vector<CulledCell> refined(const std::vector<CulledCell>& cells);
 
+  /// Made so far.
+  long support_queries() const;
+
  private:
   struct Content;
   std::unique_ptr<Content> content_;
