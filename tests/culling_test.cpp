@@ -419,6 +419,18 @@ TEST(CellRefinement, ProvesMoreAndNothingWrong) {
   }
 }
 
+TEST(CellRefinement, CountsItsQueries) {
+  const Scene scene = make_scene(teapot());
+  std::vector<CulledCell> mixed = culled(scene, 3).cells;
+  std::erase_if(mixed, [](const CulledCell& cell) { return cell.state != CellState::mixed; });
+  ASSERT_FALSE(mixed.empty());
+  CellRefinement refinement(scene);
+  const long spread = refinement.support_queries();
+  EXPECT_GE(spread, 96);
+  refinement.refined(mixed);
+  EXPECT_GT(refinement.support_queries(), spread);
+}
+
 TEST(CellRefinement, OfRandomPatches) {
   Random random(9);
   for (int k = 0; k < 30; ++k) {

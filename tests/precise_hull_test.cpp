@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "taut/core/error.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
+#include "taut/hull/stitch/stitch.h"
 #include "truths.h"
 
 namespace taut {
@@ -311,6 +313,82 @@ TEST(PreciseHull, OrderOfInstancesDoesNotMatter) {
   EXPECT_EQ(counts(*a.boundary), counts(*b.boundary));
   const double volume = measures_of(scene, a).volume;
   EXPECT_NEAR(measures_of(other, b).volume, volume, 1e-11 * volume);
+}
+
+/// What a hull took, but for the time.
+std::array<long, 5> efforts(const HullStatistics& s) {
+  return {s.support_queries, s.newton_iterations, s.cells, s.cells_kept, s.cells_searched};
+}
+
+/// The same hull, of the first of the copies, at the same effort.
+TEST(PreciseHull, OfExactCopies) {
+  const Model once = make_model(teapot());
+  const Hull hull = precise_hull(Scene(once, {.threads = 1, .progress = {}}), options());
+  Model instances = once;
+  instances.add_instance(0, RigidMotion{});
+  instances.add_instance(0, RigidMotion{});
+  Model parts = once;
+  parts.add_part(once.parts()[0], 0);
+  for (const Model& model : {instances, parts}) {
+    const Hull copied = precise_hull(Scene(model, {.threads = 1, .progress = {}}), options());
+    EXPECT_EQ(efforts(copied.statistics), efforts(hull.statistics));
+    EXPECT_EQ(copied.distance_bound, hull.distance_bound);
+    EXPECT_EQ(counts(*copied.boundary), counts(*hull.boundary));
+    expect_complete(*copied.boundary);
+    ASSERT_EQ(copied.mesh.n_vertices(), hull.mesh.n_vertices());
+    for (const auto v : hull.mesh.vertices()) EXPECT_EQ(copied.mesh.point(v), hull.mesh.point(v));
+    for (std::size_t k = 0; k < hull.boundary->faces.size(); ++k) {
+      EXPECT_EQ(copied.boundary->faces[k].source, hull.boundary->faces[k].source);
+    }
+  }
+}
+
+/// One culling serves rounds that differ in samples: they cull no more, and find the same.
+TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
+  const Scene scene = make_scene(truth_named("three spheres").shape);
+  std::vector<std::string> steps;
+  HullOptions told = options();
+  told.progress.report = [&](std::string_view step, double) { steps.emplace_back(step); };
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  HullStatistics culled;
+  const Culling culling = culling_of(scene, map, told, culled);
+  EXPECT_EQ(culled.support_queries, culling.support_queries);
+  const ContactGeometry geometry(scene);
+  steps.clear();
+  SupportQuery query(scene);
+  std::vector<Sample> more;
+  HullStatistics all;
+  const HullBoundary whole = exact_boundary(scene, map, options(), all);
+  for (int round = 0; round < 3; ++round) {
+    HullStatistics own;
+    const HullBoundary boundary = exact_boundary(geometry, culling, told, own, more);
+    EXPECT_EQ(counts(boundary), counts(whole));
+    if (round == 0) {
+      EXPECT_EQ(own.support_queries + culled.support_queries, all.support_queries);
+    }
+    Random random(unsigned(round) + 1);
+    const dvec3 n = random_direction(random);
+    more.push_back({n, query(n).contact});
+  }
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), "trace"), 3);
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
+}
+
+/// Those of culling, of tracing and stitching, and of the refinement of cells between them.
+TEST(ExactBoundary, CountsAllQueries) {
+  const Scene scene = make_scene(teapot());
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  HullStatistics statistics;
+  exact_boundary(scene, map, options(), statistics);
+  HullStatistics culled;
+  const Culling culling = culling_of(scene, map, options(), culled);
+  const ContactGeometry geometry(scene);
+  SupportQuery query(scene);
+  SeparatingGraph graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
+  const long refined = graph.support_queries;
+  EXPECT_GT(refined, 0);
+  stitch(geometry, query, std::move(graph), culling.cells);
+  EXPECT_EQ(statistics.support_queries, culled.support_queries + query.queries() + refined);
 }
 
 TEST(PreciseHull, Cancelled) {

@@ -11,6 +11,7 @@
 #include "hull_checks.h"
 #include "support_checks.h"
 #include "taut/bounds/scene_content.h"
+#include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 
@@ -368,6 +369,56 @@ TEST(Scene, MemoryIsSharedByInstances) {
   Model model = make_model(teapot());
   for (int k = 0; k < 99; ++k) model.add_instance(0, {dmat3(1.0), {k, 0, 0}});
   EXPECT_LT(Scene(model).memory(), 2 * one.memory());
+}
+
+/// The teapot at rest and turned, each of them more than once: as instances and as parts.
+Model copied_teapots() {
+  const Model one = make_model(teapot());
+  Model model = one;
+  const RigidMotion turned{{0.6, 0.8, 0, -0.8, 0.6, 0, 0, 0, 1}, {9, 2, 3}};
+  RigidMotion same = turned;
+  same.rotation[0][2] = -0.0;
+  model.add_instance(0, turned);
+  model.add_part(one.parts()[0], 0);
+  model.add_instance(1, same);
+  model.add_instance(0, RigidMotion{});
+  return model;
+}
+
+TEST(Scene, ExactCopiesAreThereOnce) {
+  const Scene one = make_scene(teapot());
+  const Scene scene(copied_teapots(), {.threads = 1, .progress = {}});
+  EXPECT_EQ(scene.distinct_instances(), (std::vector<int>{0, 1}));
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(scene.first_instance(k), std::vector({0, 1, 0, 1, 0})[k]);
+  EXPECT_EQ(scene.patch_count(), 64);
+  EXPECT_EQ(scene.model().patch_count(), 5 * 32);
+  EXPECT_LT(scene.memory(), 1.01 * double(one.memory()));
+  const Scene all(posed_teapots(1, 7), {.threads = 1, .progress = {}});
+  EXPECT_EQ(all.distinct_instances().size(), 7U);
+  EXPECT_EQ(all.patch_count(), all.model().patch_count());
+}
+
+/// They keep their points and sources, but queries answer with the first, whatever they begin with.
+TEST(Scene, ContactsOnExactCopies) {
+  const Scene scene(copied_teapots(), {.threads = 1, .progress = {}});
+  const Model& model = scene.model();
+  SupportQuery query(scene);
+  Random random(3);
+  for (int k = 0; k < 200; ++k) {
+    const int patch = pick(random, 0, 31);
+    const double u = uniform(random, 0, 1);
+    const Contact first{pick(random, 0, 1), SourceKind::face, patch, u, 0.25};
+    Contact copy = first;
+    copy.instance += 2;
+    EXPECT_EQ(scene.point(first), scene.point(copy));
+    EXPECT_EQ(model.source(scene.source(copy).source).instance, copy.instance);
+    EXPECT_EQ(model.source(scene.source(copy).source).index,
+              model.source(scene.source(first).source).index);
+    const dvec3 n = random_direction(random);
+    const Support s = query(n, copy);
+    EXPECT_LT(s.contact.instance, 2);
+    EXPECT_EQ(s.h, query(n, first).h);
+  }
 }
 
 TEST(Scene, SameForAnyNumberOfThreads) {

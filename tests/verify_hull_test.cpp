@@ -180,6 +180,26 @@ TEST(VerifyHull, DistancesFromSurfaces) {
   EXPECT_NEAR(distance_to_surface({1, -2, 2}, jet), 2, 1e-15);
 }
 
+/// A hull may name any of the copies in one place, though queries know the first only.
+TEST(VerifyHull, AnyOfExactCopiesMayBeNamed) {
+  for (const Shape& shape : {two_spheres(1, 0.5, 3), filleted_box(3, 2, 1, 0.25)}) {
+    const Model once = make_model(shape);
+    const Scene one(once, {.threads = 1, .progress = {}});
+    const Hull hull = convex_hull(one, {.relative = 1e-2, .threads = 1, .progress = {}});
+    const HullDocument document = hull_document(one, *hull.boundary);
+    Model twice = once;
+    twice.add_instance(0, RigidMotion{});
+    const Scene scene(twice, {.threads = 1, .progress = {}});
+    for (const int first_source : {0, once.source_count()}) {
+      HullDocument named = document;
+      for (HullDocument::Source& source : named.sources) source.id += first_source;
+      const HullVerification found = verify(named, scene, quick());
+      EXPECT_TRUE(found.is_hull(1e-9)) << first_source;
+      EXPECT_EQ(found.uncovered, 0);
+    }
+  }
+}
+
 TEST(VerifyHull, OfAnotherModelFails) {
   const KnownBoundary known = two_spheres_boundary();
   const HullDocument hull = hull_document(known.scene, known.boundary);

@@ -123,6 +123,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop)
   const std::vector<Part>& parts = scene.model().parts();
   parts_.resize(parts.size());
   for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (content.parts[k].repeats) continue;
     const Part& part = parts[k];
     const dvec3& center = content.parts[k].center;
     const double scale = content.frame.scale;
@@ -208,7 +209,7 @@ void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
 void ContactGeometry::find_repeated_elements() {
   const Model& model = scene_.model();
   std::vector<PlacedElement> all;
-  for (int i = 0; i < int(model.instances().size()); ++i) {
+  for (const int i : scene_.distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     const auto add = [&](SourceKind kind, std::size_t count) {
       for (int k = 0; k < int(count); ++k) all.push_back(placed({i, kind, k, 0, 0}));
@@ -297,7 +298,7 @@ const Patch& ContactGeometry::patch(const Contact& c) const {
 }
 
 const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c) const {
-  return parts_[std::size_t(scene_.model().instances()[std::size_t(c.instance)].part)];
+  return parts_[std::size_t(scene_.content().instances[std::size_t(c.instance)].part)];
 }
 
 bool ContactGeometry::is_straight(const Contact& c) const {

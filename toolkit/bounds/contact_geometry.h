@@ -79,9 +79,15 @@ class ContactGeometry {
 
   /// The same point on the first of the elements that coincide with the contact's, within
   /// tie(); of a point beside which no edge ends and that lies on an edge, on the edge.
-  Contact first(const Contact& c) const { return repeated_elements_.first(c); }
+  Contact first(const Contact& c) const {
+    Contact own = c;
+    if (c.instance >= 0) own.instance = scene_.first_instance(c.instance);
+    return repeated_elements_.first(own);
+  }
   /// The contact's element coincides with an earlier one. Contacts are told as ones of the first.
-  bool is_repeated(const Contact& c) const { return repeated_elements_.repeats(c); }
+  bool is_repeated(const Contact& c) const {
+    return scene_.first_instance(c.instance) != c.instance || repeated_elements_.repeats(c);
+  }
 
   /// A side of a patch, not a ruled one, that lies on an edge's piece.
   struct PieceSide {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
+#include "taut/surface/equal_parts.h"
 
 namespace taut {
 namespace {
@@ -365,6 +367,38 @@ void refuse_trimmed(const Model& model) {
   }
 }
 
+/// Over some of the boxes.
+BoxTree tree_over(const std::vector<int>& items, const std::vector<Box>& boxes) {
+  std::vector<Box> own;
+  own.reserve(items.size());
+  for (const int item : items) own.push_back(boxes[std::size_t(item)]);
+  BoxTree tree(own);
+  for (int& item : tree.items) item = items[std::size_t(item)];
+  return tree;
+}
+
+/// Per instance the first with the same part, of `parts`, and the same pose.
+std::vector<int> first_instances(const std::vector<Instance>& instances,
+                                 const std::vector<int>& parts) {
+  const auto key = [&](int i) {
+    const Instance& instance = instances[std::size_t(i)];
+    std::array<double, 12> numbers;
+    for (int k = 0; k < 3; ++k) {
+      for (int column = 0; column < 3; ++column) {
+        numbers[std::size_t(3 * column + k)] = instance.pose.rotation[column][k];
+      }
+      numbers[std::size_t(9 + k)] = instance.pose.translation[k];
+    }
+    return std::pair(parts[std::size_t(instance.part)], numbers);
+  };
+  std::map<std::pair<int, std::array<double, 12>>, int> seen;
+  std::vector<int> result;
+  for (int i = 0; i < int(instances.size()); ++i) {
+    result.push_back(seen.try_emplace(key(i), i).first->second);
+  }
+  return result;
+}
+
 /// Box of the part's control box under a rigid motion.
 Box moved(const Box& box, const RigidMotion& pose) {
   Box result;
@@ -454,8 +488,17 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
     if (box.empty()) box = {control.center(), control.center()};
   }
   c.frame = scene_frame(control);
-  for (const Part& part : c.model.parts()) {
+  const std::vector<int> first_part = equal_parts(c.model.parts());
+  for (std::size_t k = 0; k < first_part.size(); ++k) {
+    const Part& part = c.model.parts()[k];
     options.progress.check();
+    if (first_part[k] < int(k)) {
+      const dvec3 center = c.parts[std::size_t(first_part[k])].center;
+      ScenePart& repeated = c.parts.emplace_back();
+      repeated.center = center;
+      repeated.repeats = true;
+      continue;
+    }
     c.parts.push_back(make_part(part, c.frame.scale, options.threads));
     for (const SceneElement& e : c.parts.back().elements) {
       c.rounding = std::max(c.rounding, value_rounding(e));
@@ -464,6 +507,7 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
       c.rounding = std::max(c.rounding, c.frame.scale * value_rounding(part.control_box()));
     }
   }
+  const std::vector<int> first = first_instances(c.model.instances(), first_part);
   double pose_rounding = 0;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     const Instance& instance = c.model.instances()[k];
@@ -472,7 +516,9 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
     const dvec3 turned = c.frame.scale * (instance.pose.rotation * center);
     const dvec3 offset = c.frame.scale * (instance.pose.translation - c.frame.center);
     const bool rotated = instance.pose.rotation != dmat3(1.0);
-    c.instances.push_back({instance.part, rotated, instance.pose.rotation, turned + offset});
+    c.instances.push_back({first_part[std::size_t(instance.part)], first[k], rotated,
+                           instance.pose.rotation, turned + offset});
+    if (first[k] == int(k)) c.distinct_instances.push_back(int(k));
     // Unturned, the centres cancel exactly or nearly; turned, their products are rounded first.
     const double rounded = rotated ? 8 * (glm::length(turned) + glm::length(offset))
                            : instance.pose.translation == dvec3(0.0)
@@ -483,7 +529,7 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
     box = {c.frame.to_frame(box.lower), c.frame.to_frame(box.upper)};
   }
   c.rounding += pose_rounding;
-  c.tree = BoxTree(boxes);
+  c.tree = tree_over(c.distinct_instances, boxes);
 
   SupportQuery query(*this);
   Box box;
@@ -505,6 +551,20 @@ const Model& Scene::model() const { return content_->model; }
 const SceneFrame& Scene::frame() const { return content_->frame; }
 const Box& Scene::box() const { return content_->box; }
 double Scene::diagonal() const { return content_->diagonal; }
+const std::vector<int>& Scene::distinct_instances() const { return content_->distinct_instances; }
+
+int Scene::first_instance(int instance) const {
+  return content_->instances[std::size_t(instance)].first;
+}
+
+int Scene::patch_count() const {
+  int count = 0;
+  for (const int i : content_->distinct_instances) {
+    const Instance& instance = content_->model.instances()[std::size_t(i)];
+    count += int(content_->model.parts()[std::size_t(instance.part)].patches().size());
+  }
+  return count;
+}
 
 dvec3 Scene::point(const Contact& contact) const {
   return content_->frame.to_model(content_->frame_point(contact));
@@ -517,7 +577,7 @@ SourceContact Scene::source(const Contact& contact) const {
   const auto made = [&](SourceKind kind, int index, double u, double v) {
     return SourceContact{model.source_id({kind, contact.instance, index}), kind, u, v};
   };
-  const ScenePart& own = content_->parts[std::size_t(instance.part)];
+  const ScenePart& own = content_->part_of(contact.instance);
   const auto on_patch = [&](int index, const dvec2& uv) {
     const Patch& patch = part.patches()[std::size_t(index)];
     return made(SourceKind::face, patch.face, patch.u.at(uv.x), patch.v.at(uv.y));

@@ -57,6 +57,10 @@ struct SceneOptions {
 /// A model prepared for queries: every part's CBVHs, built once and shared by its instances, and
 /// bounding volume hierarchies over the patches of a part and over the instances.
 ///
+/// Exact copies are there once: parts that are equal share what is built, and an instance that
+/// repeats an earlier one exactly, an equal part in the same pose, is not looked at by queries. It
+/// keeps its sources, and contacts on it have their points.
+///
 /// Everything inside is in a frame of its own, centred and scaled by a power of two to a size
 /// near one, so that models tiny, huge or far from the origin lose nothing (turned instances far
 /// from the origin lose the rounding of their rotation, which bounds account for). Immutable; safe
@@ -75,6 +79,13 @@ class Scene {
   const Box& box() const;
   /// Length of the box's diagonal, in model units. Zero for a single point.
   double diagonal() const;
+
+  /// The instances that queries look at, ascending: those that repeat none.
+  const std::vector<int>& distinct_instances() const;
+  /// The first instance that this one repeats exactly, or itself.
+  int first_instance(int instance) const;
+  /// Patches of the distinct instances.
+  int patch_count() const;
 
   /// The contact's point in model coordinates, rounded.
   dvec3 point(const Contact& contact) const;

@@ -123,9 +123,11 @@ struct SeamSide {
   bool reversed = false;
 };
 
-/// A part in the scene's units, about a centre of its own.
+/// A part in the scene's units, about a centre of its own; nothing but that of one that repeats
+/// another, which no instance refers to.
 struct ScenePart {
   dvec3 center;
+  bool repeats = false;  ///< an earlier part is equal
   std::vector<SceneElement> elements;
   std::vector<SceneCell> cells;
   std::vector<int> element_of_patch, element_of_piece;  ///< -1: not queried
@@ -137,7 +139,8 @@ struct ScenePart {
 };
 
 struct SceneInstance {
-  int part;
+  int part;   ///< the first that is equal to the model's
+  int first;  ///< the first instance that is exactly the same
   bool rotated;
   dmat3 rotation;
   dvec3 translation;  ///< of the part's centre, in the scene's frame
@@ -148,7 +151,8 @@ struct Scene::Content {
   SceneFrame frame;
   std::vector<ScenePart> parts;
   std::vector<SceneInstance> instances;
-  BoxTree tree;  ///< over the instances
+  std::vector<int> distinct_instances;
+  BoxTree tree;  ///< over these
   Box box;
   double diagonal = 0;
   double rounding = 0;  ///< of a support value x . n, in the scene's frame

@@ -516,7 +516,11 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   net_cells_.clear();
   coons_cells_.clear();
   nets_.clear();
-  if (hint.instance >= 0 && scene_.can_support(hint)) polish_from(hint);
+  if (hint.instance >= 0 && scene_.can_support(hint)) {
+    Contact first = hint;
+    first.instance = scene_.instances[std::size_t(hint.instance)].first;
+    polish_from(first);
+  }
 
   stack_.push({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {

@@ -78,7 +78,7 @@ class Painter {
 void Painter::make_triangles() {
   // Cells of patches that are proven to touch no supporting plane are not drawn.
   const Scene& scene = content_.scene;
-  const int levels = culling_levels(scene.model().patch_count());
+  const int levels = culling_levels(scene.patch_count());
   const GaussMap gauss_map(
       scene, {.levels = levels, .threads = options_.threads, .progress = options_.progress});
   Culling culling =

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "taut/bounds/gauss_map.h"
+#include "taut/bounds/contact_geometry.h"
+#include "taut/hull/cull/culling.h"
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/result/hull_options.h"
 #include "taut/hull/result/hull_statistics.h"
@@ -10,8 +12,14 @@
 
 namespace taut {
 
-/// The exact boundary of a scene's convex hull: sampled and culled over the Gauss map, its
-/// separating curves traced, stitched. Adds what it took to the statistics.
+/// What a scene's exact boundary begins with: the scene sampled and culled over the Gauss map. Adds
+/// what it took to the statistics.
+/// @pre the map is the scene's @throws Cancelled
+Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& options,
+                   HullStatistics& statistics);
+
+/// The exact boundary of a scene's convex hull: its separating curves traced, stitched. Adds what
+/// it took to the statistics.
 ///
 /// Every ruling and facet supports the model to within support_tie (1e-12) of the scene's size,
 /// more where coordinates are rounded to more (ContactGeometry::tie), by a support query each; so
@@ -20,9 +28,13 @@ namespace taut {
 /// between what culling samples and `more` samples. What could not be resolved is listed
 /// (HullBoundary::unresolved); a boundary without any is closed. Same result for any number of
 /// threads.
-/// @pre the map is the scene's; the scene spans space (tolerances.h says what is flat)
+/// @pre the culling is of the geometry's scene, which spans space (tolerances.h says what is flat)
 /// @throws Cancelled
+HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
+                            const HullOptions& options, HullStatistics& statistics,
+                            const std::vector<Sample>& more = {});
+/// The same from the beginning. @pre the map is the scene's, which spans space
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                            HullStatistics& statistics, const std::vector<Sample>& more = {});
+                            HullStatistics& statistics);
 
 }  // namespace taut

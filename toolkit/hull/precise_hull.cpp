@@ -30,15 +30,16 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   statistics.support_queries = query.queries();
   statistics.newton_iterations = query.newton_iterations();
   Stopwatch watch;
-  const GaussMap map(scene, {.levels = culling_levels(scene.model().patch_count()),
+  const GaussMap map(scene, {.levels = culling_levels(scene.patch_count()),
                              .threads = options.threads,
                              .progress = options.progress});
   statistics.seconds_gauss_map = watch.lap();
   const ContactGeometry geometry(scene, options.progress.stop);
+  const Culling culling = culling_of(scene, map, options, statistics);
   std::vector<Sample> found;
   for (int round = 0;; ++round) {
-    auto boundary =
-        std::make_shared<HullBoundary>(exact_boundary(scene, map, options, statistics, found));
+    auto boundary = std::make_shared<HullBoundary>(
+        exact_boundary(geometry, culling, options, statistics, found));
     std::vector<Sample> strays;
     try {
       Hull hull = boundary_mesh(scene, geometry, boundary, options, &strays);

@@ -135,6 +135,7 @@ class HullVerifier {
   void check_points();
   bool covers(const DocumentOutlines& outlines, const NearestPoint& curves,
               const Contact& contact) const;
+  bool names(const DocumentOutlines& outlines, const Contact& contact) const;
 
   double relative(double length) const {
     return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
@@ -349,6 +350,19 @@ void HullVerifier::check_support(const std::vector<Claim>& claims) {
 bool HullVerifier::covers(const DocumentOutlines& outlines, const NearestPoint& curves,
                           const Contact& contact) const {
   if (curves.distance(scene_.point(contact)) <= (same_point + rounding_) * diagonal_) return true;
+  // The document may name any of the copies in one place.
+  const int instances = int(scene_.model().instances().size());
+  Contact copy = contact;
+  for (copy.instance = 0; copy.instance < instances; ++copy.instance) {
+    const bool same =
+        scene_.first_instance(copy.instance) == scene_.first_instance(contact.instance);
+    if (same && names(outlines, copy)) return true;
+  }
+  return false;
+}
+
+/// The contact is on a source that the document names, and inside of the patch's outline there.
+bool HullVerifier::names(const DocumentOutlines& outlines, const Contact& contact) const {
   const SourceContact c = scene_.source(contact);
   if (c.kind != SourceKind::face && place_of_source_.contains(c.source)) return true;
   if (contact.kind != SourceKind::face) return false;

@@ -109,7 +109,7 @@ class PlaneFinder {
 /// The pieces that are plane and not straight, the widest first: they tell their planes best.
 void PlaneFinder::add_pieces() {
   const Model& model = geometry_.scene().model();
-  for (int i = 0; i < int(model.instances().size()); ++i) {
+  for (const int i : geometry_.scene().distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     for (int k = 0; k < int(part.pieces().size()); ++k) {
       const Contact piece{i, SourceKind::edge, k, 0, 0};

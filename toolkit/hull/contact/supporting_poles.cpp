@@ -19,7 +19,7 @@ dvec3 outline_normal(const std::vector<dvec3>& points) {
 std::vector<SupportingPole> supporting_poles(const ContactGeometry& geometry, SupportQuery& query) {
   std::vector<SupportingPole> result;
   const Model& model = geometry.scene().model();
-  for (int i = 0; i < int(model.instances().size()); ++i) {
+  for (const int i : geometry.scene().distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     for (int p = 0; p < int(part.patches().size()); ++p) {
       for (const Side side : all_sides) {

@@ -556,6 +556,10 @@ std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& c
   return result;
 }
 
+long CellRefinement::support_queries() const {
+  return long(content_->spread.samples().size()) + content_->tools.query.queries();
+}
+
 std::set<std::pair<int, int>> mixed_patches(const std::vector<CulledCell>& cells) {
   std::set<std::pair<int, int>> patches;
   for (const CulledCell& cell : cells) {
@@ -587,9 +591,9 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   result.levels.resize(std::size_t(options.levels) + 1);
   const Scene::Content& content = scene.content();
   std::vector<Place> places;
-  for (std::size_t i = 0; i < content.instances.size(); ++i) {
-    const int roots = map.root_count(content.instances[i].part);
-    for (int root = 0; root < roots; ++root) places.push_back({int(i), root});
+  for (const int i : content.distinct_instances) {
+    const int roots = map.root_count(content.instances[std::size_t(i)].part);
+    for (int root = 0; root < roots; ++root) places.push_back({i, root});
   }
   const SpreadSamples spread(scene, places.size(), options);
   result.samples = spread.samples();

@@ -63,7 +63,7 @@ struct Culling {
   /// middles of cells that are on.
   std::vector<Sample> samples;
   std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
-  std::vector<CulledCell> cells;    ///< cover every patch of every instance once
+  std::vector<CulledCell> cells;    ///< cover every patch of every distinct instance once
   std::vector<CullingLevel> levels;
   long support_queries = 0;
 
@@ -110,6 +110,9 @@ class CellRefinement {
   /// Each of the cells as one that is on, or its quarters. Not in parallel.
   /// @pre they are mixed, those of a patch follow each other
   std::vector<CulledCell> refined(const std::vector<CulledCell>& cells);
+
+  /// Made so far.
+  long support_queries() const;
 
  private:
   struct Content;

@@ -33,7 +33,7 @@ bool is_in_plane(const ContactGeometry& geometry, Contact c, const HullFace& fac
 /// Plane patches, those that are ruled in both parameters, on facets.
 void label_facets(const ContactGeometry& geometry, HullBoundary& boundary) {
   const Model& model = geometry.scene().model();
-  for (int i = 0; i < int(model.instances().size()); ++i) {
+  for (const int i : geometry.scene().distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     for (int p = 0; p < int(part.patches().size()); ++p) {
       const Patch& patch = part.patches()[std::size_t(p)];

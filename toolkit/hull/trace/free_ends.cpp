@@ -555,8 +555,7 @@ void FreeEndSearch::search_piece(const Contact& c) {
 }
 
 void FreeEndSearch::search_edges() {
-  const std::vector<Instance>& instances = geometry_.scene().model().instances();
-  for (int i = 0; i < int(instances.size()); ++i) {
+  for (const int i : geometry_.scene().distinct_instances()) {
     const std::vector<EdgePiece>& pieces = geometry_.part({i}).pieces();
     for (int k = 0; k < int(pieces.size()); ++k) {
       const Contact c{i, SourceKind::edge, k, 0, 0};
@@ -567,8 +566,7 @@ void FreeEndSearch::search_edges() {
 }
 
 void FreeEndSearch::search_corners() {
-  const std::vector<Instance>& instances = geometry_.scene().model().instances();
-  for (int i = 0; i < int(instances.size()); ++i) {
+  for (const int i : geometry_.scene().distinct_instances()) {
     const int vertices = int(geometry_.part({i}).vertices().size());
     for (int k = 0; k < vertices; ++k) {
       each_corner_end(geometry_, {i, SourceKind::vertex, k, 0, 0},

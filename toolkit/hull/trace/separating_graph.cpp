@@ -166,6 +166,7 @@ class GraphTracer {
   bool given_up_ = false;
   bool exhausted_ = false;  // and therefore given up
   long cells_searched_ = 0;
+  long refinement_queries_ = 0;
   std::set<std::pair<int, int>> settled_;  // instances and patches
   std::vector<TouchedStretch> stretches_;
   std::vector<Landmark> landmarks_;
@@ -445,6 +446,7 @@ void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
       if (!given_up() && !built_.is_reached(end)) part_beside(end);
     }
   }
+  refinement_queries_ = refinement.support_queries();
   cells_searched_ = long(built_.uncrossed(left, refined_margin).size());
 }
 
@@ -617,6 +619,7 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   graph.cells_searched = cells_searched_;
   graph.exhausted = exhausted_;
   graph.newton_iterations = system_.iterations();
+  graph.support_queries = refinement_queries_;
   return graph;
 }
 

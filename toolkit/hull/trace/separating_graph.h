@@ -40,6 +40,8 @@ struct SeparatingGraph {
   std::vector<FacetNode> nodes;
   std::vector<Unresolved> unresolved;
   long newton_iterations = 0;
+  /// Of the refinement of cells; those of the caller's query are counted there.
+  long support_queries = 0;
   /// Cells, of the finest that were looked at, which are neither proven on nor off and which no
   /// known contact accounts for; in them curves were sought in vain.
   long cells_searched = 0;
