@@ -14,7 +14,8 @@ using namespace taut_test;  // NOLINT: models
 
 constexpr double width = 1e-6;
 
-/// Points of a part of space of this dimension, turned, some off it by less than a quarter of the width.
+/// Points of a part of space of this dimension, turned, some off it by less than a quarter of the
+/// width.
 std::vector<dvec3> spread(Random& random, int dimension) {
   const dmat3 turn = random_rotation(random);
   const dvec3 origin = random_point(random);

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "taut/bounds/gauss_map.h"
 #include "taut/bounds/contact_geometry.h"
+#include "taut/bounds/gauss_map.h"
 #include "taut/hull/cull/culling.h"
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/result/hull_options.h"
