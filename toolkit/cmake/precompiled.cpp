@@ -1,0 +1,1 @@
+// The headers that toolkit/CMakeLists.txt names are compiled with this file.
