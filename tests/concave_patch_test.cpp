@@ -48,6 +48,17 @@ TEST(ConcavePatch, OfASaddleOrAPlaneIsNotConcave) {
   }
 }
 
+/// On one of the rectangles that five halvings give.
+bool is_concave_somewhere(ConcavePatch& patch, const dvec3& m) {
+  std::vector<int> nodes = {root};
+  for (std::size_t i = 0; i < 31; ++i) {
+    if (patch.is_concave(nodes[i], m)) return true;
+    for (const int half : {0, 1}) nodes.push_back(patch.child(nodes[i], half));
+  }
+  return false;
+}
+
+/// Along its rims, which bound the outer side, the curvature vanishes.
 TEST(ConcavePatch, OfATorusIsConcaveOnItsOuterSide) {
   const Scene scene = make_scene(torus(2, 0.5));
   ConcaveSurfaces surfaces(scene);
@@ -57,7 +68,7 @@ TEST(ConcavePatch, OfATorusIsConcaveOnItsOuterSide) {
     const dvec3 x = scene.frame().to_model(middle_of(patch));
     const double from_axis = std::hypot(x.x, x.y);
     const dvec3 center = 2.0 / from_axis * dvec3(x.x, x.y, 0);
-    EXPECT_EQ(patch.is_concave(root, unit(x - center)), from_axis > 2) << k;
+    EXPECT_EQ(is_concave_somewhere(patch, unit(x - center)), from_axis > 2) << k;
     outer += from_axis > 2 ? 1 : 0;
   }
   EXPECT_EQ(outer, 8);

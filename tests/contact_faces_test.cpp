@@ -44,7 +44,7 @@ TEST(ContactFaces, OfPointsOfPatches) {
     const HullFace& face = known.boundary.faces[std::size_t(touched[0].face)];
     EXPECT_EQ(face.kind, FaceKind::patch);
     EXPECT_EQ(face.source, known.scene.source(contact).source);
-    EXPECT_FALSE(faces.surely_astray(contact));
+    EXPECT_FALSE(faces.surely_uncovered(contact));
   }
 }
 
@@ -59,7 +59,7 @@ TEST(ContactFaces, WhatIsOnNoFaceIsAstray) {
     const Contact middle{0, SourceKind::face, patch, 0.5, 0.5};
     const dvec3 x = known.scene.point(middle);
     const bool outer = std::hypot(x.x, x.y) > 2;
-    EXPECT_EQ(faces.surely_astray(middle), !outer) << patch;
+    EXPECT_EQ(faces.surely_uncovered(middle), !outer) << patch;
     EXPECT_EQ(touches(faces.touched(middle), first_of(known.boundary, FaceKind::patch)), outer);
     ++(outer ? on : astray);
   }

@@ -1,1 +1,0 @@
-// The headers that toolkit/CMakeLists.txt names are compiled with this file.
