@@ -34,6 +34,9 @@ constexpr double beside_domain = 1e-9;
 /// Polynomials of half the degree miss rulings by the root of what all miss them by.
 constexpr double accuracy = 1e-13;
 
+/// On half of a stretch polynomials of degree five miss smooth functions by 1/64.
+constexpr double least_gain = 0.25;
+
 constexpr int max_depth = 10;
 constexpr int max_steps = 20;
 
@@ -93,26 +96,33 @@ bool RulingSolver::run_along(const Parameters& free, const Parameters& level) {
   free_ = free;
   level_here_ = level;
   interval_.panels.clear();
-  return add_panels(0, interval_.first, 1, interval_.last, max_depth);
+  return add_panels(0, interval_.first, 1, interval_.last, std::numeric_limits<double>::infinity(),
+                    max_depth);
 }
 
+/// `before`: what polynomials of half the degree miss over twice the stretch.
 bool RulingSolver::add_panels(double s0, const RulingState& from, double s1, const RulingState& to,
-                              int depth) {
+                              double before, int depth) {
   RulingPanel panel(s0, s1);
-  const bool found = fill(panel, from, to);
-  if (found && (panel.settled || depth == 0)) {
+  const std::optional<double> missed = fill(panel, from, to);
+  // Where it hardly falls it is what rounding moves rulings by.
+  const bool noise = missed && *missed > least_gain * before;
+  if (missed && (panel.settled || noise || depth == 0)) {
     interval_.panels.push_back(std::move(panel));
     return true;
   }
   if (depth == 0) return false;
   const double middle = 0.5 * (s0 + s1);
   const std::optional<RulingState> half = solve(from, to - from, 0.5, 0.5 * (from + to));
-  return half && add_panels(s0, from, middle, *half, depth - 1) &&
-         add_panels(middle, *half, s1, to, depth - 1);
+  const double now = missed.value_or(std::numeric_limits<double>::infinity());
+  return half && add_panels(s0, from, middle, *half, now, depth - 1) &&
+         add_panels(middle, *half, s1, to, now, depth - 1);
 }
 
-/// Of a panel from one known ruling to another.
-bool RulingSolver::fill(RulingPanel& panel, const RulingState& from, const RulingState& to) const {
+/// Fills a panel from one known ruling to another. What polynomials of half the degree miss; none
+/// if a ruling is not found.
+std::optional<double> RulingSolver::fill(RulingPanel& panel, const RulingState& from,
+                                         const RulingState& to) const {
   const RulingState chord = to - from;
   const double width = panel.to - panel.from;
   std::array<RulingState, node.size()> states;
@@ -121,7 +131,7 @@ bool RulingSolver::fill(RulingPanel& panel, const RulingState& from, const Rulin
   known.add(1, states.back() = to);
   for (const std::size_t i : order) {
     const std::optional<RulingState> at = solve(from, chord, node[i], known.through(1, node[i])[0]);
-    if (!at) return false;
+    if (!at) return std::nullopt;
     known.add(node[i], states[i] = *at);
   }
   for (std::size_t i = 0; i < node.size(); ++i) panel.add(panel.from + width * node[i], states[i]);
@@ -130,7 +140,7 @@ bool RulingSolver::fill(RulingPanel& panel, const RulingState& from, const Rulin
     missed = std::max(missed, length(panel.through(2, panel.nodes()[i])[0] - states[i]));
   }
   panel.settled = missed * missed <= accuracy * length(chord);
-  return true;
+  return missed;
 }
 
 /// The ruling at a share of the way between two others, as their states are apart.

@@ -28,8 +28,10 @@ class RulingSolver {
   bool moves(std::size_t k, int parameter, const RulingState& at) const;
   void find_parameters();
   bool run_along(const Parameters& free, const Parameters& level);
-  bool add_panels(double s0, const RulingState& from, double s1, const RulingState& to, int depth);
-  bool fill(RulingPanel& panel, const RulingState& from, const RulingState& to) const;
+  bool add_panels(double s0, const RulingState& from, double s1, const RulingState& to,
+                  double before, int depth);
+  std::optional<double> fill(RulingPanel& panel, const RulingState& from,
+                             const RulingState& to) const;
   std::optional<RulingState> solve(const RulingState& from, const RulingState& chord, double share,
                                    const RulingState& guess) const;
   RulingState newton_step(const RulingState& at, const RulingState& chord, double off) const;
