@@ -393,6 +393,7 @@ std::vector<int> first_instances(const std::vector<Instance>& instances,
   };
   std::map<std::pair<int, std::array<double, 12>>, int> seen;
   std::vector<int> result;
+  result.reserve(instances.size());
   for (int i = 0; i < int(instances.size()); ++i) {
     result.push_back(seen.try_emplace(key(i), i).first->second);
   }
