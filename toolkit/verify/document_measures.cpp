@@ -31,7 +31,7 @@ std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 /// What is integrated over faces, in units of the diagonal: curvature is the mean one, and what
 /// creases have of it; length, that of outlines, is for comparison.
 enum : std::size_t { volume, area, area_x, area_y, area_z, curvature, outline_length, term_count };
-using Terms = Integrals<term_count>;
+using Terms = IntegralSums<term_count>;
 
 void add_vector_area(Terms& terms, const dvec3& A) {
   terms.value[area_x] += A.x;

@@ -10,11 +10,11 @@ namespace taut {
 
 /// Values of several integrals, and estimates of their absolute errors.
 template <std::size_t count>
-struct Integrals {
+struct IntegralSums {
   std::array<double, count> value{};
   std::array<double, count> error{};
 
-  void add(double weight, const Integrals& other) {
+  void add(double weight, const IntegralSums& other) {
     for (std::size_t i = 0; i < count; ++i) {
       value[i] += weight * other.value[i];
       error[i] += std::abs(weight) * other.error[i];
@@ -33,14 +33,14 @@ struct IntegralAccuracy {
 /// Adds integrals as integrate() does, with so many bisections left.
 template <std::size_t count, class Function>
 void integrate_stretch(const Function& f, double a, double b, const IntegralAccuracy& accuracy,
-                       int& bisections_left, Integrals<count>& sum) {
+                       int& bisections_left, IntegralSums<count>& sum) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 15>;
   using Gauss = boost::math::quadrature::gauss<double, 7>;
   const double middle = 0.5 * (a + b);
   const double half = 0.5 * (b - a);
-  Integrals<count> kronrod, gauss, whole;
+  IntegralSums<count> kronrod, gauss, whole;
   const auto add = [&](std::size_t node, double x) {
-    const Integrals<count> here = f(x);
+    const IntegralSums<count> here = f(x);
     const double weight = half * Kronrod::weights()[node];
     kronrod.add(weight, here);
     if (node % 2 == 0) gauss.add(half * Gauss::weights()[node / 2], here);
@@ -70,12 +70,12 @@ void integrate_stretch(const Function& f, double a, double b, const IntegralAccu
   integrate_stretch(f, middle, b, accuracy, bisections_left, sum);
 }
 
-/// Adds the integrals from a to b of f(x), which are Integrals whose errors count too: by the
+/// Adds the integrals from a to b of f(x), which are IntegralSums whose errors count too: by the
 /// 15-point Kronrod rule, the error by what the 7-point Gauss rule within it differs.
 /// Source: Piessens et al., QUADPACK, 1983, section 3.4; nodes and weights are Boost's.
 template <std::size_t count, class Function>
 void integrate(const Function& f, double a, double b, const IntegralAccuracy& accuracy,
-               Integrals<count>& sum) {
+               IntegralSums<count>& sum) {
   int bisections_left = accuracy.bisections;
   integrate_stretch(f, a, b, accuracy, bisections_left, sum);
 }
