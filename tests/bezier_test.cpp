@@ -15,7 +15,6 @@ namespace {
 
 using taut_test::expect_invalid;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Taylor coefficients c[k][l] of s^k t^l up to total order 3, in long double: the reference for

@@ -19,8 +19,6 @@ namespace {
 
 using namespace taut_test;  // NOLINT: shapes
 
-constexpr double pi = std::numbers::pi;
-
 /// A scene of one part placed once, with what measures need.
 struct Stage {
   Scene scene;
@@ -149,14 +147,14 @@ double quarter_parameter(double angle) {
 
 /// Spheres about the origin (patches 0..7) and elsewhere (8..15), whose separating curve is the
 /// circle n . axis = c.
-struct TwoSpheres {
+struct TwoSpheresMeasured {
   double r0, r1;
   dvec3 center;
   double c;
   dvec3 axis, f, g;  // f, g across the axis, right-handed
   Stage stage;
 
-  TwoSpheres(double radius0, double radius1, const dvec3& center1)
+  TwoSpheresMeasured(double radius0, double radius1, const dvec3& center1)
       : r0(radius0),
         r1(radius1),
         center(center1),
@@ -321,9 +319,9 @@ struct TwoSpheres {
   }
 };
 
-TEST(BoundaryMeasures, TwoSpheres) {
+TEST(BoundaryMeasures, TwoSpheresMeasured) {
   for (const double r1 : {0.5, 1.0, 0.05}) {
-    const TwoSpheres two(1, r1, {1.2, -0.7, 1.9});
+    const TwoSpheresMeasured two(1, r1, {1.2, -0.7, 1.9});
     const double d = glm::length(two.center);
     const double s = (1 - r1) / d;
     const double volume = pi / 3 * d * std::pow(1 - s * s, 2) * (1 + r1 + r1 * r1) +

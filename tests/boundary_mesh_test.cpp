@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "boundaries.h"
@@ -18,8 +17,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models and checks
-
-constexpr double pi = std::numbers::pi;
 
 /// A closed convex surface, of these patches, which is the hull.
 std::shared_ptr<HullBoundary> whole_surface(const ContactGeometry& geometry, const dvec3& center,

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "models.h"
 #include "reference.h"
@@ -15,8 +14,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: random geometry and reference numbers
-
-constexpr double pi = std::numbers::pi;
 
 /// The answer may be this share below the truth.
 constexpr real accuracy = 0.03L;

@@ -154,7 +154,6 @@ TEST(HullContainment, PointsThatAreNoneAreRefused) {
   const Scene scene = make_scene(sphere());
   const HullContainment containment(scene);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double infinity = std::numeric_limits<double>::infinity();
   expect_invalid([&] { containment.locate({0, nan, 0}); }, "not finite");
   expect_invalid([&] { containment.distance({0, 0, infinity}); }, "not finite");
   const std::vector<dvec3> points = {{0, 0, 0}, {infinity, 0, 0}};

@@ -20,7 +20,7 @@ using taut_test::rvec3;
 using taut_test::uniform;
 
 /// Parameters at which cells are sampled: the ends, the places of Bernstein maxima, others.
-constexpr std::array<real, 6> samples = {0, 0.11L, 1.0L / 3, 0.5L, 0.77L, 1};
+constexpr std::array<real, 6> cell_samples = {0, 0.11L, 1.0L / 3, 0.5L, 0.77L, 1};
 
 /// By how much samples of the cell lie farther from its corners' tetrahedron than it says.
 real violation(const CoonsBvh& bvh, const BezierPatch& patch, const CoonsCell& cell) {
@@ -29,8 +29,8 @@ real violation(const CoonsBvh& bvh, const BezierPatch& patch, const CoonsCell& c
   const Interval u = cell.u();
   const Interval v = cell.v();
   real worst = -std::numeric_limits<real>::infinity();
-  for (const real s : samples) {
-    for (const real t : samples) {
+  for (const real s : cell_samples) {
+    for (const real t : cell_samples) {
       const rvec3 x = taut_test::reference_point(patch, (1 - s) * u.lower + s * u.upper,
                                                  (1 - t) * v.lower + t * v.upper);
       worst = std::max(worst, taut_test::distance_to_tetrahedron(x, corners) - deviation);

@@ -12,6 +12,7 @@
 #include "exact_checks.h"
 #include "models.h"
 #include "sound_hull.h"
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/flatness.h"
 #include "taut/surface/rulings.h"
@@ -20,8 +21,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models and checks
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 double binomial(int n, int k) {
   double result = 1;
@@ -327,7 +326,6 @@ Shape cut(const Shape& shape, bool along) {
 }
 
 std::vector<SolidCase> solid_cases() {
-  constexpr double pi = std::numbers::pi;
   std::vector<SolidCase> all;
   const auto add = [&](const std::string& name, const Shape& shape, double volume, double area) {
     const Shape ruled = reparametrised(shape, same_u, same_v);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "boundaries.h"
@@ -17,8 +16,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
-
-constexpr double pi = std::numbers::pi;
 
 DocumentMeasures measured(const HullDocument& hull, const Scene& scene) {
   const DocumentGeometry geometry(hull, scene.frame().center, 0);

@@ -124,7 +124,6 @@ struct FacetCase {
 
 /// Facets are neighbours of the edges that they have for sides, and lie to their left.
 TEST(EdgeIncidence, FacetsWithCurvedSides) {
-  constexpr double pi = 3.14159265358979323846;
   const std::vector<FacetCase> cases = {
       {"cylinder", cylinder(1, 2), Beside::scroll, 4 * pi},
       {"solid cone", solid_cone(1, 2), Beside::scroll, 2 * pi},

@@ -13,19 +13,19 @@ namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-Part part_of(const Shape& shape) { return make_model(shape).parts()[0]; }
+Part model_part(const Shape& shape) { return make_model(shape).parts()[0]; }
 
 TEST(EqualParts, TellsTheFirst) {
   EXPECT_TRUE(equal_parts({}).empty());
-  const Part pot = part_of(teapot());
-  const Part ball = part_of(sphere());
+  const Part pot = model_part(teapot());
+  const Part ball = model_part(shapes::sphere());
   EXPECT_EQ(equal_parts({ball, pot, ball, pot, pot}), (std::vector<int>{0, 1, 0, 1, 1}));
   const Part empty = make_model({}).parts()[0];
   EXPECT_EQ(equal_parts({empty, ball, empty}), (std::vector<int>{0, 1, 0}));
 }
 
 TEST(EqualParts, NamesDoNotCount) {
-  const Part ball = part_of(sphere());
+  const Part ball = model_part(shapes::sphere());
   Part renamed = ball;
   renamed.name = "another";
   EXPECT_EQ(equal_parts({ball, renamed}), (std::vector<int>{0, 0}));
@@ -36,16 +36,16 @@ TEST(EqualParts, EveryNumberCounts) {
   const std::vector<int> differ = {0, 1};
   Shape reversed = pot;
   std::reverse(reversed.surfaces.begin(), reversed.surfaces.end());
-  EXPECT_EQ(equal_parts({part_of(pot), part_of(reversed)}), differ);
+  EXPECT_EQ(equal_parts({model_part(pot), model_part(reversed)}), differ);
   for (const std::size_t k : {std::size_t(0), std::size_t(13), pot.surfaces.size() - 1}) {
     Shape moved = pot;
     double& x = moved.surfaces[k].points[5].x;
     x = std::nextafter(x, 10.0);
-    EXPECT_EQ(equal_parts({part_of(pot), part_of(moved)}), differ) << k;
+    EXPECT_EQ(equal_parts({model_part(pot), model_part(moved)}), differ) << k;
   }
   Shape with_point = pot;
   with_point.points.emplace_back(0, 0, 1);
-  EXPECT_EQ(equal_parts({part_of(pot), part_of(with_point)}), differ);
+  EXPECT_EQ(equal_parts({model_part(pot), model_part(with_point)}), differ);
 }
 
 /// The same faces, of which one is joined smoothly and the other in creases.

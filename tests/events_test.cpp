@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "exact_checks.h"
@@ -15,7 +14,6 @@ namespace {
 
 using namespace taut_test;  // NOLINT: models and checks
 
-constexpr double pi = std::numbers::pi;
 constexpr int unknown = -1;
 
 struct Expected {

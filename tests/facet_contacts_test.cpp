@@ -174,8 +174,6 @@ TEST(FacetContacts, BeginsWithTheContactsKnown) {
 /// @name Planes that contain curves
 /// @{
 
-constexpr double pi = std::numbers::pi;
-
 Shape ring(const dvec2& center, double radius) {
   const dvec3 c(center, 0.0);
   return {{}, {circle(c, {radius, 0, 0}, {0, radius, 0})}, {}};

@@ -13,8 +13,6 @@ namespace {
 using taut::homogeneous;
 using taut::PatchPiece;
 
-constexpr double pi = std::numbers::pi;
-
 double binomial(int n, int k) {
   double result = 1;
   for (int i = 1; i <= k; ++i) result = result * (n - k + i) / i;

@@ -23,7 +23,7 @@ namespace {
 
 using namespace taut_test;  // NOLINT: models and files
 
-constexpr DocumentEncoding encodings[] = {DocumentEncoding::json, DocumentEncoding::cbor};
+constexpr DocumentEncoding hull_encodings[] = {DocumentEncoding::json, DocumentEncoding::cbor};
 
 HullDocument document(const KnownBoundary& known) {
   return hull_document(known.scene, known.boundary, {"a file"});
@@ -78,7 +78,7 @@ void expect_sides(const HullDocument& hull, const HullDocument::Face& facet) {
 /// may have become integers).
 void expect_round_trip(const HullDocument& hull) {
   const std::string text = to_document(hull, DocumentEncoding::json);
-  for (const DocumentEncoding encoding : encodings) {
+  for (const DocumentEncoding encoding : hull_encodings) {
     const HullDocument back = read_hull(to_document(hull, encoding), "f", encoding);
     EXPECT_TRUE(to_document(back, DocumentEncoding::json) == text);
     const std::string again = to_document(back, encoding);

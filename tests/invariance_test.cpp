@@ -73,7 +73,7 @@ struct Subject {
 
 std::ostream& operator<<(std::ostream& out, const Subject& subject) { return out << subject.name; }
 
-Shape truth_named(const std::string& name) {
+Shape shape_named(const std::string& name) {
   for (const Truth& truth : truths()) {
     if (truth.name == name) return truth.shape;
   }
@@ -295,8 +295,8 @@ const Subject teapot_subject = {"Teapot", teapot};
 const Subject blob_subject = {"Blob", [] { return blob(2); }};
 const Subject bean_subject = {"Bean", bean};
 const Subject oloid_subject = {"Oloid", oloid};
-const Subject tori_subject = {"TwoTori", [] { return truth_named("tori like an oloid"); }};
-const Subject spheres_subject = {"ThreeSpheres", [] { return truth_named("three spheres"); }};
+const Subject tori_subject = {"TwoTori", [] { return shape_named("tori like an oloid"); }};
+const Subject spheres_subject = {"ThreeSpheres", [] { return shape_named("three spheres"); }};
 const Subject cylinder_subject = {"Cylinder", [] { return solid_cylinder(1, 2); }};
 const Subject filleted_subject = {"FilletedBox", [] { return filleted_box(1, 2, 3, 0.2); }};
 const Subject torus_subject = {"Torus", [] { return torus(1, 0.25); }};

@@ -1,14 +1,14 @@
 #include "limit_support.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 
 namespace taut_test {
+
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using taut::infinity;
 
 /// Faces of a level beyond which refinement gives up.
 constexpr std::size_t most_faces = 3000;

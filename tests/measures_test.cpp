@@ -13,8 +13,6 @@ namespace {
 
 using namespace taut_test;  // NOLINT: random geometry
 
-constexpr double pi = std::numbers::pi;
-
 PolygonMesh box_mesh(const dvec3& lower, const dvec3& upper) {
   PolygonMesh mesh;
   for (int k = 0; k < 8; ++k) {

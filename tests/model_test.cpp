@@ -14,6 +14,7 @@
 
 #include "error_checks.h"
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
@@ -21,19 +22,16 @@ namespace {
 
 using taut_test::expect_invalid;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// What is put into a part.
-struct Shape {
+struct PartShape {
   std::vector<NurbsSurface> surfaces;
   std::vector<NurbsCurve> curves;
   std::vector<dvec3> points;
 };
 
-Part part_of(const Shape& shape) {
+Part part_of(const PartShape& shape) {
   Part part;
   for (const NurbsSurface& s : shape.surfaces) part.add_surface(s, "surface");
   for (const NurbsCurve& c : shape.curves) part.add_curve(c, "curve");
@@ -41,7 +39,7 @@ Part part_of(const Shape& shape) {
   return part;
 }
 
-Part connected(const Shape& shape, double smooth_angle = smooth_join_angle) {
+Part connected(const PartShape& shape, double smooth_angle = smooth_join_angle) {
   Part part = part_of(shape);
   part.connect(smooth_angle);
   return part;
@@ -102,7 +100,7 @@ NurbsCurve profile(NurbsCurve curve, int turns, double radius, const dvec2& cent
   return curve;
 }
 
-Shape cube() {
+PartShape cube() {
   const dvec3 x(1, 0, 0);
   const dvec3 y(0, 1, 0);
   const dvec3 z(0, 0, 1);
@@ -112,13 +110,15 @@ Shape cube() {
           {}};
 }
 
-Shape sphere() { return {{revolved(profile(arcs(2), 3, 1, dvec2(0)))}, {}, {}}; }
-Shape torus() { return {{revolved(profile(arcs(4), 0, 0.5, dvec2(2, 0)))}, {}, {}}; }
-Shape cylinder_side() { return {{revolved(polyline({dvec3(1, 0, 0), dvec3(1, 0, 2)}))}, {}, {}}; }
-Shape cone() { return {{revolved(polyline({dvec3(1, 0, 0), dvec3(0, 0, 2)}))}, {}, {}}; }
+PartShape sphere() { return {{revolved(profile(arcs(2), 3, 1, dvec2(0)))}, {}, {}}; }
+PartShape torus() { return {{revolved(profile(arcs(4), 0, 0.5, dvec2(2, 0)))}, {}, {}}; }
+PartShape cylinder_side() {
+  return {{revolved(polyline({dvec3(1, 0, 0), dvec3(1, 0, 2)}))}, {}, {}};
+}
+PartShape cone() { return {{revolved(polyline({dvec3(1, 0, 0), dvec3(0, 0, 2)}))}, {}, {}}; }
 
 /// The disc's centre is a pole of a plane.
-Shape hemisphere_with_base() {
+PartShape hemisphere_with_base() {
   return {{revolved(profile(arcs(1), 0, 1, dvec2(0))),
            revolved(polyline({dvec3(0, 0, 0), dvec3(1, 0, 0)}))},
           {},
@@ -126,11 +126,11 @@ Shape hemisphere_with_base() {
 }
 
 /// Triangles with a collapsed side each.
-Shape pyramid() {
+PartShape pyramid() {
   const dvec3 tip(0, 0, 1);
   const std::array<dvec3, 4> base = {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(-1, 0, 0),
                                      dvec3(0, -1, 0)};
-  Shape shape;
+  PartShape shape;
   for (std::size_t i = 0; i < 4; ++i) {
     shape.surfaces.push_back(quad(tip, tip, base[i], base[(i + 1) % 4]));
   }
@@ -138,7 +138,7 @@ Shape pyramid() {
 }
 
 /// One face of two squares with a crease between them.
-Shape roof() {
+PartShape roof() {
   NurbsSurface surface{1, 1, {0, 0, 1, 2, 2}, {0, 0, 1, 1}, {}};
   for (const double x : {-1, 0, 1}) {
     for (const double y : {0, 2}) {
@@ -148,7 +148,7 @@ Shape roof() {
   return {{surface}, {}, {}};
 }
 
-Shape three_sheets() {
+PartShape three_sheets() {
   const dvec3 z(0, 0, 1);
   return {{square(dvec3(0), dvec3(1, 0, 0), z), square(z, dvec3(-1, 1, 0), -z),
            square(dvec3(0), z, dvec3(-1, -1, 0))},
@@ -157,7 +157,7 @@ Shape three_sheets() {
 }
 
 /// Squares on a base of two patches: the edge between them changes its faces midway.
-Shape two_on_one() {
+PartShape two_on_one() {
   const dvec3 x(1, 0, 0);
   const dvec3 z(0, 0, 1);
   NurbsSurface base{1, 1, {0, 0, 1, 2, 2}, {0, 0, 1, 1}, {}};
@@ -168,8 +168,8 @@ Shape two_on_one() {
 }
 
 /// Free curves and points, and a square that one of the curves starts at.
-Shape wires() {
-  Shape shape;
+PartShape wires() {
+  PartShape shape;
   shape.surfaces = {square(dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0))};
   shape.curves = {
       polyline({dvec3(0), dvec3(0, 0, 3)}),
@@ -180,7 +180,7 @@ Shape wires() {
   return shape;
 }
 
-std::map<std::string, Shape> all_shapes() {
+std::map<std::string, PartShape> all_shapes() {
   return {{"cube", cube()},
           {"sphere", sphere()},
           {"torus", torus()},
@@ -195,7 +195,7 @@ std::map<std::string, Shape> all_shapes() {
 }
 
 /// Applies f to all Euclidean control points.
-Shape transformed(Shape shape, const std::function<dvec3(const dvec3&)>& f) {
+PartShape transformed(PartShape shape, const std::function<dvec3(const dvec3&)>& f) {
   const auto apply = [&](std::vector<dvec4>& points) {
     for (dvec4& p : points) p = homogeneous(f(euclidean(p)), p.w);
   };
@@ -236,9 +236,9 @@ NurbsCurve reversed(NurbsCurve curve) {
   return curve;
 }
 
-class Random {
+class Rearrangement {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
+  explicit Rearrangement(unsigned seed) : engine_(seed) {}
   double operator()(double lower, double upper) {
     return std::uniform_real_distribution<double>(lower, upper)(engine_);
   }
@@ -254,7 +254,7 @@ class Random {
     std::shuffle(v.begin(), v.end(), engine_);
   }
   /// The same geometry with other parameters, in another order.
-  Shape rearranged(Shape shape) {
+  PartShape rearranged(PartShape shape) {
     for (NurbsSurface& s : shape.surfaces) {
       if (coin()) s = reversed_u(s);
       if (coin()) s = transposed(s);
@@ -580,7 +580,7 @@ TEST(Model, ConeHasATip) {
 /// The flatter the cone, the less its normals differ at the tip.
 TEST(Model, FlatConesTip) {
   for (const auto& [height, tips] : {std::pair(1e-2, 1u), std::pair(1e-6, 0u)}) {
-    const Shape shape{{revolved(polyline({dvec3(1, 0, 0), dvec3(0, 0, height)}))}, {}, {}};
+    const PartShape shape{{revolved(polyline({dvec3(1, 0, 0), dvec3(0, 0, height)}))}, {}, {}};
     expect_counts(connected(shape), 1, tips);
   }
 }
@@ -659,7 +659,7 @@ TEST(Model, CreaseThatFadesOut) {
       bump.points.push_back(homogeneous(dvec3(i / 3.0, j / 4.0, z)));
     }
   }
-  Shape shape;
+  PartShape shape;
   for (const double i : {-1.0, 0.0}) {
     for (const double j : {-1.0, 0.0, 1.0}) {
       const bool bumped = i == 0 && j == 0;
@@ -795,7 +795,7 @@ TEST(Model, PatchClosedOnItself) {
 }
 
 TEST(Model, OtherDegreesAndWeightsOnTheOtherSide) {
-  Random random(1);
+  Rearrangement random(1);
   BezierPatch a{3, 2, {}};
   for (int i = 0; i < 12; ++i) a.points.push_back(homogeneous(random.vector(), random(0.5, 2)));
   BezierPatch b{3, 2, {}};
@@ -834,7 +834,7 @@ TEST(Model, GapsUpToTheJoinDistance) {
   for (const dvec3& direction : {x, y, dvec3(0, 0, 1)}) {
     for (const auto& [gap, edges] : {std::pair(0.99, 6u), std::pair(1.01, 8u)}) {
       const dvec3 shift = gap * tolerance * direction;
-      const Shape shape{{square(dvec3(0), x, y), square(x + shift, x, y)}, {}, {}};
+      const PartShape shape{{square(dvec3(0), x, y), square(x + shift, x, y)}, {}, {}};
       EXPECT_EQ(connected(shape).edges().size(), edges) << gap;
     }
   }
@@ -849,7 +849,7 @@ TEST(Model, JoinsUpToTheSmoothAngle) {
         const double angle = sign * factor * limit;
         const dvec3 bent(std::cos(angle), 0, std::sin(angle));
         // The rims go straight on within the same angle.
-        const Shape shape{{square(dvec3(0), x, y), square(x, bent, y)}, {}, {}};
+        const PartShape shape{{square(dvec3(0), x, y), square(x, bent, y)}, {}, {}};
         EXPECT_EQ(connected(shape, limit).edges().size(), edges) << angle;
       }
     }
@@ -878,11 +878,11 @@ TEST(Model, JoinsMustBeSmoothEverywhere) {
 
 /// Every square is off by its own error, and many borders lie across the cells of a search.
 TEST(Model, SquaresThatFitWithinTolerance) {
-  Random random(2);
+  Rearrangement random(2);
   const int n = 30;
   const double error = 0.25 * join_distance * n * std::numbers::sqrt2;
   const dmat3 rotation = random.rotation();
-  Shape shape;
+  PartShape shape;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       const auto corner = [&](int a, int b) {
@@ -904,10 +904,10 @@ TEST(Model, CornersThatJoinsUnite) {
   const dvec3 y(0, 1, 0);
   const dvec3 z(0, 0, 1);
   const dvec3 shift = 0.9 * join_distance * std::sqrt(9) * x;
-  const Shape shape{
+  const PartShape shape{
       {square(x + y + shift, x, y), square(dvec3(0), x, y), square(x - shift, y, z)}, {}, {}};
   expect_counts(connected(shape), 11, 9);
-  const Shape tip{
+  const PartShape tip{
       {square(shift, x, 2.0 * y), quad(dvec3(0), -shift, -x - z, -y - 2.0 * z)}, {}, {}};
   expect_counts(connected(tip), 7, 6);
 }
@@ -998,14 +998,14 @@ TEST(Model, FreePoints) {
 // ---- Invariance
 
 TEST(Model, InvariantUnderOrderParametersPlaceAndSize) {
-  Random random(3);
+  Rearrangement random(3);
   for (const auto& [name, shape] : all_shapes()) {
     const Summary expected = summary(connected(shape));
     for (int k = 0; k < 30; ++k) {
       const double scale = std::pow(10.0, random(-6, 6));
       const dmat3 rotation = random.rotation();
       const dvec3 shift = std::pow(10.0, random(-2, 2)) * random.vector();
-      const Shape other = random.rearranged(
+      const PartShape other = random.rearranged(
           transformed(shape, [&](const dvec3& x) { return scale * (rotation * x + shift); }));
       const Part part = connected(other);
       SCOPED_TRACE(testing::Message() << name << " scale " << scale);
@@ -1016,12 +1016,13 @@ TEST(Model, InvariantUnderOrderParametersPlaceAndSize) {
 }
 
 TEST(Model, AllShapesInOnePart) {
-  Shape all;
+  PartShape all;
   Summary expected;
   double place = 0;
   for (const auto& [name, shape] : all_shapes()) {
     place += 10;
-    const Shape moved = transformed(shape, [&](const dvec3& x) { return x + dvec3(place, 0, 0); });
+    const PartShape moved =
+        transformed(shape, [&](const dvec3& x) { return x + dvec3(place, 0, 0); });
     all.surfaces.insert(all.surfaces.end(), moved.surfaces.begin(), moved.surfaces.end());
     all.curves.insert(all.curves.end(), moved.curves.begin(), moved.curves.end());
     all.points.insert(all.points.end(), moved.points.begin(), moved.points.end());
@@ -1088,7 +1089,7 @@ TEST(Model, Teapot) {
   if (folder == nullptr) GTEST_SKIP() << "TAUT_MODELS does not name the folder of models";
   std::ifstream file(std::string(folder) + "/A14_teapot_newell.bpt");
   if (!file) GTEST_SKIP() << "no teapot in " << folder;
-  Shape shape;
+  PartShape shape;
   for (const BezierPatch& patch : read_bpt(file)) shape.surfaces.push_back(as_nurbs(patch));
   ASSERT_EQ(shape.surfaces.size(), 32u);
 
@@ -1103,11 +1104,11 @@ TEST(Model, Teapot) {
   EXPECT_LT(angle, 1e-6);
   for (const Edge& edge : part.edges()) EXPECT_EQ(edge.faces.size(), 1u);
 
-  Random random(4);
+  Rearrangement random(4);
   for (int k = 0; k < 10; ++k) {
     const double scale = std::pow(10.0, random(-6, 6));
     const dmat3 rotation = random.rotation();
-    const Shape other = random.rearranged(
+    const PartShape other = random.rearranged(
         transformed(shape, [&](const dvec3& x) { return scale * (rotation * x); }));
     EXPECT_EQ(summary(connected(other)), found);
   }
@@ -1161,7 +1162,7 @@ TEST(Model, ClearInstances) {
   EXPECT_EQ(model.face_count(), 0);
   EXPECT_EQ(model.parts().size(), 1u);
   RigidMotion pose;
-  pose.rotation = Random(5).rotation();
+  pose.rotation = Rearrangement(5).rotation();
   model.add_instance(0, pose);
   EXPECT_EQ(model.source_count(), 26);
   EXPECT_EQ(model.source(25).kind, SourceKind::vertex);
@@ -1171,7 +1172,7 @@ TEST(Model, ClearInstances) {
 TEST(Model, AddPartConnectsUnlessConnected) {
   const dvec3 x(1, 0, 0);
   const dvec3 y(0, 1, 0);
-  const Shape bent{{square(dvec3(0), x, y), square(x, dvec3(1, 0, 0.1), y)}, {}, {}};
+  const PartShape bent{{square(dvec3(0), x, y), square(x, dvec3(1, 0, 0.1), y)}, {}, {}};
   Model model;
   EXPECT_FALSE(part_of(bent).connected());
   model.add_part(part_of(bent), smooth_join_angle);
@@ -1194,7 +1195,7 @@ TEST(Model, InstancesAreValidated) {
   pose.rotation = dmat3(1.0);
   pose.rotation[1][0] = 1e-8;
   expect_invalid([&] { model.add_instance(0, pose); }, "rotation");
-  pose.rotation[1][0] = nan;
+  pose.rotation[1][0] = no_number;
   expect_invalid([&] { model.add_instance(0, pose); }, "rotation");
   pose.rotation = dmat3(1.0 + 1e-10);
   pose.translation.y = infinity;
@@ -1279,14 +1280,14 @@ TEST(Model, GeometryIsValidated) {
   NurbsCurve curve = polyline({dvec3(0), dvec3(1)});
   curve.points[1].w = 1e-320;
   expect_invalid([&] { part.add_curve(curve, "rail"); }, "rail");
-  curve.knots[1] = nan;
+  curve.knots[1] = no_number;
   expect_invalid([&] { part.add_curve(curve, "rail"); }, "knot 1");
-  expect_invalid([&] { part.add_point(dvec3(0, nan, 0)); }, "bracket: point 0");
+  expect_invalid([&] { part.add_point(dvec3(0, no_number, 0)); }, "bracket: point 0");
   expect_invalid([&] { part.add_point(dvec3(0, 0, infinity)); }, "not finite");
   EXPECT_TRUE(part.control_box().empty());
   EXPECT_TRUE(part.faces().empty() && part.edges().empty() && part.vertices().empty());
   EXPECT_TRUE(part.patches().empty() && part.pieces().empty());
-  for (const double angle : {-1e-3, nan, 2.0}) {
+  for (const double angle : {-1e-3, no_number, 2.0}) {
     expect_invalid([&] { part.connect(angle); }, "smooth angle");
   }
   EXPECT_FALSE(part.connected());

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "taut/core/tolerances.h"
 #include "taut/io/model/read_model.h"
@@ -88,7 +87,6 @@ Model posed_teapots(unsigned seed, int count) {
 }
 
 Shape blob(unsigned seed) {
-  constexpr double pi = std::numbers::pi;
   constexpr int around = 6;  // spans of u, periodic
   constexpr int down = 4;    // spans of v, pole to pole
   Random random(seed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -20,6 +21,8 @@ using taut::dvec4;
 using taut::Model;
 using taut::NurbsCurve;
 using taut::NurbsSurface;
+
+inline constexpr double pi = std::numbers::pi;
 
 using Random = std::mt19937_64;
 

@@ -9,6 +9,7 @@
 
 #include "error_checks.h"
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
@@ -16,10 +17,7 @@ namespace {
 
 using taut_test::expect_invalid;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 using Knots = std::vector<double>;
 
@@ -78,9 +76,9 @@ dvec3 euclidean_of(const Homogeneous& x) {
           static_cast<double>(x[2] / x[3])};
 }
 
-class Random {
+class RandomNurbs {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
+  explicit RandomNurbs(unsigned seed) : engine_(seed) {}
   double operator()(double lower, double upper) {
     return std::uniform_real_distribution<double>(lower, upper)(engine_);
   }
@@ -100,7 +98,7 @@ class Random {
 };
 
 /// A knot vector of every kind there is.
-Knots random_knots(Random& random, int degree) {
+Knots random_knots(RandomNurbs& random, int degree) {
   enum { clamped, unclamped, loose };
   const int kind = random.integer(clamped, loose);
   Knots knots;
@@ -132,7 +130,7 @@ Knots random_knots(Random& random, int degree) {
 /// the Bernstein sums' rounding.
 double rounding(int degree) { return 32 * rounding_unit * degree; }
 
-void expect_near(const dvec3& a, const dvec3& b, double tolerance) {
+void expect_within(const dvec3& a, const dvec3& b, double tolerance) {
   EXPECT_LE(glm::length(a - b), tolerance) << "(" << a.x << ", " << a.y << ", " << a.z << ") and ("
                                            << b.x << ", " << b.y << ", " << b.z << ")";
 }
@@ -157,17 +155,17 @@ void check(const NurbsCurve& curve) {
           pieces[k].t.lower + s * (static_cast<long double>(pieces[k].t.upper) - pieces[k].t.lower);
       SCOPED_TRACE(testing::Message()
                    << "degree " << curve.degree << " piece " << k << " at " << s);
-      expect_near(point(pieces[k].bezier, s), euclidean_of(reference(curve, pieces[k], t)),
-                  rounding(curve.degree));
+      expect_within(point(pieces[k].bezier, s), euclidean_of(reference(curve, pieces[k], t)),
+                    rounding(curve.degree));
     }
   }
 }
 
-NurbsCurve curve_on(Random& random, int degree, const Knots& knots) {
+NurbsCurve curve_on(RandomNurbs& random, int degree, const Knots& knots) {
   return {degree, knots, random.points(knots.size() - to_size(degree) - 1)};
 }
 
-NurbsSurface surface_on(Random& random, int degree_u, int degree_v, const Knots& u,
+NurbsSurface surface_on(RandomNurbs& random, int degree_u, int degree_v, const Knots& u,
                         const Knots& v) {
   const std::size_t count = (u.size() - to_size(degree_u) - 1) * (v.size() - to_size(degree_v) - 1);
   return {degree_u, degree_v, u, v, random.points(count)};
@@ -187,7 +185,7 @@ void expect_continuous(const NurbsCurve& curve, int order) {
       const dvec3 l = left[to_size(d)] / std::pow(da, d);
       const dvec3 r = right[to_size(d)] / std::pow(db, d);
       SCOPED_TRACE(testing::Message() << "knot " << pieces[k].t.lower << " derivative " << d);
-      expect_near(l, r, 1e-9 * (1 + glm::length(l)));
+      expect_within(l, r, 1e-9 * (1 + glm::length(l)));
     }
   }
 }
@@ -205,7 +203,7 @@ NurbsCurve circle() {
 }
 
 TEST(Nurbs, ClampedCurve) {
-  Random random(1);
+  RandomNurbs random(1);
   check(curve_on(random, 1, {0, 0, 1, 1}));
   check(curve_on(random, 2, {0, 0, 0, 1, 3, 3, 3}));
   check(curve_on(random, 3, {-1, -1, -1, -1, 0, 0.5, 0.75, 8, 8, 8, 8}));
@@ -213,7 +211,7 @@ TEST(Nurbs, ClampedCurve) {
 }
 
 TEST(Nurbs, UnclampedCurve) {
-  Random random(2);
+  RandomNurbs random(2);
   check(curve_on(random, 1, {0, 1, 3, 4}));
   check(curve_on(random, 2, {0, 1, 2, 4, 8, 16, 32}));
   check(curve_on(random, 3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
@@ -221,7 +219,7 @@ TEST(Nurbs, UnclampedCurve) {
 }
 
 TEST(Nurbs, InnerKnotsOfAllMultiplicities) {
-  Random random(3);
+  RandomNurbs random(3);
   for (int p = 1; p <= 6; ++p) {
     for (int multiplicity = 1; multiplicity <= p + 1; ++multiplicity) {
       Knots knots(to_size(p) + 1, 0.0);
@@ -236,7 +234,7 @@ TEST(Nurbs, InnerKnotsOfAllMultiplicities) {
 }
 
 TEST(Nurbs, FullMultiplicityMayBeAGap) {
-  Random random(4);
+  RandomNurbs random(4);
   const NurbsCurve curve = curve_on(random, 2, {0, 0, 0, 1, 1, 1, 2, 2, 2});
   const std::vector<CurvePiece> pieces = decompose(curve);
   ASSERT_EQ(pieces.size(), 2u);
@@ -247,7 +245,7 @@ TEST(Nurbs, FullMultiplicityMayBeAGap) {
 }
 
 TEST(Nurbs, PeriodicCurveClosesSmoothly) {
-  Random random(5);
+  RandomNurbs random(5);
   for (int p = 1; p <= 5; ++p) {
     NurbsCurve curve;
     curve.degree = p;
@@ -265,17 +263,17 @@ TEST(Nurbs, PeriodicCurveClosesSmoothly) {
     expect_continuous(curve, std::min(p - 1, 3));
     const std::vector<CurvePiece> pieces = decompose(curve);
     ASSERT_EQ(pieces.size(), to_size(period));
-    expect_near(point(pieces.front().bezier, 0), point(pieces.back().bezier, 1), 1e-14);
+    expect_within(point(pieces.front().bezier, 0), point(pieces.back().bezier, 1), 1e-14);
     if (p == 1) continue;
     const double first = pieces.front().t.upper - pieces.front().t.lower;
     const double last = pieces.back().t.upper - pieces.back().t.lower;
-    expect_near(jet(pieces.front().bezier, 0).ct / first, jet(pieces.back().bezier, 1).ct / last,
-                1e-12);
+    expect_within(jet(pieces.front().bezier, 0).ct / first, jet(pieces.back().bezier, 1).ct / last,
+                  1e-12);
   }
 }
 
 TEST(Nurbs, RandomCurves) {
-  Random random(6);
+  RandomNurbs random(6);
   for (int k = 0; k < 400; ++k) {
     const int degree = random.integer(1, 7);
     check(curve_on(random, degree, random_knots(random, degree)));
@@ -283,7 +281,7 @@ TEST(Nurbs, RandomCurves) {
 }
 
 TEST(Nurbs, HighestDegree) {
-  Random random(7);
+  RandomNurbs random(7);
   const std::size_t order = max_degree + 1;
   Knots knots(order, 0.0);
   knots.push_back(0.5);
@@ -293,13 +291,13 @@ TEST(Nurbs, HighestDegree) {
   const std::vector<CurvePiece> pieces = decompose(curve);
   ASSERT_EQ(pieces.size(), 2u);
   // The recurrence of the reference takes 2^31 steps here: continuity must do.
-  expect_near(point(pieces[0].bezier, 1), point(pieces[1].bezier, 0), 1e-13);
-  expect_near(jet(pieces[0].bezier, 1).ct, jet(pieces[1].bezier, 0).ct, 1e-11);
+  expect_within(point(pieces[0].bezier, 1), point(pieces[1].bezier, 0), 1e-13);
+  expect_within(jet(pieces[0].bezier, 1).ct, jet(pieces[1].bezier, 0).ct, 1e-11);
 }
 
 /// Spans of very different lengths, and far from zero.
 TEST(Nurbs, SpansOfAllSizes) {
-  Random random(8);
+  RandomNurbs random(8);
   check(curve_on(random, 3, {0, 0, 0, 0, 1e-12, 1, 1e12, 1e12, 1e12, 1e12}));
   check(curve_on(random, 3, {1e9, 1e9, 1e9, 1e9, 1e9 + 1, 1e9 + 2, 1e9 + 2, 1e9 + 2, 1e9 + 2}));
   check(curve_on(random, 2, {-1e300, 0, 1e-300, 1, 1e300, 1.5e300}));
@@ -339,7 +337,7 @@ TEST(Nurbs, KnownBezierPoints) {
 }
 
 TEST(Nurbs, RandomSurfaces) {
-  Random random(9);
+  RandomNurbs random(9);
   for (int k = 0; k < 60; ++k) {
     const int p = random.integer(1, 5);
     const int q = random.integer(1, 5);
@@ -355,9 +353,9 @@ TEST(Nurbs, RandomSurfaces) {
           const auto at = [](Interval t, int n) {
             return t.lower + (static_cast<long double>(t.upper) - t.lower) * n / 3;
           };
-          expect_near(point(piece.bezier, i / 3.0, j / 3.0),
-                      euclidean_of(reference(s, piece, at(piece.u, i), at(piece.v, j))),
-                      rounding(p + q));
+          expect_within(point(piece.bezier, i / 3.0, j / 3.0),
+                        euclidean_of(reference(s, piece, at(piece.u, i), at(piece.v, j))),
+                        rounding(p + q));
         }
       }
     }
@@ -366,7 +364,7 @@ TEST(Nurbs, RandomSurfaces) {
 
 /// u outer, v inner, both ascending.
 TEST(Nurbs, OrderOfPatches) {
-  Random random(10);
+  RandomNurbs random(10);
   const NurbsSurface s = surface_on(random, 1, 2, {0, 0, 1, 3, 3}, {5, 5, 5, 6, 6, 8, 9, 9, 9});
   const std::vector<PatchPiece> pieces = decompose(s);
   ASSERT_EQ(pieces.size(), 6u);
@@ -392,7 +390,7 @@ TEST(Nurbs, OrderOfPatches) {
 /// Positive weights stay positive, and the control box does not grow, also where the knots outside
 /// the domain are far away.
 TEST(Nurbs, PiecesStayInTheConvexHull) {
-  Random random(11);
+  RandomNurbs random(11);
   for (int k = 0; k < 200; ++k) {
     const int degree = random.integer(1, 6);
     NurbsCurve curve = curve_on(random, degree, random_knots(random, degree));
@@ -414,7 +412,7 @@ TEST(Nurbs, PiecesStayInTheConvexHull) {
 }
 
 TEST(Nurbs, BezierAsNurbsAndBack) {
-  Random random(12);
+  RandomNurbs random(12);
   for (int p = 1; p <= 9; ++p) {
     const BezierCurve curve{random.points(to_size(p) + 1)};
     const NurbsCurve nurbs_curve = as_nurbs(curve);
@@ -437,7 +435,7 @@ TEST(Nurbs, BezierAsNurbsAndBack) {
 }
 
 TEST(Nurbs, ValidateCurveNamesWhatIsWrong) {
-  Random random(13);
+  RandomNurbs random(13);
   const NurbsCurve good = curve_on(random, 2, {0, 0, 0, 1, 2, 2, 2});
   EXPECT_NO_THROW(validate(good, "rail"));
   const auto bad = [&](const std::string& message, const std::function<void(NurbsCurve&)>& change) {
@@ -456,21 +454,21 @@ TEST(Nurbs, ValidateCurveNamesWhatIsWrong) {
   bad("5 control points", [](NurbsCurve& c) { c.points.resize(5, dvec4(1)); });
   bad("0 control points", [](NurbsCurve& c) { c.points.clear(); });
   bad("knot 4 is below", [](NurbsCurve& c) { c.knots[4] = 0.5; });
-  bad("knot 3 is not finite", [](NurbsCurve& c) { c.knots[3] = nan; });
+  bad("knot 3 is not finite", [](NurbsCurve& c) { c.knots[3] = not_a_number; });
   bad("knot 6 is not finite", [](NurbsCurve& c) { c.knots[6] = infinity; });
   bad("overflows",
       [](NurbsCurve& c) { c.knots = {-1e308, -1e308, -1e308, 0, 1e308, 1e308, 1e308}; });
   bad("domain is empty", [](NurbsCurve& c) { c.knots = {0, 1, 2, 2, 2, 3, 4}; });
   bad("domain is empty", [](NurbsCurve& c) { c.knots = {1, 1, 1, 1, 1, 1, 1}; });
   bad("multiplicity of knot 3", [](NurbsCurve& c) { c.knots = {0, 0, 0, 0, 2, 2, 2}; });
-  bad("control point 1 is not finite", [](NurbsCurve& c) { c.points[1].x = nan; });
+  bad("control point 1 is not finite", [](NurbsCurve& c) { c.points[1].x = not_a_number; });
   bad("control point 2 is not finite", [](NurbsCurve& c) { c.points[2].w = infinity; });
   bad("weight of control point 3", [](NurbsCurve& c) { c.points[3].w = 0; });
   bad("weight of control point 3", [](NurbsCurve& c) { c.points[3].w = -1; });
 }
 
 TEST(Nurbs, ValidateInnerMultiplicity) {
-  Random random(14);
+  RandomNurbs random(14);
   EXPECT_NO_THROW(validate(curve_on(random, 2, {0, 0, 0, 1, 1, 1, 2, 2, 2}), "rail"));
   expect_invalid(
       [&] {
@@ -485,7 +483,7 @@ TEST(Nurbs, ValidateInnerMultiplicity) {
 }
 
 TEST(Nurbs, ValidateSurfaceNamesWhatIsWrong) {
-  Random random(15);
+  RandomNurbs random(15);
   const NurbsSurface good = surface_on(random, 2, 1, {0, 0, 0, 1, 2, 2, 2}, {0, 0, 1, 1});
   EXPECT_NO_THROW(validate(good, "lid"));
   const auto bad = [&](const std::string& message,
@@ -502,7 +500,7 @@ TEST(Nurbs, ValidateSurfaceNamesWhatIsWrong) {
   bad("7 control points", [](NurbsSurface& s) { s.points.resize(7); });
   bad("9 control points", [](NurbsSurface& s) { s.points.resize(9, dvec4(1)); });
   bad("u: knot 4 is below", [](NurbsSurface& s) { s.knots_u[4] = 0.5; });
-  bad("v: knot 1 is not finite", [](NurbsSurface& s) { s.knots_v[1] = nan; });
+  bad("v: knot 1 is not finite", [](NurbsSurface& s) { s.knots_v[1] = not_a_number; });
   bad("v: the domain is empty", [](NurbsSurface& s) { s.knots_v = {0, 1, 1, 2}; });
   bad("u: the multiplicity", [](NurbsSurface& s) { s.knots_u = {0, 0, 0, 0, 2, 2, 2}; });
   bad("control point 5 is not finite", [](NurbsSurface& s) { s.points[5].z = -infinity; });

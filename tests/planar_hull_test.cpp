@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -20,8 +19,6 @@ using Curve = std::vector<dvec3>;
 using Curves = std::vector<Curve>;
 using Points = std::vector<dvec2>;
 using real = long double;
-
-constexpr double pi = std::numbers::pi;
 
 /// An arc of less than half a circle.
 Curve circular(const dvec2& center, double radius, double from, double to) {

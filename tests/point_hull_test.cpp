@@ -26,7 +26,7 @@ Box box_of(const std::vector<dvec3>& points) {
   return box;
 }
 
-PointHull hull_of(const std::vector<dvec3>& points) {
+PointHull hull_of_points(const std::vector<dvec3>& points) {
   PointHull hull(box_of(points));
   hull.add(points);
   return hull;
@@ -110,12 +110,12 @@ void expect_polygons(const PointHull& hull) {
 
 /// With exact facts about polygons and no point above any plane, the hull is proven.
 void expect_hull(const std::vector<dvec3>& points, std::size_t step = 1) {
-  const PointHull hull = hull_of(points);
+  const PointHull hull = hull_of_points(points);
   ASSERT_NO_FATAL_FAILURE(expect_triangulation(hull, step));
   expect_polygons(hull);
 }
 
-std::vector<dvec3> grid(int n) {
+std::vector<dvec3> point_grid(int n) {
   std::vector<dvec3> points;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
@@ -171,7 +171,7 @@ std::vector<dvec2> cocircular() {
 
 TEST(PointHull, Tetrahedron) {
   const std::vector<dvec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 0.1}};
-  const PointHull hull = hull_of(points);
+  const PointHull hull = hull_of_points(points);
   EXPECT_EQ(hull.facet_count(), 4);
   EXPECT_EQ(extreme_points(hull).size(), 4U);
   expect_hull(points);
@@ -208,13 +208,13 @@ TEST(PointHull, DimensionIsExact) {
     const double y = std::ldexp(pick(random, 1, 1 << 30), -20);
     points.emplace_back(x, y, x + y);
   }
-  EXPECT_EQ(hull_of(points).dimension(), 2);
+  EXPECT_EQ(hull_of_points(points).dimension(), 2);
   points[100].z = std::nextafter(points[100].z, 1e300);
-  EXPECT_EQ(hull_of(points).dimension(), 3);
+  EXPECT_EQ(hull_of_points(points).dimension(), 3);
   expect_hull(points);
   // A line: multiples of one integer vector.
   for (dvec3& p : points) p = double(pick(random, -1000, 1000)) * dvec3(123457, 7, 1e9 + 1);
-  EXPECT_EQ(hull_of(points).dimension(), 1);
+  EXPECT_EQ(hull_of_points(points).dimension(), 1);
 }
 
 TEST(PointHull, RandomPoints) {
@@ -227,17 +227,17 @@ TEST(PointHull, RandomPoints) {
   std::vector<dvec3> sphere;
   for (int k = 0; k < 1000; ++k) sphere.push_back(taut_test::random_direction(random));
   expect_hull(sphere);
-  EXPECT_EQ(extreme_points(hull_of(sphere)).size(), 1000U);
+  EXPECT_EQ(extreme_points(hull_of_points(sphere)).size(), 1000U);
 }
 
 TEST(PointHull, GridsMergeToSixSquares) {
-  const std::vector<dvec3> points = grid(20);
+  const std::vector<dvec3> points = point_grid(20);
   const dmat3 turn = integer_rotation(3, 1, 4, 2);
   for (const auto& moved :
        {points, mapped(points, dmat3(1.0), {1e6, -3e6, 7}), mapped(points, turn, dvec3(0.0)),
         mapped(points, turn, {1e9 + 1, 12345, -77}),
         mapped(points, turn * (1.0 / 1024), {8e5, 0, 1.0 / 4096})}) {
-    const PointHull hull = hull_of(moved);
+    const PointHull hull = hull_of_points(moved);
     const auto polygons = hull.merged_polygons();
     EXPECT_EQ(polygons.loops.size(), 6U);
     for (const auto& loop : polygons.loops) EXPECT_EQ(loop.size(), 4U);
@@ -251,7 +251,7 @@ TEST(PointHull, GridsWhoseRotationRounds) {
   // Faces are flat to rounding only, the worst mixture of exact and near coplanarity.
   Random random(3);
   for (int k = 0; k < 4; ++k) {
-    expect_hull(mapped(grid(10), taut_test::random_rotation(random) * 0.1,
+    expect_hull(mapped(point_grid(10), taut_test::random_rotation(random) * 0.1,
                        k % 2 == 0 ? dvec3(0.0) : 1e5 * random_point(random)),
                 3);
   }
@@ -264,7 +264,7 @@ TEST(PointHull, ThousandsOnACircle) {
   for (const double z : {0.0, 1e4, 5e3}) {
     for (const dvec2& p : circle) prism.emplace_back(p, z);
   }
-  const PointHull hull = hull_of(prism);
+  const PointHull hull = hull_of_points(prism);
   const auto polygons = hull.merged_polygons();
   EXPECT_EQ(polygons.loops.size(), circle.size() + 2);
   EXPECT_EQ(extreme_points(hull).size(), 2 * circle.size());
@@ -273,7 +273,7 @@ TEST(PointHull, ThousandsOnACircle) {
   std::vector<dvec3> pyramid;
   for (const dvec2& p : circle) pyramid.push_back(integer_rotation(1, 2, 0, 1) * dvec3(p, 0));
   pyramid.push_back(integer_rotation(1, 2, 0, 1) * dvec3(0, 0, 3));
-  EXPECT_EQ(hull_of(pyramid).merged_polygons().loops.size(), circle.size() + 1);
+  EXPECT_EQ(hull_of_points(pyramid).merged_polygons().loops.size(), circle.size() + 1);
   expect_hull(pyramid);
 }
 
@@ -299,10 +299,10 @@ TEST(PointHull, Duplicates) {
   for (int k = 0; k < 5; ++k) many.insert(many.end(), once.begin(), once.end());
   std::shuffle(many.begin(), many.end(), random);
   expect_hull(many);
-  EXPECT_EQ(extreme_points(hull_of(many)), extreme_points(hull_of(once)));
+  EXPECT_EQ(extreme_points(hull_of_points(many)), extreme_points(hull_of_points(once)));
   // Zeros of either sign are one point.
   std::vector<dvec3> zeros = {{0.0, 0, 0}, {-0.0, 0, 0}, {1, 0, 0}, {0, 1, -0.0}, {0, 0, 1}};
-  EXPECT_EQ(hull_of(zeros).merged_polygons().loops.size(), 4U);
+  EXPECT_EQ(hull_of_points(zeros).merged_polygons().loops.size(), 4U);
 }
 
 TEST(PointHull, ManyPointsOnEdgesAndFaces) {
@@ -319,8 +319,8 @@ TEST(PointHull, ManyPointsOnEdgesAndFaces) {
   for (int k = 0; k < 5; ++k) {
     std::shuffle(points.begin(), points.end(), random);
     expect_hull(points, 3);
-    EXPECT_EQ(hull_of(points).merged_polygons().loops.size(), 6U);
-    EXPECT_EQ(extreme_points(hull_of(points)).size(), 8U);
+    EXPECT_EQ(hull_of_points(points).merged_polygons().loops.size(), 6U);
+    EXPECT_EQ(extreme_points(hull_of_points(points)).size(), 8U);
   }
 }
 
@@ -354,7 +354,7 @@ TEST(PointHull, PointsOneUlpApart) {
       points.push_back(dvec3(1) + ulp * dvec3{pick(random, 0, size), pick(random, 0, size),
                                               pick(random, 0, size)});
     }
-    if (hull_of(points).dimension() == 3) expect_hull(points);
+    if (hull_of_points(points).dimension() == 3) expect_hull(points);
     // Such clusters at the corners of a cube.
     for (std::size_t k = 0; k < points.size(); ++k) {
       points[k] *= dvec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
@@ -398,10 +398,10 @@ TEST(PointHull, SizesAndMixturesOfSizes) {
 }
 
 TEST(PointHull, SubnormalGrid) {
-  std::vector<dvec3> points = grid(4);
+  std::vector<dvec3> points = point_grid(4);
   for (dvec3& p : points) p *= 5e-324;
   expect_hull(points);
-  EXPECT_EQ(hull_of(points).merged_polygons().loops.size(), 6U);
+  EXPECT_EQ(hull_of_points(points).merged_polygons().loops.size(), 6U);
 }
 
 TEST(PointHull, OrderDoesNotMatter) {
@@ -410,10 +410,10 @@ TEST(PointHull, OrderDoesNotMatter) {
   for (int k = 0; k < 300; ++k) {
     points.emplace_back(pick(random, 0, 9), pick(random, 0, 9), pick(random, 0, 9));
   }
-  const auto expected = extreme_points(hull_of(points));
+  const auto expected = extreme_points(hull_of_points(points));
   for (int k = 0; k < 10; ++k) {
     std::shuffle(points.begin(), points.end(), random);
-    EXPECT_EQ(extreme_points(hull_of(points)), expected);
+    EXPECT_EQ(extreme_points(hull_of_points(points)), expected);
   }
 }
 
@@ -424,7 +424,7 @@ TEST(PointHull, TheBoxDecidesSpeedOnly) {
   PointHull narrow({dvec3(0.5), dvec3(0.5)});
   narrow.add(points);
   expect_triangulation(narrow);
-  EXPECT_EQ(extreme_points(narrow), extreme_points(hull_of(points)));
+  EXPECT_EQ(extreme_points(narrow), extreme_points(hull_of_points(points)));
 }
 
 TEST(PointHull, AddInPortions) {
@@ -445,7 +445,7 @@ TEST(PointHull, AddInPortions) {
     }
     expect_triangulation(hull);
     expect_polygons(hull);
-    EXPECT_EQ(extreme_points(hull), extreme_points(hull_of(points)));
+    EXPECT_EQ(extreme_points(hull), extreme_points(hull_of_points(points)));
   }
 }
 
@@ -511,7 +511,7 @@ TEST(PointHull, InsertOneByOneEqualsAdd) {
     }
     expect_triangulation(hull);
     expect_polygons(hull);
-    EXPECT_EQ(extreme_points(hull), extreme_points(hull_of(points)));
+    EXPECT_EQ(extreme_points(hull), extreme_points(hull_of_points(points)));
   }
 }
 
@@ -532,7 +532,7 @@ TEST(PointHull, InsertAndAddMixed) {
     }
   }
   expect_triangulation(hull);
-  EXPECT_EQ(extreme_points(hull), extreme_points(hull_of(points)));
+  EXPECT_EQ(extreme_points(hull), extreme_points(hull_of_points(points)));
 }
 
 }  // namespace

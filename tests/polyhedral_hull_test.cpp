@@ -27,7 +27,7 @@ Model model_of(const Points& points) {
   return model;
 }
 
-Hull hull_of(const Points& points) { return polyhedral_hull(model_of(points)); }
+Hull exact_hull_of(const Points& points) { return polyhedral_hull(model_of(points)); }
 
 /// Side n, along the axes, n^3 points.
 Points grid(int n) {
@@ -36,7 +36,7 @@ Points grid(int n) {
   return points;
 }
 
-Points mapped(Points points, const dmat3& turn, const dvec3& shift = dvec3(0.0)) {
+Points mapped_points(Points points, const dmat3& turn, const dvec3& shift = dvec3(0.0)) {
   for (dvec3& p : points) p = turn * p + shift;
   return points;
 }
@@ -84,7 +84,7 @@ void expect_within_bound(const Points& points, const Hull& hull, const Points& d
 
 TEST(PolyhedralHull, CubeIsExact) {
   const Points cube = grid(2);
-  const Hull hull = hull_of(cube);
+  const Hull hull = exact_hull_of(cube);
   expect_hull_of(cube, hull);
   EXPECT_EQ(hull.distance_bound, 0);
   EXPECT_EQ(hull.mesh.n_vertices(), 8U);
@@ -95,8 +95,8 @@ TEST(PolyhedralHull, GridsAreCubesAnyWay) {
   for (const int n : {20, 50}) {
     for (const dvec3& shift : {dvec3(0.0), dvec3(100.3, -0.7, 1234.5)}) {
       for (const dmat3& turn : {dmat3(1.0), skew_rotation(), 0.1 * skew_rotation()}) {
-        const Points points = mapped(grid(n), turn, shift);
-        const Hull hull = hull_of(points);
+        const Points points = mapped_points(grid(n), turn, shift);
+        const Hull hull = exact_hull_of(points);
         expect_hull_of(points, hull);
         EXPECT_EQ(hull.mesh.n_vertices(), 8U);
         EXPECT_TRUE(hull.mesh.n_faces() == 6 || hull.mesh.n_faces() == 12);
@@ -113,14 +113,14 @@ TEST(PolyhedralHull, TypedResults) {
   EXPECT_EQ(convex_hull(Model()).kind, HullKind::empty);
   EXPECT_EQ(polyhedral_hull(Model()).mesh.n_vertices(), 0U);
   for (const dvec3& at : {dvec3(0.0), dvec3(1, 2, 3), dvec3(1e300, -1e300, 1e-300)}) {
-    const Hull point = hull_of(Points(7, at));
+    const Hull point = exact_hull_of(Points(7, at));
     EXPECT_EQ(point.kind, HullKind::point);
     ASSERT_EQ(point.mesh.n_vertices(), 1U);
     EXPECT_EQ(position(point.mesh, OpenMesh::VertexHandle(0)), at);
     EXPECT_EQ(point.distance_bound, 0);
   }
   const Points line = {{1, 1, 1}, {3, 3, 3}, {2, 2, 2}, {1, 1, 1}, {-4, -4, -4}};
-  const Hull segment = hull_of(line);
+  const Hull segment = exact_hull_of(line);
   EXPECT_EQ(segment.kind, HullKind::segment);
   EXPECT_EQ(segment.mesh.n_vertices(), 2U);
   EXPECT_EQ(segment.mesh.n_edges(), 1U);
@@ -128,7 +128,7 @@ TEST(PolyhedralHull, TypedResults) {
   // A grid in a plane, askew but exact: only its four corners are left.
   Points plane;
   for (int i = 0; i < 100; ++i) plane.emplace_back(i % 10, i / 10, 2 * (i % 10) - 3 * (i / 10));
-  const Hull planar = hull_of(plane);
+  const Hull planar = exact_hull_of(plane);
   EXPECT_EQ(planar.kind, HullKind::planar);
   EXPECT_EQ(planar.mesh.n_vertices(), 4U);
   EXPECT_EQ(planar.mesh.n_faces(), 2U);
@@ -143,11 +143,11 @@ TEST(PolyhedralHull, RoundedPlanesAndLinesAreFlat) {
     line.emplace_back(i, 0, 0);
   }
   for (const dvec3& shift : {dvec3(0.0), dvec3(10, -200, 3000)}) {
-    const Hull planar = hull_of(mapped(plane, skew_rotation(), shift));
+    const Hull planar = exact_hull_of(mapped_points(plane, skew_rotation(), shift));
     EXPECT_EQ(planar.kind, HullKind::planar);
     EXPECT_EQ(planar.mesh.n_vertices(), 4U);
     EXPECT_LE(planar.distance_bound, 2e-11);
-    EXPECT_EQ(hull_of(mapped(line, skew_rotation(), shift)).kind, HullKind::segment);
+    EXPECT_EQ(exact_hull_of(mapped_points(line, skew_rotation(), shift)).kind, HullKind::segment);
   }
 }
 
@@ -167,7 +167,7 @@ TEST(PolyhedralHull, BoundsCountBothSidesOfAPlane) {
     Points points = {-a, a, 0.9 * b, -0.3 * b - depth * n};
     points.push_back(points.back());
     points.back()[k % 3] += 3.2 * depth;
-    const Hull hull = hull_of(points);
+    const Hull hull = exact_hull_of(points);
     planar += hull.kind == HullKind::planar ? 1 : 0;
     expect_within_bound(points, hull, directions);
   }
@@ -190,14 +190,14 @@ TEST(PolyhedralHull, BoundsOfSharpCones) {
     for (int i = 0; i < 60; ++i) {
       directions.push_back(turn * dvec3(0, std::cos(0.1 * i), std::sin(0.1 * i)));
     }
-    points = mapped(points, turn);
-    expect_within_bound(points, hull_of(points), directions);
+    points = mapped_points(points, turn);
+    expect_within_bound(points, exact_hull_of(points), directions);
   }
 }
 
 TEST(PolyhedralHull, BoundCoversWhatPlacingCancels) {
   Part part;
-  part.add_points(mapped(grid(2), dmat3(0.1), dvec3(1e9)));
+  part.add_points(mapped_points(grid(2), dmat3(0.1), dvec3(1e9)));
   Model model;
   model.add_part(std::move(part), smooth_join_angle);
   model.clear_instances();
@@ -219,7 +219,7 @@ TEST(PolyhedralHull, MixedSizesAreExact) {
     for (const double fold : {1e-250, 1e-320}) {
       const Points points = {
           {0, 0, 0}, {size, 0, fold}, {size, size, 0}, {0, size, fold}, {0, 0, size}};
-      const Hull hull = hull_of(points);
+      const Hull hull = exact_hull_of(points);
       EXPECT_TRUE(mesh_facts(polygons(hull.mesh)).is_convex_polytope());
       EXPECT_EQ(hull.mesh.n_vertices(), 5U);
       EXPECT_EQ(hull.mesh.n_faces(), 6U);
@@ -237,7 +237,7 @@ TEST(PolyhedralHull, PointsOneUlpApartAreAHull) {
   for (const double at : {1.0, 8e5, 1e15}) {
     Points points;
     for (const dvec3& p : grid(5)) points.push_back(at * (dvec3(1.0) + 2 * ulp * p));
-    const Hull hull = hull_of(points);
+    const Hull hull = exact_hull_of(points);
     expect_hull_of(points, hull);
     EXPECT_EQ(hull.mesh.n_vertices(), 8U);
     EXPECT_EQ(hull.distance_bound, 0);
@@ -248,22 +248,23 @@ TEST(PolyhedralHull, AnySizeAndPlace) {
   Random random(3);
   Points ball;
   for (int i = 0; i < 500; ++i) ball.push_back(random_point(random));
-  const std::size_t vertices = hull_of(ball).mesh.n_vertices();
+  const std::size_t vertices = exact_hull_of(ball).mesh.n_vertices();
   for (const double size : {1e-300, 1e-150, 1e-6, 1e6, 1e150, 1e300}) {
     Points points = ball;
     for (dvec3& p : points) p *= size;
-    const Hull hull = hull_of(points);
+    const Hull hull = exact_hull_of(points);
     EXPECT_EQ(hull.mesh.n_vertices(), vertices) << size;
     EXPECT_TRUE(mesh_facts(polygons(hull.mesh)).is_convex_polytope()) << size;
   }
   for (const double far : {1e8, 1e15}) {
     Points points = ball;
     for (dvec3& p : points) p = 10. * p + far;
-    expect_hull_of(points, hull_of(points));
+    expect_hull_of(points, exact_hull_of(points));
   }
-  const Points needle = mapped(grid(2), dmat3(1e6, 0, 0, 0, 1, 0, 0, 0, 1));
-  expect_hull_of(needle, hull_of(needle));
-  expect_hull_of(mapped(needle, skew_rotation()), hull_of(mapped(needle, skew_rotation())));
+  const Points needle = mapped_points(grid(2), dmat3(1e6, 0, 0, 0, 1, 0, 0, 0, 1));
+  expect_hull_of(needle, exact_hull_of(needle));
+  expect_hull_of(mapped_points(needle, skew_rotation()),
+                 exact_hull_of(mapped_points(needle, skew_rotation())));
 }
 
 TEST(PolyhedralHull, CoplanarAndCocircularPoints) {
@@ -278,8 +279,8 @@ TEST(PolyhedralHull, CoplanarAndCocircularPoints) {
     pyramid.emplace_back(uniform(random, 0, 1), uniform(random, 0, 1), 0);
   for (const Points& points : {drum, pyramid}) {
     for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
-      const Points moved = mapped(points, turn);
-      const Hull hull = hull_of(moved);
+      const Points moved = mapped_points(points, turn);
+      const Hull hull = exact_hull_of(moved);
       expect_hull_of(moved, hull);
     }
   }
@@ -291,7 +292,7 @@ TEST(PolyhedralHull, InstancesDuplicatesAndNestedParts) {
   model.add_instance(0, {});
   model.add_instance(0, {dmat3(1.0), {5, 0, 0}});
   Part inner;
-  inner.add_points(mapped(grid(2), 0.5 * dmat3(1.0), {0.5, 0.5, 0.5}));
+  inner.add_points(mapped_points(grid(2), 0.5 * dmat3(1.0), {0.5, 0.5, 0.5}));
   model.add_part(std::move(inner), smooth_join_angle);
   model.add_part(Part(), smooth_join_angle);
   const Hull hull = polyhedral_hull(model);
@@ -323,7 +324,7 @@ TEST(PolyhedralHull, FacesNameThePolygonsThatLieInThem) {
 
 TEST(PolyhedralHull, AllTrianglesOfATurnedFaceNameItsPolygon) {
   PolygonMesh box = {
-      mapped(grid(2), skew_rotation(), {0.3, 0.1, 0.7}),
+      mapped_points(grid(2), skew_rotation(), {0.3, 0.1, 0.7}),
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
   Part part;
   part.add_polygons(box);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <ostream>
 #include <stop_token>
 #include <string>
@@ -456,7 +455,6 @@ void expect_no_false_claim(const Shape& shape, double volume, const std::string&
 }
 
 TEST(PreciseHull, DegenerateInputIsNeverClaimedWrongly) {
-  constexpr double pi = std::numbers::pi;
   const double ball = 4 * pi / 3;
   expect_no_false_claim(sphere() + sphere(), ball, "identical spheres");
   expect_no_false_claim(sphere() + scaled(sphere(), 0.5), ball, "a sphere inside another");

@@ -19,7 +19,7 @@ namespace {
 
 using namespace taut_test;  // NOLINT: models and checks
 
-Hull boundary_of(const Scene& scene) {
+Hull hull_on_one_thread(const Scene& scene) {
   HullOptions options;
   options.threads = 1;
   Hull hull;
@@ -34,7 +34,7 @@ Hull boundary_of(const Scene& scene) {
 /// scene's frame, whose size is about the diagonal's.
 void expect_exact(const Scene& scene, int directions, const std::string& name) {
   SCOPED_TRACE(name);
-  const Hull hull = boundary_of(scene);
+  const Hull hull = hull_on_one_thread(scene);
   for (const Unresolved& spot : hull.boundary->unresolved) ADD_FAILURE() << spot.reason;
   const BoundaryFacts facts = boundary_facts(scene, hull, directions);
   EXPECT_TRUE(facts.sound()) << facts;
@@ -43,7 +43,7 @@ void expect_exact(const Scene& scene, int directions, const std::string& name) {
 
 void expect_accurate(const Scene& scene, const std::string& name) {
   SCOPED_TRACE(name);
-  const Hull hull = boundary_of(scene);
+  const Hull hull = hull_on_one_thread(scene);
   EXPECT_LE(measure(scene, ContactGeometry(scene), *hull.boundary).accuracy, 1e-9);
 }
 
@@ -110,7 +110,7 @@ bool is_reached(const HullBoundary& boundary, const dvec3& x, const dvec3& n) {
 TEST(PreciseSweep, FreeEndsOfShallowValleys) {
   for (const unsigned seed : {427U, 510U, 641U}) {
     const Scene scene = make_scene(blob(seed));
-    const Hull hull = boundary_of(scene);
+    const Hull hull = hull_on_one_thread(scene);
     const ContactGeometry geometry(scene);
     SupportQuery query(scene);
     const GaussMap map(scene, {.threads = 1, .progress = {}});

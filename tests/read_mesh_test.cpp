@@ -37,7 +37,7 @@ class ReadMesh : public taut_test::TemporaryFolder {
   }
 };
 
-struct Malformed {
+struct MalformedMesh {
   std::string text;
   std::string message;
 };
@@ -60,12 +60,12 @@ const std::string ascii_points =
     "0 1 1.7976931348623157e308\n-1e22 0.5 0.30000000000000004\n";
 
 /// Bytes in a chosen order.
-class Bytes {
+class OrderedBytes {
  public:
-  explicit Bytes(bool big_endian = false) : big_endian_(big_endian) {}
+  explicit OrderedBytes(bool big_endian = false) : big_endian_(big_endian) {}
 
   template <class Number>
-  Bytes& operator<<(Number number) {
+  OrderedBytes& operator<<(Number number) {
     const auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(number);
     const bool as_here = (std::endian::native == std::endian::big) == big_endian_;
     if (as_here) {
@@ -119,7 +119,7 @@ TEST_F(ReadMesh, PlyAsciiPassesOverTheRest) {
 }
 
 std::string binary_ply(bool big_endian) {
-  Bytes bytes(big_endian);
+  OrderedBytes bytes(big_endian);
   for (const dvec3& p : points) {
     bytes << std::uint8_t{7} << p.x << p.y << std::int16_t{-1} << p.z << std::uint16_t{2}
           << float{1} << float{2};
@@ -145,7 +145,7 @@ TEST_F(ReadMesh, PlyBinaryInBothOrders) {
 template <class Number, class Length, class Index>
 std::string typed_ply(bool big_endian, const std::string& number, const std::string& length,
                       const std::string& index) {
-  Bytes bytes(big_endian);
+  OrderedBytes bytes(big_endian);
   for (const int x : {3, 5, 7, 11, 13, 17, 19, 23, 29}) bytes << static_cast<Number>(x);
   bytes << static_cast<Length>(3) << static_cast<Index>(2) << static_cast<Index>(0)
         << static_cast<Index>(1);
@@ -188,7 +188,7 @@ std::string encoded_ply(const std::string& encoding, const std::string& number) 
                      " x\nproperty " + number + " y\nproperty " + number +
                      " z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
   if (encoding == "ascii") return text + ascii_points + "4 0 1 2 3\n3 0 3 4\n";
-  Bytes bytes(encoding == "binary_big_endian");
+  OrderedBytes bytes(encoding == "binary_big_endian");
   for (const dvec3& p : points) {
     for (int i = 0; i < 3; ++i) bytes << static_cast<Number>(p[i]);
   }
@@ -207,7 +207,7 @@ TEST_F(ReadMesh, PlyInEachEncodingAndPrecision) {
   expect_sample(read("a.ply", encoded_ply<float>("ascii", "float")));
   const std::vector<dvec3> rounded = {{0.1F, 1.0F / 3, -1e22F}, {1e-38F, 3e38F, 16777217.0F}};
   for (const bool big : {false, true}) {
-    Bytes bytes(big);
+    OrderedBytes bytes(big);
     for (const dvec3& p : rounded) {
       for (int i = 0; i < 3; ++i) bytes << static_cast<float>(p[i]);
     }
@@ -235,7 +235,7 @@ TEST_F(ReadMesh, PlyOfPointsOnly) {
 TEST_F(ReadMesh, PlyThatIsNotItsFormat) {
   const std::string ascii = "ply\nformat ascii 1.0\n";
   const std::string short_binary = binary_ply(true).substr(0, binary_ply(true).size() - 1);
-  for (const auto& [text, expected] : std::vector<Malformed>{
+  for (const auto& [text, expected] : std::vector<MalformedMesh>{
            {"", ":1: a PLY file begins with ply"},
            {"solid", ":1: a PLY file begins with ply"},
            {"ply\n", ":2: the file ends where end_header is expected"},
@@ -269,7 +269,7 @@ TEST_F(ReadMesh, PlyThatIsNotItsFormat) {
 TEST_F(ReadMesh, PlyThatIsNoGeometry) {
   const std::string ascii = "ply\nformat ascii 1.0\n";
   const std::string body = ascii + ply_vertices + ply_faces + "end_header\n" + ascii_points;
-  for (const auto& [text, expected] : std::vector<Malformed>{
+  for (const auto& [text, expected] : std::vector<MalformedMesh>{
            {ascii + "element vertex -5\n", ":3: the number of elements is negative: \"-5\""},
            {ascii + "element vertex 1000000000\n",
             ":3: 1000000000 elements announced, more than the remaining 0 bytes can hold"},
@@ -300,19 +300,19 @@ TEST_F(ReadMesh, PlyBinaryThatIsNoGeometry) {
   const std::size_t y = first_vertex + 9;
   const std::string at_y = ":byte " + std::to_string(y) + ": ";
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(message<InvalidInput>("a.ply", damaged(y, (Bytes() << nan).str())),
+  EXPECT_EQ(message<InvalidInput>("a.ply", damaged(y, (OrderedBytes() << nan).str())),
             at_y + "a coordinate is not finite");
 
   const std::size_t last_index = good.size() - 5;
-  EXPECT_EQ(message<InvalidInput>("a.ply", damaged(last_index, (Bytes() << 5).str())),
+  EXPECT_EQ(message<InvalidInput>("a.ply", damaged(last_index, (OrderedBytes() << 5).str())),
             ":byte " + std::to_string(last_index) + ": vertex index 5 is not below 5");
-  EXPECT_EQ(message<InvalidInput>("a.ply", damaged(last_index, (Bytes() << -1).str())),
+  EXPECT_EQ(message<InvalidInput>("a.ply", damaged(last_index, (OrderedBytes() << -1).str())),
             ":byte " + std::to_string(last_index) + ": vertex index -1 is not below 5");
 
   const std::size_t length = first_vertex + 27;
-  EXPECT_EQ(
-      message<InvalidInput>("a.ply", damaged(length, (Bytes() << std::uint16_t{65535}).str())),
-      ":byte " + std::to_string(length) + ": a list of 65535 does not fit into the file");
+  EXPECT_EQ(message<InvalidInput>("a.ply",
+                                  damaged(length, (OrderedBytes() << std::uint16_t{65535}).str())),
+            ":byte " + std::to_string(length) + ": a list of 65535 does not fit into the file");
 
   const std::size_t count = good.find("vertex 5") + 7;
   EXPECT_EQ(message<InvalidInput>("a.ply", damaged(count, "9")),
@@ -439,7 +439,7 @@ const std::vector<dvec3> stl_points = {{0, 0, 0}, {1, 0, 0.5}, {0, 1, 0}, {1, 1,
 const Polygons stl_triangles = {{0, 1, 2}, {2, 1, 3}};
 
 std::string binary_stl(const std::string& header) {
-  Bytes bytes;
+  OrderedBytes bytes;
   bytes << std::uint32_t{2};
   for (const auto& triangle : stl_triangles) {
     for (int i = 0; i < 3; ++i) bytes << std::numeric_limits<float>::quiet_NaN();
@@ -496,15 +496,16 @@ TEST_F(ReadMesh, StlMalformed) {
   const std::string good = binary_stl("part");
   EXPECT_EQ(message<InvalidInput>("a.stl", good.substr(0, good.size() - 1)),
             ":byte 80: 2 triangles announced, more than the remaining 99 bytes can hold");
-  EXPECT_EQ(message<InvalidInput>(
-                "a.stl", std::string(80, ' ') + (Bytes() << std::uint32_t{4294967295U}).str()),
-            ":byte 80: 4294967295 triangles announced, more than the remaining 0 bytes can hold");
+  EXPECT_EQ(
+      message<InvalidInput>(
+          "a.stl", std::string(80, ' ') + (OrderedBytes() << std::uint32_t{4294967295U}).str()),
+      ":byte 80: 4294967295 triangles announced, more than the remaining 0 bytes can hold");
   // "solid" alone does not make it text.
   const std::string solid = binary_stl("solid part");
   EXPECT_EQ(message<InvalidInput>("a.stl", solid.substr(0, solid.size() - 1)),
             ":byte 80: 2 triangles announced, more than the remaining 99 bytes can hold");
   std::string nan = good;
-  nan.replace(84 + 12 + 4, 4, (Bytes() << std::numeric_limits<float>::quiet_NaN()).str());
+  nan.replace(84 + 12 + 4, 4, (OrderedBytes() << std::numeric_limits<float>::quiet_NaN()).str());
   EXPECT_EQ(message<InvalidInput>("a.stl", nan),
             ":byte 100: a coordinate of triangle 0 is not finite");
 }
@@ -528,7 +529,7 @@ TEST_F(ReadMesh, UnknownExtension) {
 }
 
 /// Whatever is done to a file, it is read as promised or refused with a promised error.
-void expect_read_or_refused(const std::filesystem::path& path) {
+void expect_mesh_or_refused(const std::filesystem::path& path) {
   try {
     const PolygonMesh mesh = taut::read_mesh(path);
     for (const dvec3& p : mesh.points) {
@@ -557,14 +558,14 @@ TEST_F(ReadMesh, DamagedFiles) {
            {"a.stl", binary_stl("part")},
            {"a.stl", ascii_stl}}) {
     for (std::size_t length = 0; length < text.size(); ++length) {
-      expect_read_or_refused(file(name, text.substr(0, length)));
+      expect_mesh_or_refused(file(name, text.substr(0, length)));
     }
     for (int k = 0; k < 1000; ++k) {
       std::string damaged = text;
       for (int n = 0; n <= k % 4; ++n) {
         damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
       }
-      expect_read_or_refused(file(name, damaged));
+      expect_mesh_or_refused(file(name, damaged));
     }
   }
 }

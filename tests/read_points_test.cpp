@@ -39,12 +39,12 @@ std::string message(std::string_view text) {
   return what.substr(std::min<std::size_t>(5, what.size()));
 }
 
-struct Malformed {
+struct MalformedPoints {
   std::string text;
   std::string message;
 };
 
-const Points sample = {{0.1, -2, 1e-300}, {1.0 / 3, 0.30000000000000004, -1e22}};
+const Points two_points = {{0.1, -2, 1e-300}, {1.0 / 3, 0.30000000000000004, -1e22}};
 
 using ReadPoints = taut_test::TemporaryFolder;
 
@@ -63,7 +63,7 @@ TEST_F(ReadPoints, WaysToWriteTheSame) {
         "0.1,-2,1e-300,0,0,1,red\n0.33333333333333331,0.30000000000000004,-1e22,,,\n",
         "2\n0.1 -2 1e-300\n0.33333333333333331 0.30000000000000004 -1e22\n",
         "# points\n 2 # two\n\n0.1 -2 1e-300\n0.33333333333333331 0.30000000000000004 -1e22\n\n"}) {
-    EXPECT_EQ(read(text), sample) << text;
+    EXPECT_EQ(read(text), two_points) << text;
   }
 }
 
@@ -116,7 +116,7 @@ TEST_F(ReadPoints, RandomDoublesComeBack) {
 TEST_F(ReadPoints, ThatAreNotTheirFormat) {
   const std::string separators =
       "columns stand apart in more than one way; decimal commas are not read";
-  for (const auto& [text, expected] : std::vector<Malformed>{
+  for (const auto& [text, expected] : std::vector<MalformedPoints>{
            {"1 2\n", ":1: three coordinates expected, found 2"},
            {"1 2 # 3\n", ":1: three coordinates expected, found 2"},
            {"\n1 2 3\n4\n", ":3: three coordinates expected, found 1"},
@@ -144,7 +144,7 @@ TEST_F(ReadPoints, ThatAreNotTheirFormat) {
 }
 
 TEST_F(ReadPoints, ThatAreNoGeometry) {
-  for (const auto& [text, expected] : std::vector<Malformed>{
+  for (const auto& [text, expected] : std::vector<MalformedPoints>{
            {"", ": holds no geometry"},
            {"# only\n\n", ": holds no geometry"},
            {"1 2 3\n1 nan 3\n", ":2: a coordinate is not finite: \"nan\""},

@@ -336,7 +336,7 @@ namespace {
 
 using Exact3 = std::array<cpp_rational, 3>;
 
-Exact3 exact(const dvec3& p) { return {p.x, p.y, p.z}; }
+Exact3 to_exact(const dvec3& p) { return {p.x, p.y, p.z}; }
 
 Exact3 operator-(const Exact3& a, const Exact3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -364,7 +364,7 @@ struct ExactPlane {
         1e-15L * (std::abs(rounded_normal.x * d.x) + std::abs(rounded_normal.y * d.y) +
                   std::abs(rounded_normal.z * d.z));
     if (std::abs(value) > error) return value > 0 ? 1 : -1;
-    return dot(normal, exact(x) - point).sign();
+    return dot(normal, to_exact(x) - point).sign();
   }
 };
 
@@ -414,17 +414,17 @@ MeshFacts mesh_facts(const taut::PolygonMesh& mesh) {
   facts.planar = true;
   facts.strictly = true;
   for (const std::vector<int>& p : mesh.polygons) {
-    const Exact3 a = exact(mesh.points[std::size_t(p[0])]);
+    const Exact3 a = to_exact(mesh.points[std::size_t(p[0])]);
     Exact3 normal{};
     for (std::size_t k = 1; k + 1 < p.size() && is_zero(normal); ++k) {
-      normal = cross(exact(mesh.points[std::size_t(p[k])]) - a,
-                     exact(mesh.points[std::size_t(p[k + 1])]) - a);
+      normal = cross(to_exact(mesh.points[std::size_t(p[k])]) - a,
+                     to_exact(mesh.points[std::size_t(p[k + 1])]) - a);
     }
     facts.no_zero_area = facts.no_zero_area && !is_zero(normal);
     for (std::size_t k = 0; k < p.size(); ++k) {
-      const Exact3 x = exact(mesh.points[std::size_t(p[k])]);
-      const Exact3 y = exact(mesh.points[std::size_t(p[(k + 1) % p.size()])]);
-      const Exact3 z = exact(mesh.points[std::size_t(p[(k + 2) % p.size()])]);
+      const Exact3 x = to_exact(mesh.points[std::size_t(p[k])]);
+      const Exact3 y = to_exact(mesh.points[std::size_t(p[(k + 1) % p.size()])]);
+      const Exact3 z = to_exact(mesh.points[std::size_t(p[(k + 2) % p.size()])]);
       if (p.size() > 3) {
         facts.planar = facts.planar && dot(normal, x - a) == 0;
         facts.strictly = facts.strictly && dot(cross(y - x, z - y), normal) > 0;

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-taut::Report sample() {
+taut::Report full_report() {
   taut::Report report;
   report.input.files = {"a.bpt"};
   report.input.faces = 32;
@@ -56,7 +56,7 @@ std::vector<std::string> keys(const Json& json) {
 using Keys = std::vector<std::string>;
 
 TEST(Report, KeysOfTheContractInOrder) {
-  const Json json = Json::parse(to_json(sample()));
+  const Json json = Json::parse(to_json(full_report()));
   EXPECT_EQ(keys(json), (Keys{"taut", "input", "method", "dimension", "hull", "mesh", "culling",
                               "queries", "seconds", "peak_bytes", "warnings"}));
   EXPECT_EQ(keys(json["input"]),
@@ -74,7 +74,7 @@ TEST(Report, KeysOfTheContractInOrder) {
 }
 
 TEST(Report, ValuesRoundTrip) {
-  const taut::Report report = sample();
+  const taut::Report report = full_report();
   const Json json = Json::parse(to_json(report));
   EXPECT_EQ(json["input"]["files"], Json({"a.bpt"}));
   EXPECT_EQ(json["input"]["faces"], 32);
@@ -172,7 +172,7 @@ TEST(Report, WhatIsNotFiniteIsNull) {
 }
 
 TEST(Report, IndentsByTwo) {
-  const std::string text = to_json(sample());
+  const std::string text = to_json(full_report());
   EXPECT_TRUE(text.starts_with("{\n  \"taut\": \"")) << text;
   EXPECT_TRUE(text.ends_with("\n}\n"));
   EXPECT_NE(text.find("\n  \"input\": {\n    \"files\": ["), text.npos);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
 #include "hull_checks.h"
@@ -15,8 +14,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models and checks
-
-constexpr double pi = std::numbers::pi;
 
 void expect_coarse_and_fine(const Shape& shape, const Known& known, const std::string& name) {
   const Scene scene = make_scene(shape);
@@ -338,8 +335,8 @@ TEST(SampledHull, FlatModelsHaveTheirKind) {
 }
 
 TEST(SampledHull, OutlineOfACircleConverges) {
-  const Scene scene =
-      make_scene(mapped({{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})}, {}}, skew_rotation()));
+  const Scene scene = make_scene(
+      mapped(Shape{{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})}, {}}, skew_rotation()));
   for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8}) {
     const Hull hull = sampled_hull(scene, {.tolerance = tolerance, .threads = 1, .progress = {}});
     EXPECT_LE(hull.distance_bound, tolerance);

@@ -14,7 +14,7 @@ namespace {
 
 using shapes::Shape;
 
-Part connected(const Shape& shape) {
+Part connected_part(const Shape& shape) {
   Part part;
   for (const NurbsSurface& s : shape.surfaces) part.add_surface(s, "surface");
   for (const NurbsCurve& c : shape.curves) part.add_curve(c, "curve");
@@ -60,10 +60,10 @@ Counts counts(const Part& part) {
 
 /// The shape as it is, and turned, moved, large and small.
 void expect_counts(const Shape& shape, const Counts& expected) {
-  EXPECT_EQ(counts(connected(shape)), expected);
+  EXPECT_EQ(counts(connected_part(shape)), expected);
   for (const double scale : {1e-6, 1.0, 1e6}) {
     const Shape other = shapes::mapped(shape, scale * turned(), scale * dvec3(3, -20, 7));
-    EXPECT_EQ(counts(connected(other)), expected) << "scale " << scale;
+    EXPECT_EQ(counts(connected_part(other)), expected) << "scale " << scale;
   }
 }
 
@@ -105,7 +105,7 @@ NurbsCurve meridian(double angle, double R = 2, double r = 0.5) {
   return shapes::circle({R, 0, 0}, {c, 0, s}, {-s, 0, c});
 }
 
-NurbsSurface transposed(const NurbsSurface& s) {
+NurbsSurface exchanged(const NurbsSurface& s) {
   NurbsSurface t{s.degree_v, s.degree_u, s.knots_v, s.knots_u, {}};
   t.points.reserve(s.points.size());
   for (int j = 0; j < s.count_v(); ++j) {
@@ -120,7 +120,7 @@ NurbsSurface transposed(const NurbsSurface& s) {
 
 TEST(Rulings, OfCylindersConesAndPlanes) {
   const auto expect = [](const Shape& shape, bool u, bool v) {
-    const Part part = connected(shape);
+    const Part part = connected_part(shape);
     for (const Patch& patch : part.patches()) {
       EXPECT_EQ(patch.ruled_u, u);
       EXPECT_EQ(patch.ruled_v, v);
@@ -130,7 +130,7 @@ TEST(Rulings, OfCylindersConesAndPlanes) {
     const auto placed = [&](const Shape& s) { return shapes::mapped(s, m, m * dvec3(9, 8, 7)); };
     expect(placed(shapes::cylinder(1, 2)), false, true);
     expect(placed(shapes::cone(1, 2)), false, true);
-    expect(placed(of_surface(transposed(shapes::cylinder(1, 2).surfaces[0]))), true, false);
+    expect(placed(of_surface(exchanged(shapes::cylinder(1, 2).surfaces[0]))), true, false);
     expect(placed(shapes::disc(1, 0.3)), true, true);
     expect(placed(shapes::bilinear_saddle()), true, true);
     expect(placed(shapes::sphere()), false, false);
@@ -143,7 +143,7 @@ TEST(Rulings, RaisedDegrees) {
   for (const PatchPiece& piece : decompose(shapes::cylinder(1, 2).surfaces[0])) {
     for (const dmat3& m : {dmat3(1.0), turned()}) {
       const Shape raised = shapes::of_patch(elevated(piece.bezier, 4, 5));
-      const Part part = connected(shapes::mapped(raised, m));
+      const Part part = connected_part(shapes::mapped(raised, m));
       EXPECT_FALSE(part.patches()[0].ruled_u);
       EXPECT_TRUE(part.patches()[0].ruled_v);
     }
@@ -159,7 +159,7 @@ TEST(Rulings, SlightBends) {
         patch.points.push_back(homogeneous({i, j, (i == 1 ? bend : 0) + (j == 1 ? 0.5 : 0)}));
       }
     }
-    const Part part = connected(shapes::of_patch(patch));
+    const Part part = connected_part(shapes::of_patch(patch));
     EXPECT_EQ(part.patches()[0].ruled_u, bend == 0);
     EXPECT_FALSE(part.patches()[0].ruled_v);
   }
@@ -182,7 +182,7 @@ TEST(Seams, NoneBetweenCylindersInOneLine) {
 
 TEST(Seams, CapsuleHasTwoClosedOnes) {
   expect_counts(capsule(), {12, 0, 0, 8, 0});
-  const Part part = connected(capsule());
+  const Part part = connected_part(capsule());
   expect_seams_joined(part);
   for (const EdgePiece& piece : part.pieces()) {
     for (const int neighbor : piece.end_neighbor) EXPECT_GE(neighbor, 0);
@@ -199,7 +199,7 @@ TEST(Seams, CapsuleHasTwoClosedOnes) {
 TEST(Seams, FilletedBox) {
   const Shape shape = shapes::filleted_box(3, 2, 1, 0.25);
   expect_counts(shape, {26, 0, 0, 24, 24});
-  const Part part = connected(shape);
+  const Part part = connected_part(shape);
   expect_seams_joined(part);
   for (const Patch& patch : part.patches()) {
     for (const int vertex : patch.corner_vertex) EXPECT_GE(vertex, 0);
@@ -231,7 +231,7 @@ Shape parabolic_cylinder_going_on() {
 TEST(Seams, EdgesDoNotSeeThem) {
   // The bent sides go on in bent ones: no vertices of edges there.
   expect_counts(parabolic_cylinder_going_on(), {2, 6, 4, 1, 2});
-  const Part part = connected(parabolic_cylinder_going_on());
+  const Part part = connected_part(parabolic_cylinder_going_on());
   for (const EdgePiece& piece : part.pieces()) {
     if (piece.edge >= 0) continue;
     for (const int v : piece.end_vertex) {
@@ -243,11 +243,11 @@ TEST(Seams, EdgesDoNotSeeThem) {
 TEST(Seams, EndAtVerticesWhereStraightSidesBecomeBent) {
   const Shape all = shapes::filleted_box(3, 2, 1, 0.25);
   // The first patch after two planes is a quarter of a cylinder, with a ball's eighth at its end.
-  const Part whole = connected(all);
+  const Part whole = connected_part(all);
   const int ball = whole.patches()[2].borders[2].neighbor;
   ASSERT_GE(ball, 18);
   const Shape two = {{all.surfaces[2], all.surfaces[static_cast<std::size_t>(ball)]}, {}, {}};
-  const Part part = connected(two);
+  const Part part = connected_part(two);
   EXPECT_EQ(seam_pieces(part), 1);
   EXPECT_EQ(part.seam_vertex_count(), 0);
 }
@@ -260,8 +260,8 @@ TEST(Crests, OfATorusInsidePatches) {
   for (const double angle : {0.3, -0.5, 0.785398163397448, 1.2}) {
     const NurbsSurface surface = shapes::revolved(meridian(angle));
     expect_counts(of_surface(surface), {24, 0, 0, 8, 0});
-    expect_counts(of_surface(transposed(surface)), {24, 0, 0, 8, 0});
-    expect_seams_joined(connected(of_surface(surface)));
+    expect_counts(of_surface(exchanged(surface)), {24, 0, 0, 8, 0});
+    expect_seams_joined(connected_part(of_surface(surface)));
   }
 }
 
@@ -269,7 +269,7 @@ TEST(Crests, OfATorusInsidePatches) {
 TEST(Crests, SplitsAreExact) {
   const NurbsSurface surface = shapes::revolved(meridian(0.3));
   const std::vector<PatchPiece> before = decompose(surface);
-  const Part part = connected(of_surface(surface));
+  const Part part = connected_part(of_surface(surface));
   ASSERT_EQ(part.faces()[0].patch_count, 24);
   for (std::size_t k = 0; k < 24; ++k) {
     const Patch& patch = part.patches()[k];
@@ -302,7 +302,7 @@ TEST(Crests, SplitsAreExact) {
 /// Strips as thin as rounding, or as what counts as one point, would be no patches.
 TEST(Crests, NextToBorders) {
   for (const double angle : {1e-16, 1e-12, 1e-9, 1e-7, -1e-7}) {
-    const Part part = connected(of_surface(shapes::revolved(meridian(angle))));
+    const Part part = connected_part(of_surface(shapes::revolved(meridian(angle))));
     EXPECT_EQ(part.patches().size(), 16u) << angle;
     EXPECT_EQ(part.edges().size(), 0u) << angle;
   }
@@ -322,7 +322,7 @@ TEST(Crests, SplitsGoOnInNeighbors) {
     pipe.points.push_back(p - p.w * dvec4(0, 1, 0, 0));
   }
   shape.surfaces.push_back(pipe);
-  const Part part = connected(shape);
+  const Part part = connected_part(shape);
   // Two crests, and the circle in which they end, as they do at the rim.
   EXPECT_EQ(counts(part), (Counts{12, 5, 0, 2 + 6, 4}));
   expect_seams_joined(part);
@@ -337,7 +337,7 @@ TEST(Crests, SplitsGoOnInNeighbors) {
 
 TEST(RepeatedPatches, CubeTwice) {
   const Shape cube = shapes::box(1, 2, 3);
-  const Part part = connected(cube + cube);
+  const Part part = connected_part(cube + cube);
   EXPECT_EQ(counts(part), (Counts{12, 12, 8, 0, 0}));
   for (const Edge& edge : part.edges()) EXPECT_EQ(edge.faces.size(), 2u);
   for (int i = 0; i < 12; ++i) {
@@ -365,7 +365,7 @@ TEST(RepeatedPatches, MappingsAndBorders) {
     if ((way & 4) != 0) again = reversed_u(again);
     for (dvec4& p : again.points) p = 3.0 * p + p.w * dvec4(1e-14, 0, 0, 0);
     shape.surfaces.push_back(as_nurbs(again));
-    const Part part = connected(shape);
+    const Part part = connected_part(shape);
     EXPECT_EQ(part.edges().size(), 0u);
     const Patch& patch = part.patches()[16];
     const Patch& first = part.patches()[5];
@@ -396,8 +396,8 @@ TEST(RepeatedPatches, MappingsAndBorders) {
 
 TEST(RepeatedPatches, NearOnesAreNot) {
   const Shape ball = shapes::sphere();
-  EXPECT_EQ(connected(ball + shapes::shifted(ball, {1e-10, 0, 0})).patches()[8].repeats, -1);
-  EXPECT_EQ(connected(ball + shapes::shifted(ball, {1e-14, 0, 0})).patches()[8].repeats, 0);
+  EXPECT_EQ(connected_part(ball + shapes::shifted(ball, {1e-10, 0, 0})).patches()[8].repeats, -1);
+  EXPECT_EQ(connected_part(ball + shapes::shifted(ball, {1e-14, 0, 0})).patches()[8].repeats, 0);
 }
 
 // ---- Sources
@@ -405,7 +405,7 @@ TEST(RepeatedPatches, NearOnesAreNot) {
 /// On seams the curved face is told, whichever patch the contact is on.
 TEST(Seams, SourcesOfContacts) {
   Model model;
-  model.add_part(connected(capsule()), smooth_join_angle);
+  model.add_part(connected_part(capsule()), smooth_join_angle);
   const Scene scene(std::move(model));
   const Part& part = scene.model().parts()[0];
   // Patches 0 .. 3 are the ball's below, 4 .. 7 the cylinder's, whose v0 lies on it.
@@ -426,7 +426,7 @@ TEST(Seams, SourcesOfContacts) {
 
 TEST(Seams, SourcesOfTheirVertices) {
   Model model;
-  model.add_part(connected(shapes::filleted_box(3, 2, 1, 0.25)), smooth_join_angle);
+  model.add_part(connected_part(shapes::filleted_box(3, 2, 1, 0.25)), smooth_join_angle);
   const Scene scene(std::move(model));
   const Part& part = scene.model().parts()[0];
   for (int v = 0; v < 24; ++v) {
@@ -471,7 +471,7 @@ TEST(Junctions, DivideThePatchesBesideThem) {
                     as_nurbs(restricted(wall(1, 2), {0.3, 1}, all)),
                     as_nurbs(restricted(wall(2, 3), {0, 0.6}, all)),
                     as_nurbs(restricted(wall(2, 3), {0.6, 1}, all))};
-  const Part part = connected(shape);
+  const Part part = connected_part(shape);
   EXPECT_EQ(part.faces().size(), 5U);
   EXPECT_EQ(part.patches().size(), 9U);
   EXPECT_EQ(smooth_borders(part), 2 * (6 + 6));
@@ -484,7 +484,7 @@ TEST(Junctions, NotWhereSidesTouch) {
   const BezierPatch other{1, 1, {{c, c, 1, 1}, {2, 2, 1, 1}, {2, 0, 3, 1}, {3, 1, 3, 1}}};
   Shape shape;
   shape.surfaces = {as_nurbs(wall(0, 1)), as_nurbs(other)};
-  EXPECT_EQ(connected(shape).patches().size(), 2U);
+  EXPECT_EQ(connected_part(shape).patches().size(), 2U);
 }
 
 }  // namespace

@@ -13,17 +13,18 @@
 namespace taut_test {
 
 /// A slow support function: of (x - center of the scene's frame) . n, in model units.
-using Truth = std::function<SupportRange(const dvec3& n)>;
+using SupportTruth = std::function<SupportRange(const dvec3& n)>;
 
 /// The truth of closed forms about the origin: h(n) for n of any length near one.
-inline Truth closed_form(const taut::Scene& scene, const std::function<real(const rvec3& n)>& h) {
+inline SupportTruth closed_form(const taut::Scene& scene,
+                                const std::function<real(const rvec3& n)>& h) {
   return [&scene, h](const dvec3& n) {
     const real value = h(rvec3(n)) - glm::dot(rvec3(scene.frame().center), rvec3(n));
     return SupportRange{value, value};
   };
 }
 
-inline Truth reference(const taut::Scene& scene) {
+inline SupportTruth reference(const taut::Scene& scene) {
   return ReferenceSupport(scene.model(), scene.frame().center);
 }
 
@@ -61,7 +62,7 @@ inline rvec3 contact_point(const taut::Scene& scene, const taut::Contact& contac
   return glm::mat<3, 3, real>(instance.pose.rotation) * x + shift;
 }
 
-inline void check_support(const taut::Scene& scene, const Truth& truth, const dvec3& n,
+inline void check_support(const taut::Scene& scene, const SupportTruth& truth, const dvec3& n,
                           const taut::Support& s, SupportErrors& errors) {
   const real scale = scene.frame().scale;
   const real unit = 1 / (scale * scene.diagonal());
@@ -130,7 +131,7 @@ inline std::vector<dvec3> random_directions(Random& random, int count) {
 }
 
 /// Cold queries in all directions by both kinds of bounds.
-inline void expect_support(const taut::Scene& scene, const Truth& truth,
+inline void expect_support(const taut::Scene& scene, const SupportTruth& truth,
                            const std::vector<dvec3>& directions, const std::string& name,
                            double model_error = 0, double contact_error = 1e-14) {
   for (const taut::SupportBounds bounds :

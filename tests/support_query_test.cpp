@@ -183,7 +183,7 @@ TEST(SupportQuery, HintsOfAnyKindGiveTheSameAnswer) {
   shape.points.push_back({3.4, 0, 2});
   const Scene scene = make_scene(shape);
   const Part& part = scene.model().parts()[0];
-  const Truth truth = reference(scene);
+  const SupportTruth truth = reference(scene);
   for (const SupportBounds bounds : {SupportBounds::bezier_nets, SupportBounds::coons}) {
     SupportQuery query(scene, {}, bounds);
     SupportErrors errors;
@@ -191,7 +191,7 @@ TEST(SupportQuery, HintsOfAnyKindGiveTheSameAnswer) {
       const dvec3 n = k < 6 ? special_directions(random)[std::size_t(k)] : random_direction(random);
       const Support cold = query(n);
       const SupportRange range = truth(n);
-      const Truth known = [&](const dvec3&) { return range; };
+      const SupportTruth known = [&](const dvec3&) { return range; };
       const auto check = [&](const Contact& hint) {
         check_support(scene, known, n, query(n, hint), errors);
       };

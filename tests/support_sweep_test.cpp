@@ -16,17 +16,17 @@ using namespace taut_test;  // NOLINT: models and reference answers
 /// Rational quarter circles meet the circle to a few rounding units.
 constexpr double circle_rounding = 1e-15;
 
-void sweep(const Scene& scene, const Truth& truth, const std::vector<dvec3>& directions,
-           const std::string& name, double model_error = 0,
-           double bound_excess = support_accuracy) {
+void sweep(const Scene& scene, const SupportTruth& truth,
+           const std::vector<dvec3>& sweep_directions, const std::string& name,
+           double model_error = 0, double bound_excess = support_accuracy) {
   SupportQuery nets(scene);
   SupportQuery coons(scene, {}, SupportBounds::coons);
   SupportQuery warm(scene);
   SupportErrors of_nets, of_coons, of_warm;
   Contact near;
-  for (const dvec3& n : directions) {
+  for (const dvec3& n : sweep_directions) {
     const SupportRange range = truth(n);
-    const Truth known = [&](const dvec3&) { return range; };
+    const SupportTruth known = [&](const dvec3&) { return range; };
     check_support(scene, known, n, nets(n), of_nets);
     check_support(scene, known, n, coons(n), of_coons);
     const Support s = warm(n, near);
@@ -39,7 +39,7 @@ void sweep(const Scene& scene, const Truth& truth, const std::vector<dvec3>& dir
 }
 
 /// `count` directions: special ones, some that miss a pole by 1e-1 .. 1e-16, random others.
-std::vector<dvec3> directions(unsigned seed, std::size_t count) {
+std::vector<dvec3> sweep_directions(unsigned seed, std::size_t count) {
   Random random(seed);
   std::vector<dvec3> result = special_directions(random);
   const std::size_t at_poles = result.size() + count / 50;
@@ -55,7 +55,7 @@ std::vector<dvec3> directions(unsigned seed, std::size_t count) {
 TEST(SupportSweep, Sphere) {
   const Scene scene = make_scene(sphere());
   sweep(scene, closed_form(scene, [](const rvec3& n) { return glm::length(n); }),
-        directions(1, 14'000), "sphere", circle_rounding);
+        sweep_directions(1, 14'000), "sphere", circle_rounding);
 }
 
 TEST(SupportSweep, Torus) {
@@ -63,13 +63,13 @@ TEST(SupportSweep, Torus) {
   const auto h = [](const rvec3& n) {
     return 2 * std::sqrt(n.x * n.x + n.y * n.y) + 0.5L * glm::length(n);
   };
-  sweep(scene, closed_form(scene, h), directions(2, 12'000), "torus", circle_rounding);
+  sweep(scene, closed_form(scene, h), sweep_directions(2, 12'000), "torus", circle_rounding);
 }
 
 TEST(SupportSweep, Ellipsoid) {
   const Scene scene = make_scene(ellipsoid(3, 2, 1));
   const auto h = [](const rvec3& n) { return glm::length(rvec3(3, 2, 1) * n); };
-  sweep(scene, closed_form(scene, h), directions(3, 12'000), "ellipsoid", circle_rounding);
+  sweep(scene, closed_form(scene, h), sweep_directions(3, 12'000), "ellipsoid", circle_rounding);
 }
 
 TEST(SupportSweep, Circles) {
@@ -77,12 +77,12 @@ TEST(SupportSweep, Circles) {
   const auto h = [](const rvec3& n) {
     return std::max(std::hypot(n.x, n.y), n.x + std::hypot(n.x, n.z));
   };
-  sweep(scene, closed_form(scene, h), directions(4, 12'000), "circles", circle_rounding);
+  sweep(scene, closed_form(scene, h), sweep_directions(4, 12'000), "circles", circle_rounding);
 }
 
 TEST(SupportSweep, Teapot) {
   const Scene scene = make_scene(teapot());
-  sweep(scene, reference(scene), directions(5, 20'000), "teapot");
+  sweep(scene, reference(scene), sweep_directions(5, 20'000), "teapot");
 }
 
 TEST(SupportSweep, RationalPatchesOfDegreesOneToSeven) {

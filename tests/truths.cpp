@@ -7,7 +7,7 @@
 namespace taut_test {
 namespace {
 
-constexpr real pi = std::numbers::pi_v<real>;
+constexpr real real_pi = std::numbers::pi_v<real>;
 const real sqrt2 = std::sqrt(real(2));
 const real sqrt3 = std::sqrt(real(3));
 
@@ -21,8 +21,8 @@ struct Body {
 
   /// All points within r of it (Steiner).
   Body grown(real r) const {
-    return {volume + area * r + mean_curvature * r * r + 4 * pi / 3 * cube(r),
-            area + 2 * mean_curvature * r + 4 * pi * r * r, mean_curvature + 4 * pi * r};
+    return {volume + area * r + mean_curvature * r * r + 4 * real_pi / 3 * cube(r),
+            area + 2 * mean_curvature * r + 4 * real_pi * r * r, mean_curvature + 4 * real_pi * r};
   }
 };
 
@@ -37,22 +37,22 @@ real integral(const std::function<real(real)>& f, real a, real b, int pairs = 40
 /// Two spheres whose centres lie d apart, d > r1 - r2: two caps and a piece of a cone.
 Body of_two_spheres(real r1, real r2, real d) {
   const real s = (r1 - r2) / d;
-  return {
-      pi / 3 * d * (1 - s * s) * (1 - s * s) * (r1 * r1 + r1 * r2 + r2 * r2) +
-          pi * cube(r1) * (real(2) / 3 + s - cube(s) / 3) +
-          pi * cube(r2) * (real(2) / 3 - s + cube(s) / 3),
-      pi * (r1 + r2) * d * (1 - s * s) + 2 * pi * r1 * r1 * (1 + s) + 2 * pi * r2 * r2 * (1 - s)};
+  return {real_pi / 3 * d * (1 - s * s) * (1 - s * s) * (r1 * r1 + r1 * r2 + r2 * r2) +
+              real_pi * cube(r1) * (real(2) / 3 + s - cube(s) / 3) +
+              real_pi * cube(r2) * (real(2) / 3 - s + cube(s) / 3),
+          real_pi * (r1 + r2) * d * (1 - s * s) + 2 * real_pi * r1 * r1 * (1 + s) +
+              2 * real_pi * r2 * r2 * (1 - s)};
 }
 
-Body of_disc(real r) { return {0, 2 * pi * r * r, pi * pi * r}; }
+Body of_disc(real r) { return {0, 2 * real_pi * r * r, real_pi * real_pi * r}; }
 
 Body of_oloid() {
   const real k = sqrt3 / 2;
-  return {real(2) / 3 * (2 * std::comp_ellint_2(k) + std::comp_ellint_1(k)), 4 * pi,
+  return {real(2) / 3 * (2 * std::comp_ellint_2(k) + std::comp_ellint_1(k)), 4 * real_pi,
           13.76442932700307L};
 }
 
-Body of_perpendicular_circles() { return {real(8) / 3, 4 + 2 * pi, 11.74812872262842L}; }
+Body of_perpendicular_circles() { return {real(8) / 3, 4 + 2 * real_pi, 11.74812872262842L}; }
 
 /// a >= b >= c, not a sphere.
 Body of_ellipsoid(real a, real b, real c) {
@@ -60,27 +60,30 @@ Body of_ellipsoid(real a, real b, real c) {
   const real k = std::sqrt(a * a * (b * b - c * c) / (b * b * (a * a - c * c)));
   const real sine = std::sin(phi);
   const real cosine = std::cos(phi);
-  return {4 * pi / 3 * a * b * c, 2 * pi * c * c + 2 * pi * a * b / sine *
-                                                       (std::ellint_2(k, phi) * sine * sine +
-                                                        std::ellint_1(k, phi) * cosine * cosine)};
+  return {4 * real_pi / 3 * a * b * c,
+          2 * real_pi * c * c +
+              2 * real_pi * a * b / sine *
+                  (std::ellint_2(k, phi) * sine * sine + std::ellint_1(k, phi) * cosine * cosine)};
 }
 
 Body of_frustum(real R, real r, real h) {
-  return {pi * h / 3 * (R * R + R * r + r * r),
-          pi * (R * R + r * r + (R + r) * std::sqrt((R - r) * (R - r) + h * h))};
+  return {real_pi * h / 3 * (R * R + R * r + r * r),
+          real_pi * (R * R + r * r + (R + r) * std::sqrt((R - r) * (R - r) + h * h))};
 }
 
-Body of_cap(real h) { return {pi * h * h * (3 - h) / 3, 2 * pi * h + pi * h * (2 - h)}; }
+Body of_cap(real h) {
+  return {real_pi * h * h * (3 - h) / 3, 2 * real_pi * h + real_pi * h * (2 - h)};
+}
 
 Body of_box(real a, real b, real c) {
-  return {a * b * c, 2 * (a * b + b * c + c * a), pi * (a + b + c)};
+  return {a * b * c, 2 * (a * b + b * c + c * a), real_pi * (a + b + c)};
 }
 
 /// An equilateral triangle of side a, both sides.
-Body of_triangle(real a) { return {0, sqrt3 / 2 * a * a, pi / 2 * 3 * a}; }
+Body of_triangle(real a) { return {0, sqrt3 / 2 * a * a, real_pi / 2 * 3 * a}; }
 
 Body of_tetrahedron(real a) {
-  return {cube(a) / (6 * sqrt2), sqrt3 * a * a, 3 * a * (pi - std::acos(real(1) / 3))};
+  return {cube(a) / (6 * sqrt2), sqrt3 * a * a, 3 * a * (real_pi - std::acos(real(1) / 3))};
 }
 
 Body of_paraboloid() {
@@ -110,7 +113,7 @@ Body of_twisted_cubic() {
 
 /// An affine image of a capsule: two ellipsoids, the one shifted by d.
 real two_ellipsoids_volume(real a, real b, real c, const rvec3& d) {
-  return a * b * c * (4 * pi / 3 + pi * glm::length(d / rvec3(a, b, c)));
+  return a * b * c * (4 * real_pi / 3 + real_pi * glm::length(d / rvec3(a, b, c)));
 }
 
 Shape spheres(double r, const std::vector<dvec3>& centers) {

@@ -29,7 +29,7 @@ namespace {
 
 using namespace taut_test;  // NOLINT: truths and models
 
-constexpr real pi = std::numbers::pi_v<real>;
+constexpr real real_pi = std::numbers::pi_v<real>;
 
 struct Errors {
   real volume = 0;
@@ -81,14 +81,14 @@ Errors expect_true(const Scene& scene, const Truth& truth, double relative) {
   EXPECT_LE(found.mesh_outside, e);
 
   const Measures measures = measure(errors.mesh);
-  const real area_gap = 4 * pi * D * bound + 4 * pi * bound * bound;
+  const real area_gap = 4 * real_pi * D * bound + 4 * real_pi * bound * bound;
   const real A = truth.area >= 0 ? truth.area : measures.area + area_gap;
   const real volume_slack = e * A + truth.uncertainty * (truth.volume > 0 ? 1 : 0);
   errors.volume = truth.volume - measures.volume;
   EXPECT_GE(errors.volume, -volume_slack);
   EXPECT_LE(errors.volume, bound * A + volume_slack);
   if (truth.area < 0) return errors;
-  const real area_slack = 4 * pi * D * e + truth.uncertainty;
+  const real area_slack = 4 * real_pi * D * e + truth.uncertainty;
   errors.area = truth.area - measures.area;
   EXPECT_GE(errors.area, -area_slack);
   EXPECT_LE(errors.area, area_gap + area_slack);
@@ -186,8 +186,8 @@ TEST(TruthsOfNeedles, SampledHullsConverge) {
   const real eccentricity = std::sqrt(1 - 1 / (a * a));
   const Truth needle = {"needle",
                         ellipsoid(double(a), 1, 1),
-                        4 * pi / 3 * a,
-                        2 * pi * (1 + a / eccentricity * std::asin(eccentricity)),
+                        4 * real_pi / 3 * a,
+                        2 * real_pi * (1 + a / eccentricity * std::asin(eccentricity)),
                         0,
                         false};
   for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
@@ -205,11 +205,11 @@ TEST(TruthsThemselves, MeanCurvatureOfCircles) {
       const real z = -1 + (2 * i + 1) / real(n);
       const real r = std::sqrt(1 - z * z);
       for (int k = 0; k < 2 * n; ++k) {
-        const real x = r * std::cos((2 * k + 1) * pi / (2 * n));
+        const real x = r * std::cos((2 * k + 1) * real_pi / (2 * n));
         sum += std::max(r, shift * x + std::sqrt(x * x + z * z));
       }
     }
-    return double(sum * 4 * pi / (2 * n * n));
+    return double(sum * 4 * real_pi / (2 * n * n));
   };
   EXPECT_NEAR(mean_curvature(1), 13.76442932700307, 1e-4);
   EXPECT_NEAR(mean_curvature(0), 11.74812872262842, 1e-4);

@@ -41,7 +41,7 @@ PolygonMesh hull_of(const Scene& scene, double tolerance) {
   return polygons(sampled_hull(scene, {.tolerance = tolerance, .threads = 1, .progress = {}}).mesh);
 }
 
-Verification verified(const PolygonMesh& mesh, const Scene& scene, int directions = 500) {
+Verification verified_mesh(const PolygonMesh& mesh, const Scene& scene, int directions = 500) {
   return verify(mesh, scene,
                 {.random_directions = directions, .seed = 1, .threads = 1, .progress = {}});
 }
@@ -57,7 +57,7 @@ void expect_flags(const Verification& v, const std::string& flags, const std::st
 
 void expect_good(const PolygonMesh& mesh, const Scene& scene, double tolerance,
                  const std::string& name) {
-  const Verification v = verified(mesh, scene);
+  const Verification v = verified_mesh(mesh, scene);
   expect_flags(v, "11111", name);
   const double rounding = 1e-12 * scene.diagonal();
   EXPECT_LE(v.largest_violation, rounding) << name;
@@ -96,7 +96,7 @@ TEST(Verify, ModelFarFromTheOrigin) {
   PolygonMesh mesh = box_mesh();
   for (dvec3& p : mesh.points) p += far;
   const Scene scene = make_scene(shifted(box(1, 2, 3), far));
-  const Verification v = verified(mesh, scene);
+  const Verification v = verified_mesh(mesh, scene);
   expect_flags(v, "11111", "far box");
   EXPECT_TRUE(v.is_hull(1e-10));
 }
@@ -189,7 +189,7 @@ TEST(Verify, FindsFaults) {
       const std::string name = fault.name + " at size 1e" + std::to_string(std::log10(size));
       PolygonMesh mesh = box_mesh();
       fault.damage(mesh);
-      const Verification v = verified(scaled(mesh, size), scene);
+      const Verification v = verified_mesh(scaled(mesh, size), scene);
       expect_flags(v, fault.flags, name);
       for (const double length : {v.largest_violation, v.model_outside, v.mesh_outside}) {
         EXPECT_TRUE(std::isfinite(length)) << name;
@@ -206,7 +206,7 @@ TEST(Verify, NoneOfTheFaultsIsAHull) {
     if (fault.name == "quad that is not planar" || fault.name == "face of zero area") continue;
     PolygonMesh mesh = box_mesh();
     fault.damage(mesh);
-    EXPECT_FALSE(verified(mesh, scene).is_hull(0.9e-4)) << fault.name;
+    EXPECT_FALSE(verified_mesh(mesh, scene).is_hull(0.9e-4)) << fault.name;
   }
 }
 
@@ -217,14 +217,14 @@ TEST(Verify, MeasuresHowFarAVertexHasMoved) {
     const dvec3 corner(1 / std::sqrt(3.0));
     PolygonMesh mesh = scaled(box_mesh(), size);
     mesh.points[7] += d * corner;
-    const Verification out = verified(mesh, scene, 5000);
+    const Verification out = verified_mesh(mesh, scene, 5000);
     EXPECT_NEAR(out.mesh_outside / size, 1e-3, 1e-5) << size;
     EXPECT_LE(out.model_outside, 1e-11 * size) << size;
     EXPECT_FALSE(out.is_hull(0.9 * d)) << size;
 
     mesh = scaled(box_mesh(), size);
     mesh.points[7] -= d * corner;
-    const Verification in = verified(mesh, scene, 5000);
+    const Verification in = verified_mesh(mesh, scene, 5000);
     EXPECT_NEAR(in.model_outside / size, 1e-3, 1e-5) << size;
     EXPECT_LE(in.mesh_outside, 1e-11 * size) << size;
     EXPECT_FALSE(in.is_hull(0.9 * d)) << size;
@@ -241,11 +241,11 @@ TEST(Verify, MovedVerticesOfAFineMesh) {
     const auto v = std::size_t(pick(random, 0, int(good.points.size()) - 1));
     PolygonMesh mesh = good;
     mesh.points[v] *= 1 + 1e-2;
-    const Verification out = verified(mesh, scene);
+    const Verification out = verified_mesh(mesh, scene);
     EXPECT_FALSE(out.is_hull(5e-3));
     EXPECT_NEAR(out.mesh_outside, 1e-2, 1e-3);
     mesh.points[v] = good.points[v] * (1 - 1e-2);
-    const Verification in = verified(mesh, scene);
+    const Verification in = verified_mesh(mesh, scene);
     EXPECT_FALSE(in.convex);
     EXPECT_FALSE(in.is_hull(1e-3));
     EXPECT_GT(in.largest_violation, 5e-3);
@@ -258,7 +258,7 @@ TEST(Verify, LargestViolationIsTheDentsDepth) {
   mesh.points.emplace_back(0.3, 0.3, 0.3);
   mesh.polygons[0] = {0, 2, 6};
   mesh.polygons.insert(mesh.polygons.end(), {{2, 4, 6}, {4, 0, 6}});
-  const Verification v = verified(mesh, scene);
+  const Verification v = verified_mesh(mesh, scene);
   expect_flags(v, "11101", "dent");
   real deepest = 0;
   for (const auto& p : mesh.polygons) {
@@ -274,11 +274,11 @@ TEST(Verify, LargestViolationIsTheDentsDepth) {
 TEST(Verify, HullOfAnotherModel) {
   const Scene one = make_scene(sphere());
   const Scene two = make_scene(two_spheres(1, 0.5, 2));
-  const Verification small = verified(hull_of(one, 1e-3), two, 5000);
+  const Verification small = verified_mesh(hull_of(one, 1e-3), two, 5000);
   expect_flags(small, "11111", "one sphere");
   EXPECT_NEAR(small.model_outside, 1.5, 2e-3);
   EXPECT_LE(small.mesh_outside, 1e-12);
-  const Verification large = verified(hull_of(two, 1e-3), one, 5000);
+  const Verification large = verified_mesh(hull_of(two, 1e-3), one, 5000);
   expect_flags(large, "11111", "two spheres");
   EXPECT_NEAR(large.mesh_outside, 1.5, 2e-3);
   EXPECT_LE(large.model_outside, 1e-3);
@@ -299,7 +299,7 @@ TEST(Verify, TorusIsNoHullOfItself) {
       mesh.polygons.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   }
-  const Verification v = verified(mesh, make_scene(torus(2, 0.5)));
+  const Verification v = verified_mesh(mesh, make_scene(torus(2, 0.5)));
   expect_flags(v, "11101", "torus");
   EXPECT_GT(v.largest_violation, 0.5);
   EXPECT_LE(v.mesh_outside, 1e-12);
@@ -320,21 +320,21 @@ TEST(Verify, StarPolygonsAreNotConvex) {
   }
   mesh.polygons.push_back(bottom);
   mesh.polygons.push_back(top);
-  const Verification v = verified(mesh, make_scene(points_of(mesh)));
+  const Verification v = verified_mesh(mesh, make_scene(points_of(mesh)));
   EXPECT_FALSE(v.convex);
   EXPECT_FALSE(v.is_hull(1e-3));
 }
 
 TEST(Verify, CountsItsDirections) {
   const Scene scene = make_scene(box(1, 2, 3));
-  EXPECT_EQ(verified(box_mesh(), scene, 123).directions, 6 + 8 + 123);
-  EXPECT_EQ(verified(box_mesh(), scene, 0).directions, 6 + 8);
+  EXPECT_EQ(verified_mesh(box_mesh(), scene, 123).directions, 6 + 8 + 123);
+  EXPECT_EQ(verified_mesh(box_mesh(), scene, 0).directions, 6 + 8);
 }
 
 TEST(Verify, SameForAnyNumberOfThreads) {
   const Scene scene = make_scene(teapot());
   const PolygonMesh mesh = hull_of(scene, 1e-2);
-  const Verification one = verified(mesh, scene, 2000);
+  const Verification one = verified_mesh(mesh, scene, 2000);
   for (const int threads : {2, 0}) {
     const Verification other = verify(
         mesh, scene, {.random_directions = 2000, .seed = 1, .threads = threads, .progress = {}});
@@ -348,23 +348,23 @@ TEST(Verify, SameForAnyNumberOfThreads) {
 TEST(Verify, FlatMeshes) {
   // Two-sided: closed, but without volume.
   const PolygonMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
-  const Verification v = verified(mesh, make_scene(points_of(mesh)));
+  const Verification v = verified_mesh(mesh, make_scene(points_of(mesh)));
   expect_flags(v, "11111", "flat");
   EXPECT_LE(v.model_outside, 1e-12);
   const PolygonMesh single = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-  expect_flags(verified(single, make_scene(points_of(single))), "01001", "one triangle");
+  expect_flags(verified_mesh(single, make_scene(points_of(single))), "01001", "one triangle");
   const PolygonMesh segment = {{{0, 0, 0}, {1, 2, 3}}, {}};
-  expect_flags(verified(segment, make_scene(points_of(segment))), "11111", "segment");
-  const Verification half = verified({{{0, 0, 0}}, {}}, make_scene(points_of(segment)));
+  expect_flags(verified_mesh(segment, make_scene(points_of(segment))), "11111", "segment");
+  const Verification half = verified_mesh({{{0, 0, 0}}, {}}, make_scene(points_of(segment)));
   EXPECT_GT(half.model_outside, 3.7);
 }
 
 TEST(Verify, RefusesMeshesThatAreNone) {
   const Scene scene = make_scene(box(1, 2, 3));
-  EXPECT_THROW(verified({}, scene), InvalidInput);
-  EXPECT_THROW(verified({{{0, 0, 0}}, {{0, 1, 2}}}, scene), InvalidInput);
-  EXPECT_THROW(verified({{{0, 0, 0}}, {{0, 0, -1}}}, scene), InvalidInput);
-  EXPECT_THROW(verified({{{0, 0, 0}, {1, 0, 0}}, {{0, 1}}}, scene), InvalidInput);
+  EXPECT_THROW(verified_mesh({}, scene), InvalidInput);
+  EXPECT_THROW(verified_mesh({{{0, 0, 0}}, {{0, 1, 2}}}, scene), InvalidInput);
+  EXPECT_THROW(verified_mesh({{{0, 0, 0}}, {{0, 0, -1}}}, scene), InvalidInput);
+  EXPECT_THROW(verified_mesh({{{0, 0, 0}, {1, 0, 0}}, {{0, 1}}}, scene), InvalidInput);
 }
 
 TEST(Verify, CanBeCancelled) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "taut/core/tolerances.h"
 #include "taut/surface/bernstein.h"
@@ -140,7 +139,6 @@ class ScalarNet {
   }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr int capacity(int degree) { return (degree >= 0 ? degree : max_degree) + 1; }
 
   static void restrict_line(double* b, int n, int stride, double lower, double upper) {

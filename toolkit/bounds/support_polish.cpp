@@ -2,15 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "taut/bounds/second_order.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A value that is the same, up to rounding, at this share of a parameter's range from an end and
 /// at the end itself is constant between.

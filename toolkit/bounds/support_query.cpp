@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,8 +15,6 @@
 
 namespace taut {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Cells that one query may look at before it settles for a weaker, still proven, bound. Ordinary
 /// queries need about ten, contact along a whole curve in general position some ten thousand.

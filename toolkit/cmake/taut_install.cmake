@@ -28,9 +28,6 @@ function(taut_layer name)
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_BINARY_DIR}/include"
                                   FILES ${arg_PUBLIC_HEADERS})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  if(TARGET taut_headers)
-    target_precompile_headers(${target} REUSE_FROM taut_headers)
-  endif()
   # Inline functions must give the same signs where a user of the library compiles them.
   target_compile_options(${target} INTERFACE $<INSTALL_INTERFACE:-ffp-contract=off>)
   # While the version is 0.x every minor version may change the binary interface.

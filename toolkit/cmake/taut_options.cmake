@@ -19,13 +19,12 @@ if(PROJECT_IS_TOP_LEVEL)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(taut_options INTERFACE -Wno-restrict)
   endif()
+  # Sources that are compiled together see what the others have in unnamed namespaces.
+  if(CMAKE_UNITY_BUILD)
+    target_compile_options(taut_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+  endif()
   if(TAUT_WARNINGS_AS_ERRORS)
     target_compile_options(taut_options INTERFACE -Werror)
-    if(TAUT_PRECOMPILE)
-      # In precompiled headers GCC takes the standard library's strings for no system headers.
-      target_compile_options(taut_options INTERFACE -Wno-error=array-bounds
-                                                    -Wno-error=stringop-overflow)
-    endif()
   endif()
 endif()
 

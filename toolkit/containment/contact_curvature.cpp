@@ -21,7 +21,7 @@ constexpr double flat = 1e-9;
 constexpr double longest_step = 0.5;
 /// Contacts whose predictions differ by less than this share of what their points do are one.
 constexpr double same_contact = 0.25;
-constexpr double same_point = 1e-7;
+constexpr double same_contact_point = 1e-7;
 /// Weights may be rounded below zero.
 constexpr double least_weight = -1e-6;
 
@@ -105,7 +105,7 @@ std::vector<CurvedContact> distinct(std::span<const CurvedContact> contacts, con
   for (const CurvedContact& c : contacts) {
     const auto same = std::find_if(kept.begin(), kept.end(), [&](const CurvedContact& k) {
       return glm::distance(k.point_at(n), c.point_at(n)) <
-             same_contact * glm::distance(k.point, c.point) + same_point;
+             same_contact * glm::distance(k.point, c.point) + same_contact_point;
     });
     if (same == kept.end()) {
       kept.push_back(c);

@@ -26,10 +26,10 @@ constexpr double start_relative = 1e-2;
 constexpr double worst_weight_rounding = 1e-3;
 
 /// Beyond this many sizes of the scene the hull is a point, as far as distances can tell.
-constexpr double far_away = 1e100;
+constexpr double beyond_distances = 1e100;
 constexpr double far_share = 1e-15;
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t location_grain = 1024;
 constexpr std::size_t distance_grain = 16;
 
 /// A facet of the mesh, in the scene's frame.
@@ -190,7 +190,7 @@ std::optional<Location> HullContainment::Content::by_mesh(const dvec3& x, int& f
   if (!rays) return std::nullopt;
   const dvec3 from_middle = x - middle;
   const double distance = glm::length(from_middle);
-  if (!(distance < far_away)) return Location::outside;
+  if (!(distance < beyond_distances)) return Location::outside;
   const double rounding = 16 * rounding_unit * (2 + distance);
   const double margin = on_tolerance + rounding + contact_rounding(scene);
   if (distance < inner_radius - margin) return Location::inside;
@@ -230,7 +230,7 @@ class HullContainment::Worker {
     const dvec3 x = content_.to_frame(point);
     const double scale = content_.scene.frame().scale;
     const double size = glm::dot(x, unit(x));
-    if (size > far_away) {  // the hull is a point, as far as doubles can tell
+    if (size > beyond_distances) {  // the hull is a point, as far as doubles can tell
       return {size / scale, size * (1 - far_share) / scale, size * (1 + far_share) / scale};
     }
     int facet = -1;
@@ -272,7 +272,7 @@ SignedDistance HullContainment::distance(const dvec3& x) const {
 std::vector<Location> HullContainment::locate(std::span<const dvec3> points,
                                               ContainmentCounts* counts) const {
   return answer_points<Location>(
-      points, {grain, content_->options.threads, content_->options.progress}, counts,
+      points, {location_grain, content_->options.threads, content_->options.progress}, counts,
       [&] { return Worker(*content_); },
       [](Worker& worker, const dvec3& x) { return worker.locate(x); });
 }

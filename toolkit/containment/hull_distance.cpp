@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Directions that a projection tries, and facets that a branch and bound replaces, before they
 /// settle for what they have. Usual are five and a hundred.
@@ -49,10 +46,10 @@ constexpr int polish_limit = 3;
 constexpr double converged_angle = 1e-8;
 
 /// Next to the boundary distances are sought to this share of themselves.
-constexpr double near_share = 0.05;
+constexpr double near_hull_share = 0.05;
 
 /// A gap that no query can close.
-constexpr double least_gap = 2 * support_slack;
+constexpr double least_hull_gap = 2 * support_slack;
 
 }  // namespace
 
@@ -124,8 +121,8 @@ bool HullDistance::done() const {
   if (goal_.tolerance >= 0 && (range_.lower > goal_.tolerance || range_.upper < -goal_.tolerance)) {
     return true;
   }
-  const double share = near_share * std::abs(range_.value);
-  return range_.upper - range_.value <= std::max(std::min(goal_.accuracy, share), least_gap);
+  const double share = near_hull_share * std::abs(range_.value);
+  return range_.upper - range_.value <= std::max(std::min(goal_.accuracy, share), least_hull_gap);
 }
 
 /// Newton's step if it is wanted and there is one, else towards x.
@@ -299,7 +296,7 @@ void HullDistance::insert_seeds() {
   };
   for (const Atom& a : atoms_) insert_anywhere({a.curved.n, a.contact}, a.curved.point);
   if (best_contact_.instance < 0) return;
-  const double angle = std::sqrt(std::clamp(-range_.value, least_gap, 1e-2));
+  const double angle = std::sqrt(std::clamp(-range_.value, least_hull_gap, 1e-2));
   const auto tangents = tangent_frame(best_n_);
   const dvec3 n = best_n_;
   const Contact hint = best_contact_;

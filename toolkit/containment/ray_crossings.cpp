@@ -14,8 +14,8 @@ namespace {
 constexpr int depth_limit = 80;
 
 /// Newton's method on a cell with one crossing ends within this share of the cell.
-constexpr int newton_limit = 30;
-constexpr double newton_end = 1e-14;
+constexpr int crossing_newton_limit = 30;
+constexpr double crossing_newton_end = 1e-14;
 
 /// A crossing is inside of its cell if it is farther from the sides than this share of the patch.
 constexpr double least_inset = 1e-12;
@@ -139,7 +139,7 @@ RayCrossings::Answer RayCrossings::look(const PlacedPatch& patch, const Cell& ce
   double u = 0.5;
   double v = 0.5;
   bool converged = false;
-  for (int step = 0; step < newton_limit && !converged; ++step) {
+  for (int step = 0; step < crossing_newton_limit && !converged; ++step) {
     const NetJet j1 = net.jet(d1, u, v);
     const NetJet j2 = net.jet(d2, u, v);
     const double jdet = j1.gu * j2.gv - j1.gv * j2.gu;
@@ -148,7 +148,7 @@ RayCrossings::Answer RayCrossings::look(const PlacedPatch& patch, const Cell& ce
     const double dv = (j2.gu * j1.g - j1.gu * j2.g) / jdet;
     u = std::clamp(u + du, -0.5, 1.5);
     v = std::clamp(v + dv, -0.5, 1.5);
-    converged = std::abs(du) + std::abs(dv) < newton_end;
+    converged = std::abs(du) + std::abs(dv) < crossing_newton_end;
   }
   // The crossing is off by the rounding, and the crack, of the coordinates over the slope.
   const double norm = (std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d)) / std::abs(det);

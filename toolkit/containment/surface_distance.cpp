@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "taut/bounds/vector_net.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Cells that one point may take, after which the bounds found stand.
 constexpr int cell_limit = 20'000;

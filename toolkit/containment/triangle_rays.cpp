@@ -13,7 +13,7 @@
 namespace taut {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float ray_end = std::numeric_limits<float>::infinity();
 
 /// Floats about one: their rounding unit, and what a distance within a box of size one is off by at
 /// most when it is found in them (measured 3e-6 at ten times the box's size).
@@ -71,7 +71,7 @@ RTCRay ray(const dvec3& origin, const dvec3& direction) {
   r.dir_x = float(direction.x);
   r.dir_y = float(direction.y);
   r.dir_z = float(direction.z);
-  r.tfar = infinity;
+  r.tfar = ray_end;
   r.mask = ~0U;
   return r;
 }

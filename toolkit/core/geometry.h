@@ -12,6 +12,8 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
 /// A closed parameter interval, lower <= upper.
 struct Interval {
   double lower = 0;
@@ -25,8 +27,8 @@ struct Interval {
 
 /// Axis-parallel closed box. A default-constructed box is empty and contains nothing.
 struct Box {
-  dvec3 lower = dvec3(std::numeric_limits<double>::infinity());
-  dvec3 upper = dvec3(-std::numeric_limits<double>::infinity());
+  dvec3 lower = dvec3(infinity);
+  dvec3 upper = dvec3(-infinity);
 
   bool empty() const { return lower.x > upper.x; }
   void include(const dvec3& p) {

@@ -92,4 +92,8 @@ inline constexpr double max_weight_ratio = 1e12;
 /// Highest degree of a curve or surface in either direction. Exchange formats in use stop at 25.
 inline constexpr int max_degree = 31;
 
+/// Most control points that the Bezier pieces of a file may have together (2 GiB of them). A
+/// B-spline of degree 31 has a thousand for each control point in the file.
+inline constexpr double max_piece_points = 1 << 26;
+
 }  // namespace taut

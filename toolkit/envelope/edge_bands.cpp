@@ -13,10 +13,10 @@ constexpr int steps_around = 96;
 constexpr int steps_a_sector = 8;
 
 /// Intervals of a piece are halved at most so often.
-constexpr int finest_level = 12;
+constexpr int finest_piece_level = 12;
 
 /// Levels that are never left out, so that what happens inside shows.
-constexpr int coarsest_level = 2;
+constexpr int coarsest_piece_level = 2;
 
 /// Directions towards which the curve is bent by more than this share of its bend are left out.
 constexpr double inner_share = 0.05;
@@ -98,7 +98,7 @@ bool EdgeBands::is_fine(const Point& a, const Point& b, const Point& middle) con
 
 void EdgeBands::sample(const Point& a, const Point& b, int level) {
   const Point middle = at(0.5 * (a.t + b.t));
-  if (level < finest_level && (level < coarsest_level || !is_fine(a, b, middle))) {
+  if (level < finest_piece_level && (level < coarsest_piece_level || !is_fine(a, b, middle))) {
     sample(a, middle, level + 1);
     sample(middle, b, level + 1);
   } else {

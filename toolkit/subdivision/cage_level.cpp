@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/subdivision/extraction.h"
 #include "taut/subdivision/loop_corner.h"
 #include "taut/subdivision/patch_nets.h"
@@ -19,9 +20,6 @@ namespace {
 
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Weights of caps that OpenSubdiv makes at a time: some tens of megabytes.
 constexpr std::size_t most_weights = std::size_t{1} << 17U;

@@ -6,15 +6,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 #include "taut/subdivision/reparametrize.h"
 #include "taut/subdivision/triangle_points.h"
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Rounds of division: more than there are levels of refinement.
 constexpr int round_limit = 128;

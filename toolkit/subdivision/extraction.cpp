@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
 namespace Vtr = OpenSubdiv::Vtr;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// The new numbers of some components, which are given to those that have none.
 std::vector<int> numbered(const Vtr::ConstIndexArray& components, std::vector<int>& number,

@@ -10,6 +10,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 #include "taut/subdivision/cage_level.h"
 #include "taut/subdivision/dart_limit.h"
@@ -21,9 +22,6 @@
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Levels whose patches' corners are the known points around what remains of a region.
 constexpr std::size_t levels_around = 3;

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "taut/core/integers.h"
 #include "taut/subdivision/patch_nets.h"
 #include "taut/subdivision/refiner.h"
 
@@ -16,8 +17,6 @@ namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
 using Place = std::array<int, 2>;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// Where OpenSubdiv's control points of the triangle (0, 0), (1, 0), (0, 1) are in a lattice, and
 /// their Bezier points.

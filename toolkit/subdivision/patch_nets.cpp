@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// Calls visit(i, j) for the points of a quartic triangle in their order.
 template <class Visit>

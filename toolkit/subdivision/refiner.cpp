@@ -9,6 +9,7 @@
 #include <string>
 
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/subdivision/extraction.h"
 
 namespace OpenSubdiv::OPENSUBDIV_VERSION::Far {
@@ -96,8 +97,6 @@ namespace {
 
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
-
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 Sdc::SchemeType scheme_type(CageScheme scheme) {
   return scheme == CageScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;

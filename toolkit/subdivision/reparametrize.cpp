@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "taut/core/integers.h"
 #include "taut/subdivision/triangle_points.h"
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 double binomial(int n, int k) {
   double result = 1;

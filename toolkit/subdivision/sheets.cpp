@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 }  // namespace
 

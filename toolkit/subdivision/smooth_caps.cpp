@@ -187,16 +187,16 @@ void move_to(AnyNet& net, const VertexLimit& dart) {
 }
 
 /// A square net of points along v within along u.
-class Net {
+class PointNet {
  public:
-  explicit Net(std::size_t degree) : degree_(degree), points_((degree + 1) * (degree + 1)) {}
-  Net(std::size_t degree, Points points) : degree_(degree), points_(std::move(points)) {}
+  explicit PointNet(std::size_t degree) : degree_(degree), points_((degree + 1) * (degree + 1)) {}
+  PointNet(std::size_t degree, Points points) : degree_(degree), points_(std::move(points)) {}
   dvec3& at(std::size_t i, std::size_t j) { return points_[i * (degree_ + 1) + j]; }
   const dvec3& at(std::size_t i, std::size_t j) const { return points_[i * (degree_ + 1) + j]; }
   Points take() { return std::move(points_); }
 
-  Net mirrored() const {
-    Net result(degree_);
+  PointNet mirrored() const {
+    PointNet result(degree_);
     for (std::size_t i = 0; i <= degree_; ++i) {
       for (std::size_t j = 0; j <= degree_; ++j) result.at(i, j) = at(j, i);
     }
@@ -210,8 +210,8 @@ class Net {
 
 constexpr std::size_t quad_degree = 5;
 
-Net raised(const Net& cubic) {
-  Net result(quad_degree);
+PointNet raised(const PointNet& cubic) {
+  PointNet result(quad_degree);
   std::array<Points, 4> rows;
   for (std::size_t i = 0; i < 4; ++i) {
     rows[i] = elevated_curve({cubic.at(i, 0), cubic.at(i, 1), cubic.at(i, 2), cubic.at(i, 3)},
@@ -226,7 +226,7 @@ Net raised(const Net& cubic) {
 }
 
 /// Of the cell's first spoke, v = 0.
-SpokeEnds spoke_ends(const Net& p) {
+SpokeEnds spoke_ends(const PointNet& p) {
   SpokeEnds e;
   e.vertex = p.at(0, 0);
   e.end = p.at(3, 0);
@@ -240,7 +240,7 @@ SpokeEnds spoke_ends(const Net& p) {
 }
 
 /// The rows next to the spokes are set; the points inside follow them.
-void move_inside(Net& net, const Net& given) {
+void move_inside(PointNet& net, const PointNet& given) {
   const auto change = [&](std::size_t i, std::size_t j) { return net.at(i, j) - given.at(i, j); };
   for (std::size_t i = 2; i <= 3; ++i) {
     for (std::size_t j = 2; j <= 3; ++j) {
@@ -339,21 +339,21 @@ std::vector<Points> smooth_quad_caps(std::span<const Points> nets,
   const std::size_t n = nets.size();
   const double turn = 2 * std::cos(2 * std::numbers::pi / double(n));
   std::vector<SpokeEnds> ends;
-  std::vector<Net> given;
+  std::vector<PointNet> given;
   ends.reserve(n);
   given.reserve(n);
   for (const Points& points : nets) given.emplace_back(std::size_t{3}, points);
   std::optional<SpokeEnds> beyond;
   if (dart) {
-    for (Net& net : given) move_to(net, *dart);
+    for (PointNet& net : given) move_to(net, *dart);
     beyond = spoke_ends(given.back().mirrored());
   }
-  for (const Net& net : given) ends.push_back(spoke_ends(net));
+  for (const PointNet& net : given) ends.push_back(spoke_ends(net));
   const Fan fan(std::move(ends), {}, {turn, 0, 0}, beyond);
   std::vector<Points> result;
   for (std::size_t j = 0; j < n; ++j) {
-    const Net old = raised(given[j]);
-    Net net = old;
+    const PointNet old = raised(given[j]);
+    PointNet net = old;
     const std::size_t next = (j + 1) % n;
     const Points first = elevated_curve(fan.curve(j), quad_degree);
     const Points second = elevated_curve(fan.curve(next), quad_degree);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// The direction through (a, b) of [-1, 1]^2 on a side of a cube.
 dvec3 through(int side, double a, double b) {

@@ -5,6 +5,7 @@
 
 #include "taut/core/disjoint_sets.h"
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/surface/flatness.h"
 #include "taut/surface/join_smoothness.h"
 #include "taut/surface/model.h"
@@ -15,9 +16,6 @@
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Unit direction in which the curve leaves its start, or zero if it stays within the tolerance.
 /// Points nearer than that are passed over: what they tell is rounding, or nothing if they

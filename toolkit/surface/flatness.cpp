@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
@@ -36,8 +37,6 @@ BezierPatch of_unit_size(BezierPatch patch) {
   for (dvec4& p : patch.points) p = {dvec3(p) / size, p.w};
   return patch;
 }
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// What the rounding of a patch's control points may do to its derivatives.
 class DerivativeRounding {

@@ -7,13 +7,11 @@
 #include <utility>
 
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 void include(Box& box, const std::vector<dvec4>& points) {
   for (const dvec4& p : points) box.include(euclidean(p));

@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "taut/core/error.h"
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// @pre the degree is valid
 void validate_knot_count(std::size_t count, int degree, const std::string& name) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// The common part of two intervals, and the same in coordinates where `piece` is [0, 1].
 struct Overlap {

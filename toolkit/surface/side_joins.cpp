@@ -6,14 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/point_grid.h"
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Curve b, run backwards if `reversed`, is curve a.
 ///

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/crests.h"
 #include "taut/surface/flatness.h"
@@ -13,9 +14,6 @@
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-int to_int(std::size_t n) { return static_cast<int>(n); }
 
 /// Cuts of one row, beyond which its crests are taken to wind without end.
 constexpr std::size_t cut_limit = 16;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "taut/core/integers.h"
 #include "taut/hull/result/hull_sources.h"
 #include "taut/verify/closest_on_surface.h"
 
@@ -18,8 +19,6 @@ constexpr double near_face = 1e-7;
 /// Rulings that are no longer, as a fraction of the diagonal, lie near a face that they touch
 /// twice.
 constexpr double long_ruling = 1e-2;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// Which of a scroll's rulings are looked at where no face is told, and near its ends: it may lie
 /// on two faces, one after the other; and where on a ruling it is looked whether it lies on a face.

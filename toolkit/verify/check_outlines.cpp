@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "taut/core/integers.h"
 #include "taut/verify/closest_on_curve.h"
 #include "taut/verify/nearest_point.h"
 
@@ -17,8 +18,6 @@ using Face = HullDocument::Face;
 /// Share of the distance within which points are one below which they are the same but for
 /// rounding.
 constexpr double listed_share = 1e-4;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 std::string at(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]: ";

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "taut/bounds/support_query.h"
+#include "taut/core/integers.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
 
@@ -19,8 +20,6 @@ constexpr double beside = 3e-3;
 /// A surface's total curvature times the square of the scene's size, above which it is strictly
 /// convex: points of planar, developable and nearly such faces support outside of patches.
 constexpr double strict_curvature = 1e-6;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 struct Sample {
   int source = -1;

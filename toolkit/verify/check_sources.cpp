@@ -5,9 +5,7 @@
 namespace taut {
 namespace {
 
-using Patch = HullDocument::Patch;
-
-bool same_shape(const Patch& a, const Patch& b) {
+bool same_shape(const HullDocument::Patch& a, const HullDocument::Patch& b) {
   return a.rows == b.rows && a.columns == b.columns && a.points.size() == b.points.size() &&
          std::equal(a.domain.begin(), a.domain.end(), b.domain.begin(), b.domain.end(),
                     [](const Interval& i, const Interval& j) {
@@ -15,7 +13,7 @@ bool same_shape(const Patch& a, const Patch& b) {
                     });
 }
 
-double distance(const Patch& a, const Patch& b, double size) {
+double distance(const HullDocument::Patch& a, const HullDocument::Patch& b, double size) {
   double worst = 0;
   for (std::size_t i = 0; i < a.points.size(); ++i) {
     raise(worst, glm::distance(dvec3(a.points[i]), dvec3(b.points[i])) / size);

@@ -1,11 +1,8 @@
 #include "taut/verify/document_geometry.h"
 
+#include "taut/core/integers.h"
+
 namespace taut {
-namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-
-}  // namespace
 
 dvec2 parameters(const HullDocument::Contact& c) {
   return {c.uv.empty() ? 0 : c.uv[0], c.uv.size() < 2 ? 0 : c.uv[1]};

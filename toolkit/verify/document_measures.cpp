@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "taut/core/integers.h"
 #include "taut/verify/closest_on_curve.h"
 #include "taut/verify/integral.h"
 
@@ -25,8 +26,6 @@ constexpr std::size_t window(Fit fit) { return fit == Fit::best ? 6 : 4; }
 
 /// Cosine of the angle between neighbouring chords from which on there is a kink.
 constexpr double kink = 0.9;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// What is integrated over faces, in units of the diagonal: curvature is the mean one, and what
 /// creases have of it; length, that of outlines, is for comparison.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/core/integers.h"
 #include "taut/verify/ruling_solver.h"
 
 namespace taut {
@@ -14,8 +15,6 @@ constexpr double reach_of_free_end = 8;
 const HullDocument::Contact& contact_of(const HullDocument::Ruling& r, std::size_t k) {
   return k == 0 ? r.a : r.b;
 }
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// Places in the first Bezier patch that has both contacts.
 std::optional<std::array<SourcePlace, 2>> common_places(const DocumentGeometry& geometry,

@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
 
@@ -11,8 +13,6 @@ using DirectedCurve = HullDocument::DirectedCurve;
 
 /// Normals of a closed scroll's first and last ruling, which are one, differ by rounding only.
 constexpr double same_direction = 1e-9;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// The ends of all curves, numbered by place.
 class CurveEnds {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
@@ -27,8 +28,6 @@ constexpr double farthest_untold = 0.25;
 /// The same about a stretch that is neither a track nor along a side, of which only the ends are
 /// known: outlines are smooth between points whose normals differ by up to 0.1.
 constexpr double near_free_stretch = 0.02;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
@@ -44,8 +45,6 @@ constexpr int max_steps = 20;
 constexpr int max_unknowns = 6;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_unknowns, max_unknowns>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_unknowns, 1>;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 const dvec3& second(const SourceJet& j, int p, int q) {
   return p != q ? j.dxy : p == 0 ? j.dxx : j.dyy;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <random>
 
 #include "taut/bounds/support_query.h"
+#include "taut/core/integers.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
 #include "taut/verify/check_labels.h"
@@ -29,8 +29,6 @@ constexpr double same_point = 1e-9;
 /// Relative error of the mean width by support queries, times their number: that of the lattice is
 /// below a tenth of this even of polyhedra, whose support functions have kinks.
 constexpr double mean_width_spread = 1;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// A direction with the support value that the document claims for it, about the scene's centre.
 struct Claim {
@@ -187,7 +185,6 @@ void HullVerifier::check_structure() {
 
 /// The contact is on one of its patches, and tangent there.
 void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   double off = infinity;
   double slope = 0;
   for (const SourcePlace& place : geometry_.places(c)) {
@@ -206,7 +203,6 @@ void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n)
 /// The side runs from its contact to the next one and in the facet's plane.
 void HullVerifier::check_side(const HullDocument::Face& facet, std::size_t k) {
   constexpr int parts = 4;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const HullDocument::Side& side = facet.sides[k];
   if (side.source < 0) return;
   for (int i = 0; i <= parts; ++i) {
@@ -330,7 +326,7 @@ void HullVerifier::check_support(const std::vector<Claim>& claims) {
     Contact near;
     for (std::size_t i = begin; i < end; ++i) {
       if (!(glm::length(claims[i].n) > 0.5)) {
-        gap[i] = std::numeric_limits<double>::infinity();
+        gap[i] = infinity;
         continue;
       }
       const Support s = query(claims[i].n, near);
@@ -419,7 +415,7 @@ void HullVerifier::check_points() {
   }
   std::vector<Claim> claims;
   for (const dvec3& n : even_directions(options_.random_directions, options_.seed)) {
-    Claim claim{n, -std::numeric_limits<double>::infinity()};
+    Claim claim{n, -infinity};
     for (const dvec3& p : points) claim.h = std::max(claim.h, glm::dot(geometry_.local(p), n));
     claims.push_back(claim);
   }

@@ -22,7 +22,7 @@ struct ContainsOptions {
 };
 
 /// Points answered between two looks at the progress.
-constexpr std::size_t block_size = 16384;
+constexpr std::size_t points_a_block = 16384;
 
 const char* name_of(Location location) {
   switch (location) {
@@ -61,9 +61,9 @@ Answers answer(const Containment& containment, const std::vector<dvec3>& points,
   Answers answers;
   const Progress progress = console.progress();
   const double tolerance = containment.on_tolerance();
-  for (std::size_t begin = 0; begin < points.size(); begin += block_size) {
+  for (std::size_t begin = 0; begin < points.size(); begin += points_a_block) {
     progress.update("contains", double(begin) / double(points.size()));
-    const std::size_t count = std::min(block_size, points.size() - begin);
+    const std::size_t count = std::min(points_a_block, points.size() - begin);
     const std::span<const dvec3> block(points.data() + begin, count);
     const Stopwatch watch;
     const auto distances = containment.distances(block, &answers.took);

@@ -4,10 +4,8 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <string_view>
-#include <system_error>
 
 #include "standard_input.h"
 #include "taut/core/error.h"
@@ -19,8 +17,6 @@ namespace {
 /// Three numbers and a comment are shorter; what is longer is no such file.
 constexpr std::size_t max_line_length = 4096;
 
-std::string reason() { return std::error_code(errno, std::generic_category()).message(); }
-
 /// Reads lines from a file or standard input, which may be a terminal or a pipe: it wakes up now
 /// and then to see whether it should stop.
 class LineReader {
@@ -29,7 +25,7 @@ class LineReader {
       : name_(path == "-" ? standard_input : path),
         descriptor_(path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)),
         stop_(stop) {
-    if (descriptor_ < 0) throw IoError(name_ + ": cannot be read: " + reason());
+    if (descriptor_ < 0) throw IoError(name_ + ": cannot be read: " + system_reason());
   }
   ~LineReader() {
     if (descriptor_ != STDIN_FILENO) close(descriptor_);

@@ -2,12 +2,10 @@
 
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "exit_code.h"
 #include "taut/io/model/write_project.h"
@@ -19,8 +17,6 @@ namespace taut::tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string reason() { return std::error_code(errno, std::generic_category()).message(); }
 
 void check_extension(const std::string& file, const std::string& stdout_format) {
   if (file == "-" && stdout_format.empty()) {
@@ -57,12 +53,12 @@ void check_place(const std::string& file) {
   }
   const bool there = fs::exists(path, error);
   if (there && access(file.c_str(), W_OK) != 0) {
-    throw IoError(file + ": cannot be written: " + reason());
+    throw IoError(file + ": cannot be written: " + system_reason());
   }
   // A file is written beside its place first, a pipe or device in its place.
   const bool beside = !there || fs::is_regular_file(path, error);
   if (beside && access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw IoError(file + ": cannot be written: " + folder.string() + ": " + reason());
+    throw IoError(file + ": cannot be written: " + folder.string() + ": " + system_reason());
   }
 }
 
@@ -77,7 +73,7 @@ bool same_file(const std::string& a, const std::string& b) {
 void write_whole(std::FILE* file, const std::string& path, std::string_view text) {
   const bool written =
       std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
-  if (!written) throw IoError(path + ": cannot be written: " + reason());
+  if (!written) throw IoError(path + ": cannot be written: " + system_reason());
 }
 
 }  // namespace
@@ -113,7 +109,7 @@ void write_text(const std::string& path, std::string_view text) {
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"),
                                                                &std::fclose);
-    if (!file) throw IoError(path + ": cannot be written: " + reason());
+    if (!file) throw IoError(path + ": cannot be written: " + system_reason());
     write_whole(file.get(), path, text);
     return;
   }

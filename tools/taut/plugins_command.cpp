@@ -8,7 +8,7 @@
 namespace taut::tool {
 namespace {
 
-ExitCode run(Console& console) {
+ExitCode list_plugins(Console& console) {
   if (console.options().json) {
     Json list = Json::array();
     for (const Format& format : formats()) {
@@ -45,7 +45,7 @@ Command add_plugins(CLI::App& parent) {
                                 "Examples:\n"
                                 "  taut plugins\n"
                                 "  taut plugins --json");
-  command.run = run;
+  command.run = list_plugins;
   return command;
 }
 

@@ -5,9 +5,9 @@
 
 #include <array>
 #include <cerrno>
-#include <system_error>
 
 #include "taut/core/error.h"
+#include "text.h"
 
 namespace taut::tool {
 
@@ -20,8 +20,7 @@ std::size_t read_some(int descriptor, std::span<char> buffer, const std::string&
     const ssize_t count = read(descriptor, buffer.data(), buffer.size());
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count < 0) {
-      throw IoError(
-          name + ": cannot be read: " + std::error_code(errno, std::generic_category()).message());
+      throw IoError(name + ": cannot be read: " + system_reason());
     }
     return static_cast<std::size_t>(count);
   }

@@ -19,7 +19,7 @@ struct SupportOptions {
 };
 
 /// Directions answered between two looks at the progress, and by one thread at a time.
-constexpr std::size_t block_size = 16384;
+constexpr std::size_t directions_a_block = 16384;
 constexpr std::size_t grain = 256;
 
 /// How many parameters a contact has.
@@ -63,7 +63,7 @@ struct Counts {
 /// The answers for a block of directions, in order.
 std::vector<ModelSupport> answer(const Scene& scene, const std::vector<dvec3>& directions,
                                  std::size_t begin, int threads, Counts& counts) {
-  std::vector<ModelSupport> answers(std::min(block_size, directions.size() - begin));
+  std::vector<ModelSupport> answers(std::min(directions_a_block, directions.size() - begin));
   parallel_for(answers.size(), grain, threads, [&](std::size_t first, std::size_t last) {
     SupportQuery query(scene);
     for (std::size_t i = first; i < last; ++i) {
@@ -89,7 +89,7 @@ ExitCode run(const SupportOptions& options, Console& console) {
   Counts counts;
   Json answers = Json::array();
   double seconds = 0;
-  for (std::size_t begin = 0; begin < directions.size(); begin += block_size) {
+  for (std::size_t begin = 0; begin < directions.size(); begin += directions_a_block) {
     progress.update("support", double(begin) / double(directions.size()));
     const Stopwatch watch;
     const auto block = answer(scene, directions, begin, console.options().threads, counts);

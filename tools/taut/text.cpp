@@ -1,8 +1,10 @@
 #include "text.h"
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstdlib>
+#include <system_error>
 
 namespace taut::tool {
 
@@ -56,6 +58,8 @@ std::string one_line(std::string_view text) {
   }
   return line;
 }
+
+std::string system_reason() { return std::error_code(errno, std::generic_category()).message(); }
 
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.resize(width, ' ');

@@ -28,6 +28,9 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 /// The text as one line without control characters, fit for a terminal.
 std::string one_line(std::string_view text);
 
+/// What the system says of the last error of a call of it (errno).
+std::string system_reason();
+
 /// The text padded with spaces on the right to the width.
 std::string padded(std::string text, std::size_t width);
 

@@ -20,7 +20,7 @@
 namespace taut::tool {
 namespace {
 
-constexpr double default_relative = 1e-4;
+constexpr double default_mesh_relative = 1e-4;
 /// Of exact hulls, which claim to be so.
 constexpr double default_exact_relative = 1e-12;
 
@@ -33,7 +33,7 @@ struct VerifyArguments {
   std::optional<double> given_relative;
 
   double relative(bool exact) const {
-    return given_relative.value_or(exact ? default_exact_relative : default_relative);
+    return given_relative.value_or(exact ? default_exact_relative : default_mesh_relative);
   }
 };
 

@@ -10,7 +10,7 @@ namespace taut {
 namespace {
 
 /// Sine of the angle below which control points are in line.
-constexpr double least_sine = 1e-6;
+constexpr double in_line_sine = 1e-6;
 /// Slope below which pieces are level. A curve that leaves the plane by its third derivative ties
 /// with it in height over 1e-4 of the part and more: tiny pieces there are told by slopes alone.
 constexpr double least_slope = 1e-10;
@@ -39,7 +39,7 @@ struct FittedPlane {
     }
     const double length = glm::length(chord);
     const double area = glm::length(n);
-    n = area < least_sine * length * length ? dvec3(0.0) : unit(n);
+    n = area < in_line_sine * length * length ? dvec3(0.0) : unit(n);
     width = length > 0 ? area / length : 0;
   }
 

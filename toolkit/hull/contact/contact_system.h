@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 
 #include "taut/bounds/contact_geometry.h"
@@ -98,7 +97,6 @@ class ContactSystem {
   long iterations() const { return iterations_; }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr int step_limit = 20;
   static constexpr double step_bound = 0.7;
   static constexpr double converged_step = 1e-11;

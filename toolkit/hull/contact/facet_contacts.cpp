@@ -26,12 +26,12 @@ constexpr int exchange_limit = 16;
 constexpr double side_turn = 1e-6;
 
 /// Directions turned all around: any other contact is within 60 degrees of one of three.
-constexpr int all_around = 3;
+constexpr int turns_around = 3;
 
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_slack = 1e-9;
 
-bool in_range(const Contact& c) {
+bool in_range_with_slack(const Contact& c) {
   const auto within = [](double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; };
   return within(c.u) && within(c.v);
 }
@@ -205,8 +205,8 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
     result.push_back({towards, glm::dot(x, towards)});
   };
   const std::size_t count = f.points.size();
-  for (int k = 0; count == 1 && k < all_around; ++k) {
-    const double angle = 2 * std::numbers::pi * k / all_around;
+  for (int k = 0; count == 1 && k < turns_around; ++k) {
+    const double angle = 2 * std::numbers::pi * k / turns_around;
     add(f.points[0], std::cos(angle) * frame_[0] + std::sin(angle) * frame_[1]);
   }
   for (std::size_t k = 0; k < count; ++k) {
@@ -321,7 +321,7 @@ std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQu
     plane.count = 2;
     plane.add(geometry, *third);
     if (!system.solve(plane)) return std::nullopt;
-    if (!in_range(plane.contact[2])) {
+    if (!in_range_with_slack(plane.contact[2])) {
       // The contact belongs to a neighbouring element there.
       winner = plane.contact[2];
       near = plane.n;

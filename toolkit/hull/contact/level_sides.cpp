@@ -19,7 +19,7 @@ constexpr double level_ties = 8;
 
 /// How far from a border a contact may be that the direction does not tell from the border: where
 /// x . n departs with the third power, its slope with the second is rounding up to there.
-constexpr double level_reach = 1e-5;
+constexpr double border_reach = 1e-5;
 
 /// Roundings of coordinates in a second derivative: those of cubics are some 24 coordinates.
 constexpr double second_roundings = 8;
@@ -101,7 +101,7 @@ bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side sid
 
 std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Contact& c,
                                        const dvec3& n, double slope) {
-  const Contact border = moved_to_border(geometry, c, level_reach);
+  const Contact border = moved_to_border(geometry, c, border_reach);
   if (border.u == c.u && border.v == c.v) return std::nullopt;
   const bool level = is_level(geometry, border, n, std::max(slope, geometry.tie()));
   return level ? std::optional(border) : std::nullopt;
@@ -110,7 +110,7 @@ std::optional<Contact> at_level_border(const ContactGeometry& geometry, const Co
 std::optional<Contact> on_level_edge(const ContactGeometry& geometry, const Contact& c, Side side,
                                      const dvec3& n) {
   if (c.kind != SourceKind::face) return std::nullopt;
-  Contact border = moved_to_border(geometry, c, level_reach);
+  Contact border = moved_to_border(geometry, c, border_reach);
   if (border.u != c.u || border.v != c.v) {
     border = highest_along(geometry, border, n);
     if (!is_level(geometry, border, n, geometry.tie())) return std::nullopt;

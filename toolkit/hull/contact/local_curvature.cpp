@@ -8,8 +8,8 @@ namespace taut {
 namespace {
 
 /// Speeds and sines of the angle between tangents below this are those of a pole.
-constexpr double least_speed = coordinate_rounding;
-constexpr double least_sine = spurious_share;
+constexpr double least_pole_speed = coordinate_rounding;
+constexpr double least_pole_sine = spurious_share;
 
 /// Symmetric 2x2 matrix.
 struct Form {
@@ -39,8 +39,8 @@ std::optional<SurfaceCurvature> surface_curvature(const ContactGeometry& geometr
   const double speed = glm::length(j.Su);
   SurfaceCurvature local;
   local.area = glm::length(normal);
-  if (!(speed > least_speed) || !(local.area > least_sine * speed * glm::length(j.Sv)) ||
-      !(local.area > least_speed * speed)) {
+  if (!(speed > least_pole_speed) || !(local.area > least_pole_sine * speed * glm::length(j.Sv)) ||
+      !(local.area > least_pole_speed * speed)) {
     return std::nullopt;
   }
   local.x = j.S;
@@ -75,7 +75,7 @@ std::optional<SurfaceCurvature> surface_curvature(const ContactGeometry& geometr
 std::optional<CurveCurvature> curve_curvature(const ContactGeometry& geometry, const Contact& c) {
   const CurveJet j = geometry.curve_jet(c);
   const double speed = glm::length(j.ct);
-  if (!(speed > least_speed)) return std::nullopt;
+  if (!(speed > least_pole_speed)) return std::nullopt;
   CurveCurvature local;
   local.x = j.c;
   local.along = j.ct / speed;

@@ -14,9 +14,9 @@ namespace taut {
 namespace {
 
 /// Places along a side in which a direction is compared.
-constexpr int samples_along = 64;
+constexpr int compared_along = 64;
 
-double sample(int k) { return double(k) / samples_along; }
+double compared(int k) { return double(k) / compared_along; }
 
 /// The determinant of the second form along Su x Sv itself: a polynomial, where the patch is one.
 double determinant_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
@@ -52,7 +52,7 @@ struct Shear {
 std::vector<Shear> possible_shears(const ContactGeometry& geometry, const Contact& patch,
                                    Side side) {
   // Away from the ends, the middle and the quarters, where symmetric models have their events.
-  constexpr std::array<double, 2> places = {21.0 / samples_along, 43.0 / samples_along};
+  constexpr std::array<double, 2> places = {21.0 / compared_along, 43.0 / compared_along};
   std::array<std::array<double, 2>, 2> shears{};
   for (std::size_t i = 0; i < 2; ++i) {
     const SideForm form(geometry, patch, side, places[i]);
@@ -78,10 +78,10 @@ std::optional<Shear> level_shear(const ContactGeometry& geometry, const Contact&
   // Roots of quadratics are extrapolated.
   constexpr double noise_factor = 64;
   const auto is_level = [&](const Shear& shear) {
-    for (int k = 0; k <= samples_along; ++k) {
-      const double s = shear(sample(k));
+    for (int k = 0; k <= compared_along; ++k) {
+      const double s = shear(compared(k));
       const double noise = (1 + s * s) * noise_factor * geometry.rounding();
-      if (!(std::abs(SideForm(geometry, patch, side, sample(k)).level(s)) <= noise)) return false;
+      if (!(std::abs(SideForm(geometry, patch, side, compared(k)).level(s)) <= noise)) return false;
     }
     return true;
   };

@@ -14,7 +14,7 @@ constexpr int dip_limit = 40;
 /// What stays below this everywhere vanishes.
 constexpr double least_extent = 1e-9;
 /// How far rounding may move a root off the end at which it is.
-constexpr double parameter_slack = 1e-11;
+constexpr double root_slack = 1e-11;
 
 double sample(int k) { return double(k) / samples_along; }
 
@@ -73,11 +73,11 @@ double bisected(const SideFunction& f, double a, double b, int steps) {
   return 0.5 * (a + b);
 }
 
-bool is_within(double root) { return root >= -parameter_slack && root <= 1 + parameter_slack; }
+bool is_within(double root) { return root >= -root_slack && root <= 1 + root_slack; }
 
 double placed(double root) {
-  if (root < parameter_slack) return 0;
-  return root > 1 - parameter_slack ? 1 : root;
+  if (root < root_slack) return 0;
+  return root > 1 - root_slack ? 1 : root;
 }
 
 }  // namespace taut

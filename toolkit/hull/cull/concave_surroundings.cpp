@@ -15,7 +15,7 @@ namespace {
 /// paraboloid is as high as the cell's tangent planes.
 constexpr std::array<double, 3> disc_radii = {2, 3, 5};
 /// By how much larger discs are tried, one after the other, to be of use to other cells.
-constexpr double growth = 2;
+constexpr double disc_growth = 2;
 /// Caps over a patch that are looked at, the latest.
 constexpr std::size_t latest_caps = 32;
 /// Where a cap reaches so many of a cell's radii beyond it in vain, others will not do.
@@ -138,7 +138,7 @@ bool ConcaveSurroundings::look_about(const Subject& cell) {
     on = grows && is_above_others(cell, *largest);
   }
   if (!on) return false;
-  for (; grows; grows = look(radius)) radius *= growth;
+  for (; grows; grows = look(radius)) radius *= disc_growth;
   keep(cell.part, std::move(*largest));
   return true;
 }

@@ -31,7 +31,7 @@ const std::array<dvec2, 8> spokes = {
 /// Points of a rectangle that are tried before it is divided.
 const std::array<dvec2, 5> probes = {dvec2(0.5, 0.5), {0, 0}, {0, 1}, {1, 0}, {1, 1}};
 /// Levels of a patch's tree.
-constexpr int level_limit = 80;
+constexpr int tree_levels = 80;
 /// Quarterings of a cell of which the parts are looked for in a cap.
 constexpr int cover_depth = 4;
 
@@ -224,7 +224,7 @@ class Walk {
     const bool inside = farthest(net) <= radius_;
     const double size = width(net);
     const bool small = inside || size <= coarse * radius_ || are_apart(net, inner * radius_);
-    const Found halves = surface.level(node) < level_limit ? divided : failed;
+    const Found halves = surface.level(node) < tree_levels ? divided : failed;
     if (!small) return halves;
     if (surface.is_concave(node, axis_)) {
       if (pieces_.size() == piece_limit) return failed;

@@ -488,7 +488,7 @@ class PatchCulling {
 };
 
 /// A patch of an instance.
-struct Place {
+struct CellPlace {
   int instance;
   int root;
 };
@@ -590,7 +590,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   Culling result;
   result.levels.resize(std::size_t(options.levels) + 1);
   const Scene::Content& content = scene.content();
-  std::vector<Place> places;
+  std::vector<CellPlace> places;
   for (const int i : content.distinct_instances) {
     const int roots = map.root_count(content.instances[std::size_t(i)].part);
     for (int root = 0; root < roots; ++root) places.push_back({i, root});

@@ -26,7 +26,7 @@ enum Quantity : std::size_t {
   vector_area = 15,     ///< int n dA
   quantities = 18
 };
-using Sample = std::array<double, quantities>;
+using Quantities = std::array<double, quantities>;
 using Sums = Integrals<quantities>;
 
 /// Relative accuracy of every single rule: what contacts solved to 1e-13 can give.
@@ -39,7 +39,7 @@ constexpr double curvature_rounding = 16 * rounding_unit;
 constexpr int few_nodes = 6;
 
 /// Adds w times the area element of size dA with unit or any normal, n dA = A.
-void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double w) {
+void add_element(Quantities& sum, const dvec3& x, const dvec3& A, double dA, double w) {
   const double flux = w * glm::dot(x, A);
   sum[volume] += flux / 3;
   sum[area] += w * dA;
@@ -56,8 +56,8 @@ void add_element(Sample& sum, const dvec3& x, const dvec3& A, double dA, double 
 /// Tolerances relative to the largest component of each kind, but not below the rounding of what
 /// they are made of: lengths in the scene's frame are about one at most, derivatives are rounded as
 /// these are, and areas have those of the region's size as factors.
-Sample tolerances(const Sample& magnitude) {
-  Sample result{};
+Quantities tolerances(const Quantities& magnitude) {
+  Quantities result{};
   const auto largest = [&](std::size_t from, std::size_t to) {
     double m = 0;
     for (std::size_t k = from; k < to; ++k) m = std::max(m, magnitude[k]);
@@ -82,7 +82,7 @@ Sample tolerances(const Sample& magnitude) {
 
 /// Integrands over a patch per du dv, about the origin; the outward normal is along sign * (Su x
 /// Sv).
-void add_patch(const ContactJet& j, const dvec3& origin, int sign, Sample& sum) {
+void add_patch(const ContactJet& j, const dvec3& origin, int sign, Quantities& sum) {
   const dvec3 N = double(sign) * glm::cross(j.dx[0], j.dx[1]);
   const double length = glm::length(N);
   add_element(sum, j.x - origin, N, length, 1);
@@ -133,12 +133,12 @@ class Summation {
   void add_polygon(const HullFace& face);
   void add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side);
 
-  void add_scroll(const MovingRuling& m, Sample& sum) const;
+  void add_scroll(const MovingRuling& m, Quantities& sum) const;
   double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
-  void add_to_line(const GreenRegion& region, const dvec2& p, double at, Sample& sample) const;
+  void add_to_line(const GreenRegion& region, const dvec2& p, double at, Quantities& sample) const;
   bool is_plain(const GreenRegion& region, const TrimStretch& stretch) const;
   void add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate, double weight,
-                Sample& sum, bool plain = false);
+                Quantities& sum, bool plain = false);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -165,7 +165,7 @@ void Summation::find_scrolls() {
 
 /// The integrands on the line from the base to p, where the inner parameter is `at`.
 void Summation::add_to_line(const GreenRegion& region, const dvec2& p, double at,
-                            Sample& sample) const {
+                            Quantities& sample) const {
   const Contact c = region.inner == 0 ? region.contact(at, p.y) : region.contact(p.x, at);
   add_patch(geometry_.jet(c), origin_, region.region->sign, sample);
 }
@@ -175,7 +175,7 @@ void Summation::add_to_line(const GreenRegion& region, const dvec2& p, double at
 bool Summation::is_plain(const GreenRegion& region, const TrimStretch& stretch) const {
   const dvec2 p = on_side(stretch.side, 0.5 * (stretch.from + stretch.to));
   int samples = 0;
-  const auto f = [&](double at, double, Sample& sample) {
+  const auto f = [&](double at, double, Quantities& sample) {
     ++samples;
     add_to_line(region, p, at, sample);
   };
@@ -187,13 +187,13 @@ bool Summation::is_plain(const GreenRegion& region, const TrimStretch& stretch) 
 /// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
 /// of f from the base to u along u, or that of -G du, G the same along v.
 void Summation::add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate,
-                         double weight, Sample& sum, bool plain) {
+                         double weight, Quantities& sum, bool plain) {
   const int inner = region.inner;
   const double end = p[inner];
   const double across = inner == 0 ? rate.y : -rate.x;
   if (end == region.base || across == 0) return;
   Sums line;
-  const auto f = [&](double at, double, Sample& sample) { add_to_line(region, p, at, sample); };
+  const auto f = [&](double at, double, Quantities& sample) { add_to_line(region, p, at, sample); };
   if (plain) {
     integrate<few_nodes>(f, tolerances, region.base, end, line);
   } else if (std::abs(end - region.base) < 0.25) {
@@ -210,7 +210,7 @@ void Summation::add_line(const GreenRegion& region, const dvec2& p, const dvec2&
 /// The points a + r (b - a) of the rulings, with the area element n . (dX/ds x (b - a)) dr ds,
 /// which is positive where contact 0 lies to the right of n's path. Three nodes in r are exact for
 /// its fourth degree. Curvature is half the length times the angle that n turns by.
-void Summation::add_scroll(const MovingRuling& m, Sample& sum) const {
+void Summation::add_scroll(const MovingRuling& m, Quantities& sum) const {
   const dvec3 a = m.at.jet[0].x - origin_;
   const dvec3 along = -m.at.d();
   const double size0 = glm::dot(m.at.n, glm::cross(m.dx[0], along));
@@ -264,7 +264,7 @@ void Summation::add_piece(std::size_t arc, std::size_t piece) {
   for (std::size_t k = 1; k < rulings.size(); ++k) {
     const RulingsBetween between(system_, rulings[k - 1], rulings[k]);
     if (between.empty()) continue;
-    const auto f = [&](double s, double weight, Sample& sample) {
+    const auto f = [&](double s, double weight, Quantities& sample) {
       // Where no ruling is found there is none that is exact; the accuracy tells what it costs.
       const auto exact = between.is_smoother() ? std::nullopt : between(s);
       const MovingRuling m = exact ? *exact : between.interpolated(s);
@@ -307,7 +307,7 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
   const double sense = stretch.to < stretch.from ? -1 : 1;
   if (of_line && !edge && on_side(stretch.side, 0)[region.inner] == region.base) return;
   const bool plain = of_line && is_plain(region, stretch);
-  const auto f = [&](double t, double weight, Sample& sample) {
+  const auto f = [&](double t, double weight, Quantities& sample) {
     const dvec2 p = on_side(stretch.side, t);
     if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample, plain);
     if (!edge) return;
@@ -340,7 +340,7 @@ void Summation::add_side(const HullFace& face, const dvec3& begin, const EdgeStr
   const dvec3 tip = begin - origin_;
   const double sense = side.to < side.from ? -1 : 1;
   const double offset = std::sqrt(1.0 / 12);
-  const auto f = [&](double t, double, Sample& sample) {
+  const auto f = [&](double t, double, Quantities& sample) {
     const ContactJet j = geometry_.jet({side.instance, SourceKind::edge, side.piece, t, 0});
     const dvec3 ray = j.x - begin;
     const dvec3 element = glm::cross(ray, j.dx[0]);

@@ -17,12 +17,12 @@ constexpr double largest_turn = 1.5;
 /// Parts about a cusp shrink with the square of their parameters' interval.
 constexpr int deepest_cut = 40;
 
-dvec2 euclidean(const dvec3& p) { return dvec2(p) / p.z; }
+dvec2 plane_point(const dvec3& p) { return dvec2(p) / p.z; }
 
-std::vector<dvec2> euclidean(const std::vector<dvec3>& points) {
+std::vector<dvec2> plane_point(const std::vector<dvec3>& points) {
   std::vector<dvec2> result;
   result.reserve(points.size());
-  for (const dvec3& p : points) result.push_back(euclidean(p));
+  for (const dvec3& p : points) result.push_back(plane_point(p));
   return result;
 }
 
@@ -101,7 +101,7 @@ PlanarJet planar_jet(const std::vector<dvec3>& curve, double t) {
   }
   PlanarJet jet;
   const double w = b[0].z;
-  jet.c = euclidean(b[0]);
+  jet.c = plane_point(b[0]);
   jet.ct = (dvec2(Pt) - Pt.z * jet.c) / w;
   jet.ctt = (dvec2(Ptt) - Ptt.z * jet.c - 2 * Pt.z * jet.ct) / w;
   return jet;
@@ -110,7 +110,7 @@ PlanarJet planar_jet(const std::vector<dvec3>& curve, double t) {
 std::vector<dvec2> part_polygon(const std::vector<dvec3>& curve, double from, double to) {
   if (from > to) std::swap(from, to);
   const std::vector<dvec3> lower = parts(curve, to).first;
-  return euclidean(parts(lower, to > 0 ? from / to : 0).second);
+  return plane_point(parts(lower, to > 0 ? from / to : 0).second);
 }
 
 PlanarArcs::PlanarArcs(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves)
@@ -133,7 +133,7 @@ PlanarArcs::PlanarArcs(std::span<const dvec2> points, std::span<const std::vecto
 void PlanarArcs::add_curve(int number) {
   const std::vector<dvec3>& points = curve(number);
   const int first = int(arcs_.size());
-  std::vector<dvec2> polygon = euclidean(points);
+  std::vector<dvec2> polygon = plane_point(points);
   if (!is_straight(polygon)) {
     cut(number, points, {}, 0);
   } else {
@@ -151,7 +151,7 @@ void PlanarArcs::add_curve(int number) {
 
 void PlanarArcs::cut(int number, const std::vector<dvec3>& part, Interval t, int depth) {
   ConvexArc arc;
-  arc.polygon = euclidean(part);
+  arc.polygon = plane_point(part);
   const std::vector<dvec2> sides = polygon_sides(arc.polygon);
   const Turning turning(sides);
   const bool convex = turning.angle < largest_turn && !(turning.left && turning.right);

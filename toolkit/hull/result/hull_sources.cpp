@@ -1,11 +1,8 @@
 #include "taut/hull/result/hull_sources.h"
 
+#include "taut/core/integers.h"
+
 namespace taut {
-namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
-
-}  // namespace
 
 HullDocument::Source HullSources::source(int id) const {
   const Source own = model_.source(id);

@@ -10,7 +10,7 @@ namespace taut {
 namespace {
 
 /// Parameters that agree to this are the same place of an edge.
-constexpr double same_parameter = 1e-7;
+constexpr double same_edge_parameter = 1e-7;
 /// Halvings with which a ruling along the edge is found.
 constexpr int halving_limit = 60;
 
@@ -55,7 +55,7 @@ void EdgeIncidence::add_arc(const ContactGeometry& geometry, const SeparatingArc
       };
       Edge& own = edges_[{first.instance, first.element}];
       const auto add = [&](double from, double to, double sense) {
-        if (std::abs(to - from) < same_parameter) return;
+        if (std::abs(to - from) < same_edge_parameter) return;
         own.intervals.push_back({std::min(from, to),
                                  std::max(from, to),
                                  sense > 0,
@@ -138,7 +138,7 @@ std::vector<double> EdgeIncidence::Edge::ends() const {
   std::sort(all.begin(), all.end());
   std::vector<double> distinct;
   for (const double t : all) {
-    if (distinct.empty() || t - distinct.back() > same_parameter) distinct.push_back(t);
+    if (distinct.empty() || t - distinct.back() > same_edge_parameter) distinct.push_back(t);
   }
   return distinct;
 }
@@ -166,7 +166,8 @@ std::vector<double> EdgeIncidence::breaks(int instance, int piece, bool reversed
   if (found == edges_.end()) return result;
   for (const double end : found->second.ends()) {
     const double t = reversed ? 1 - end : end;
-    if (t > std::min(from, to) + same_parameter && t < std::max(from, to) - same_parameter) {
+    if (t > std::min(from, to) + same_edge_parameter &&
+        t < std::max(from, to) - same_edge_parameter) {
       result.push_back(t);
     }
   }

@@ -13,7 +13,7 @@ namespace taut {
 namespace {
 
 /// Parameters that agree to this are the same place of a border.
-constexpr double same_parameter = 1e-9;
+constexpr double same_border_parameter = 1e-9;
 
 /// Gauss curvature, in the scene's frame, below which a surface is flat or developable.
 constexpr double flat_curvature = 1e-10;
@@ -42,14 +42,14 @@ struct OrientedPatch {
 };
 
 /// Position around the unit square, counter-clockwise from (0, 0), in [0, 4); that of a corner if
-/// it is there to within same_parameter.
+/// it is there to within same_border_parameter.
 double position(const dvec2& p) {
   const std::array<double, 4> off = {p.y, 1 - p.x, 1 - p.y, p.x};
   const auto side = std::min_element(off.begin(), off.end()) - off.begin();
   const std::array<double, 4> along = {p.x, p.y, 1 - p.x, 1 - p.y};
   const double at = double(side) + std::clamp(along[std::size_t(side)], 0.0, 1.0);
   const double corner = std::round(at);
-  return std::fmod(std::abs(at - corner) < same_parameter ? corner : at, 4.0);
+  return std::fmod(std::abs(at - corner) < same_border_parameter ? corner : at, 4.0);
 }
 
 /// Gives meetings that are in one place the same position: where curves touch the border in a
@@ -59,16 +59,16 @@ void join_places(std::vector<OrientedPatch::Meeting>& meetings) {
             [](const auto& a, const auto& b) { return a.position < b.position; });
   for (std::size_t k = 1; k < meetings.size(); ++k) {
     const double before = meetings[k - 1].position;
-    if (meetings[k].position - before < same_parameter) meetings[k].position = before;
+    if (meetings[k].position - before < same_border_parameter) meetings[k].position = before;
   }
 }
 
-constexpr std::array<Side, 4> around = {Side::v0, Side::u1, Side::v1, Side::u0};
+constexpr std::array<Side, 4> sides_around = {Side::v0, Side::u1, Side::v1, Side::u0};
 
 /// The border's stretch between two positions of one side, in either direction.
 TrimStretch on_border(int side, double from, double to) {
   TrimStretch s;
-  s.side = around[std::size_t(side)];
+  s.side = sides_around[std::size_t(side)];
   s.from = side < 2 ? from : 1 - from;
   s.to = side < 2 ? to : 1 - to;
   return s;
@@ -174,7 +174,7 @@ void Trimmer::meet(int trim_arc, bool arrives) {
   const TrimArc& s = trim_arcs_[std::size_t(trim_arc)];
   const dvec2& p = arrives ? s.to : s.from;
   const double off = std::min({p.x, 1 - p.x, p.y, 1 - p.y});
-  if (off > same_parameter) fail(s.n, "a trim curve ends inside a patch");
+  if (off > same_border_parameter) fail(s.n, "a trim curve ends inside a patch");
   patches_[std::size_t(s.patch)].meetings.push_back({position(p), trim_arc, arrives});
 }
 
@@ -201,7 +201,7 @@ void Trimmer::link() {
         if (trim_arc >= 0 && next >= 0) {
           TrimArc& s = trim_arcs_[std::size_t(trim_arc)];
           const TrimArc& t = trim_arcs_[std::size_t(next)];
-          if (s.patch == t.patch && glm::distance(s.to, t.from) < same_parameter) {
+          if (s.patch == t.patch && glm::distance(s.to, t.from) < same_border_parameter) {
             s.next = next;
             continue;
           }
@@ -218,9 +218,9 @@ void Trimmer::add_border(const OrientedPatch& oriented, double from, double to, 
   const double sense = oriented.sign;
   double length = sense * (to - from);
   if (length < 0) length += 4;
-  if (length < same_parameter || length > 4 - same_parameter) return;
+  if (length < same_border_parameter || length > 4 - same_border_parameter) return;
   double at = from;
-  while (length > same_parameter) {
+  while (length > same_border_parameter) {
     int side = int(std::floor(at));
     double local = at - side;
     if (sense < 0 && local == 0) {

@@ -6,7 +6,7 @@ namespace taut {
 namespace {
 
 /// Two patches agree on where their common border leaves the hull to within this.
-constexpr double same_parameter = 1e-6;
+constexpr double same_leaving_parameter = 1e-6;
 
 Contact contact(const TrimRegion& r, const dvec2& at) {
   return {r.instance, SourceKind::face, r.patch, at.x, at.y};
@@ -149,8 +149,8 @@ int TrimStretches::find_twin(int stretch, const std::vector<int>& candidates) co
   for (const int other : candidates) {
     if (other == stretch || twin(other) >= 0) continue;
     const TrimStretch& t = (*this)[other];
-    if (std::abs(over(s.from) - t.to) < same_parameter &&
-        std::abs(over(s.to) - t.from) < same_parameter) {
+    if (std::abs(over(s.from) - t.to) < same_leaving_parameter &&
+        std::abs(over(s.to) - t.from) < same_leaving_parameter) {
       return other;
     }
   }

@@ -36,7 +36,7 @@ constexpr double border_step = 1e-7;
 /// grows where it turns by less than the other.
 constexpr double turn_limit = 0.97;
 constexpr double turn_small = 0.995;
-constexpr double growth = 1.6;
+constexpr double step_growth = 1.6;
 /// A plane may lie behind the last ruling by this much: a third contact that surpasses the two by
 /// less than geometry_.tie() went unseen.
 constexpr double plane_slack = 1e-6;
@@ -774,7 +774,7 @@ Trace::Pace Trace::advance() {
     home_ruling_ = arc_.pieces.back().rulings.size() - 1;
   }
   point_.tangent = *turned;
-  step_ = std::min(longest_step, cosine > turn_small ? growth * step_ : step_);
+  step_ = std::min(longest_step, cosine > turn_small ? step_growth * step_ : step_);
   return Pace::on;
 }
 

@@ -6,7 +6,7 @@ namespace taut {
 namespace {
 
 /// Contacts within this of a side, in parameters, are on it.
-constexpr double on_border = 1e-9;
+constexpr double border_distance = 1e-9;
 
 Interval between(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -57,7 +57,8 @@ void CellCrossings::add(int instance, int patch, const Rectangle& rectangle) {
       geometry_.patch({instance, SourceKind::face, patch, 0, 0}).borders;
   for (const Side side : all_sides) {
     const Interval& across = along_v(side) ? rectangle.u : rectangle.v;
-    if (at_upper_end(side) ? across.upper < 1 - on_border : across.lower > on_border) continue;
+    if (at_upper_end(side) ? across.upper < 1 - border_distance : across.lower > border_distance)
+      continue;
     const double end = at_upper_end(side) ? 1 : 0;
     const Border& border = borders[std::size_t(side)];
     if (border.kind == BorderKind::collapsed) {

@@ -15,10 +15,10 @@ namespace {
 constexpr double border_slack = 1e-9;
 /// Rounding turns the way of a contact by no more than this, as a slope; sides of patches have no
 /// less than this length.
-constexpr double turn_limit = 1e-2;
+constexpr double most_slope_of_rounding = 1e-2;
 constexpr double least_size = 1e-7;
 /// How far contacts may leave their elements by rounding.
-constexpr double parameter_slack = 1e-9;
+constexpr double place_slack = 1e-9;
 /// A direction that turns by less, relative to the motion of (n, x_0, x_1), stands still.
 constexpr double still_turn = 1e-6;
 /// Where rulings are looked for between the last one and a free end.
@@ -86,7 +86,7 @@ double CurvePoint::rounding_across(std::size_t contact, Side side) const {
   const ContactJet& j = at.jet[contact];
   const double second = std::abs(glm::dot(along_v(side) ? j.dxx : j.dyy, at.n));
   const double rounding = geometry_.rounding();
-  return rounding < turn_limit * second ? rounding / second : turn_limit;
+  return rounding < most_slope_of_rounding * second ? rounding / second : most_slope_of_rounding;
 }
 
 /// The contact is on the side of its patch and moves along it, to within rounding.
@@ -180,7 +180,7 @@ void CurvePoint::head_into(std::size_t contact) {
 }
 
 double CurvePoint::border_distance() const {
-  return std::max(parameter_slack, 2 * geometry_.rounding());
+  return std::max(place_slack, 2 * geometry_.rounding());
 }
 
 }  // namespace taut

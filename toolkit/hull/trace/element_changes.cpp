@@ -13,7 +13,7 @@ namespace {
 constexpr double margin_slack_limit = 1e-9;
 constexpr double margin_noise_limit = 300;
 /// Sine below which an edge leaves a vertex in line with another vertex.
-constexpr double in_line_sine = 1e-9;
+constexpr double leaving_sine = 1e-9;
 /// How far behind a step's start rounding may put an exit at which it begins.
 constexpr double behind_limit = 1e-7;
 
@@ -47,7 +47,7 @@ bool ElementChanges::stays_level(int contact, const ContactExit& exit) const {
     return false;
   }
   const dvec3 away = exit_margin(geometry_, s, contact, exit).n;
-  return glm::length(glm::cross(away, unit(s.d()))) < in_line_sine;
+  return glm::length(glm::cross(away, unit(s.d()))) < leaving_sine;
 }
 
 std::optional<ElementChange> ElementChanges::solved(const CommonSupport& next, double share,

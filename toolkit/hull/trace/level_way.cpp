@@ -12,7 +12,7 @@ namespace taut {
 namespace {
 
 /// Contacts that are farther apart are told by other means than their heights.
-constexpr double longest_way = 2e-3;
+constexpr double longest_level_way = 2e-3;
 /// Contacts nearer to each other than this are one.
 constexpr double shortest_way = 1e-7;
 /// Elements in a row.
@@ -139,7 +139,7 @@ bool is_level(const ContactGeometry& geometry, const Contact& a, const Contact& 
 std::optional<std::vector<WayCrossing>> level_way(const ContactGeometry& geometry, const Contact& a,
                                                   const Contact& b, const dvec3& n) {
   const dvec3 apart = geometry.point(a) - geometry.point(b);
-  if (a.instance != b.instance || glm::length(apart) > longest_way) return std::nullopt;
+  if (a.instance != b.instance || glm::length(apart) > longest_level_way) return std::nullopt;
   std::optional<std::vector<WayCrossing>> crossings = way(geometry, a, b);
   if (!crossings) {
     crossings = way(geometry, b, a);
@@ -158,7 +158,7 @@ std::optional<LevelStep> tied_ahead(const ContactGeometry& geometry, const Conta
   const dvec3 along = unit(rate.x * j.dx[0] + rate.y * j.dx[1]);
   std::optional<LevelStep> best;
   double highest = 0;
-  for (double reach = shortest_way; reach < longest_way; reach *= 2) {
+  for (double reach = shortest_way; reach < longest_level_way; reach *= 2) {
     const std::optional<Contact> from = walked(geometry, c, j.x + reach * along);
     if (!from) break;
     const std::optional<Contact> top = climbed(geometry, *from, n);

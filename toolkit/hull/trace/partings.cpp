@@ -16,7 +16,7 @@ namespace {
 
 /// Share of its motion by which a contact may miss the first order of it.
 constexpr double first_order = 0.2;
-constexpr int newton_limit = 60;
+constexpr int parting_newton_limit = 60;
 /// Values of two contacts that differ by so little are equal.
 constexpr double parting_tie = 1e-15;
 
@@ -89,7 +89,7 @@ std::optional<CommonSupport> parting(const ContactGeometry& geometry, const Supp
   double lower = 0;
   double upper = 1;
   double t = 0.5;
-  for (int k = 0; k < newton_limit; ++k) {
+  for (int k = 0; k < parting_newton_limit; ++k) {
     const dvec3 mixed = (1 - t) * a.n + t * b.n;
     s.n = glm::normalize(mixed);
     // From where they were seen, lest they stay with a branch that an earlier step led to.

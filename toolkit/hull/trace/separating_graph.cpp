@@ -57,7 +57,7 @@ constexpr long jets_a_place = 2'000;
 /// worst models that came out whole: where they cost more there is next to nothing that parts
 /// contacts from each other.
 constexpr long cells_before_rate = 1'000'000;
-constexpr long cells_a_query = 400;
+constexpr long search_cells_a_query = 400;
 /// Culled cells, at least, the sides of which are looked at together.
 constexpr std::ptrdiff_t cells_at_a_time = 128;
 constexpr int depth_limit = 40;
@@ -184,7 +184,7 @@ bool GraphTracer::given_up() {
   const long queries = query_.queries() - queries_before_;
   const long jets = geometry_.evaluations() - jets_before_;
   exhausted_ = cells > std::min(cells_of_search + cells_a_place * places_,
-                                cells_before_rate + cells_a_query * queries) ||
+                                cells_before_rate + search_cells_a_query * queries) ||
                jets > jets_of_search + jets_a_place * places_;
   if (exhausted_) {
     built_.fail(dvec3(0.0),

@@ -19,17 +19,17 @@ namespace taut {
 namespace {
 
 /// Halvings of a side after which a curve that Newton's method does not find is given up.
-constexpr int halving_limit = 36;
+constexpr int side_halvings = 36;
 
-struct SupportSample {
+struct SeedSample {
   bool supports = false;
   dvec3 n = dvec3(0.0);  ///< zero where the patch has no normal
   Contact winner;
 };
 
 /// Whether the patch's point supports the model in the direction of its normal, or what does.
-SupportSample looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c,
-                     int sign) {
+SeedSample looked(const ContactGeometry& geometry, SupportQuery& query, const Contact& c,
+                  int sign) {
   const dvec3 n = double(sign) * unit_normal(geometry, c);
   if (n == dvec3(0.0)) return {};
   const Support top = query(n, c);
@@ -46,7 +46,7 @@ class Lookout {
         query_(query),
         diameter_(geometry.scene().frame().length_to_frame(geometry.scene().diagonal())) {}
 
-  SupportSample operator()(const Contact& c, int sign) {
+  SeedSample operator()(const Contact& c, int sign) {
     const dvec3 n = double(sign) * unit_normal(geometry_, c);
     if (n == dvec3(0.0)) return {};
     const dvec3 x = geometry_.point(c);
@@ -91,7 +91,7 @@ class Lookout {
   std::unordered_map<Cube, Known, Hash> known_;
 };
 
-bool in_range(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v <= 1; }
+bool in_unit_square(const Contact& c) { return c.u >= 0 && c.u <= 1 && c.v >= 0 && c.v <= 1; }
 
 }  // namespace
 
@@ -99,7 +99,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
                                            std::span<const CulledCell> cells) {
   using Place = std::tuple<int, double, double>;
   // Of the cells of one patch.
-  std::map<Place, SupportSample> support_samples;
+  std::map<Place, SeedSample> support_samples;
   std::set<std::pair<Place, Place>> sides;
   std::pair<int, int> patch(-1, -1);
   Lookout look(geometry, query);
@@ -122,7 +122,7 @@ std::vector<SupportChange> support_changes(const ContactGeometry& geometry, Supp
       if (!(sign > 0 ? cell.signs.plus : cell.signs.minus)) continue;
       std::array<Contact, 4> contacts;
       std::array<Place, 4> places;
-      std::array<const SupportSample*, 4> seen{};
+      std::array<const SeedSample*, 4> seen{};
       for (std::size_t k = 0; k < 4; ++k) {
         const dvec2& at = corners[k];
         contacts[k] = {cell.instance, SourceKind::face, cell.patch, at.x, at.y};
@@ -156,10 +156,10 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
   const auto fixed = change.on.u == change.off.u ? &Contact::u : &Contact::v;
   const auto free = change.on.u == change.off.u ? &Contact::v : &Contact::u;
   const auto [low, high] = std::minmax(change.on.*free, change.off.*free);
-  for (int k = 0; k < halving_limit; ++k) {
+  for (int k = 0; k < side_halvings; ++k) {
     Contact middle = on;
     middle.*free = 0.5 * (on.*free + beyond.off.*free);
-    const SupportSample there = looked(geometry, query, middle, change.sign);
+    const SeedSample there = looked(geometry, query, middle, change.sign);
     if (there.n == dvec3(0.0)) return std::nullopt;
     if (there.supports) {
       on = middle;
@@ -185,13 +185,13 @@ std::optional<CommonSupport> separating_seed(const ContactSystem& system, Suppor
     // The other contact may have moved into a neighbouring element.
     const std::optional<Contact> other = climbed(geometry, seed.contact[1], seed.n);
     if (!other) continue;
-    if (!same_element(*other, seed.contact[1]) || !in_range(seed.contact[1])) {
+    if (!same_element(*other, seed.contact[1]) || !in_unit_square(seed.contact[1])) {
       seed.contact[1] = *other;
       seed.evaluate(geometry);
       if (!solved()) continue;
     }
-    if (seed.contact[0].*free < low || seed.contact[0].*free > high || !in_range(seed.contact[1]) ||
-        glm::length(seed.d()) < least ||
+    if (seed.contact[0].*free < low || seed.contact[0].*free > high ||
+        !in_unit_square(seed.contact[1]) || glm::length(seed.d()) < least ||
         query(seed.n, seed.contact[0]).h > glm::dot(seed.jet[0].x, seed.n) + geometry.tie()) {
       continue;
     }

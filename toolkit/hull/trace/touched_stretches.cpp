@@ -15,7 +15,7 @@ namespace taut {
 namespace {
 
 /// Intervals of each side whose ends are compared.
-constexpr int samples_along = 64;
+constexpr int touch_samples = 64;
 /// Normals along an edge that differ by less are one.
 constexpr double same_normal = 1e-10;
 /// Second derivatives across an edge below so many roundings vanish.
@@ -30,8 +30,8 @@ constexpr double turn_beside = 0.01;
 constexpr int most_climbs = 20;
 /// Of the sides' places, so many are between two that are asked for what supports.
 constexpr std::size_t places_queried = 16;
-/// Of central difference quotients.
-constexpr double difference = 1e-5;
+/// Of central touch_difference quotients.
+constexpr double touch_difference = 1e-5;
 /// Stretches of a piece below this are none.
 constexpr double least_stretch = 1e-9;
 /// Parameters of a side in which its normals and curvatures are compared.
@@ -181,8 +181,8 @@ TouchedEdge::Place TouchedEdge::place(std::size_t side, double t) const {
 std::optional<std::vector<TouchedEdge::Place>> TouchedEdge::samples() const {
   std::vector<Place> result;
   for (std::size_t s = 0; s < sides_.size(); ++s) {
-    for (int k = s == 0 ? 0 : 1; k <= samples_along; ++k) {
-      const double share = double(k) / samples_along;
+    for (int k = s == 0 ? 0 : 1; k <= touch_samples; ++k) {
+      const double share = double(k) / touch_samples;
       const double t = sides_[s].forwards ? share : 1 - share;
       if (!(fall(sides_[s], t) > least_fall)) return std::nullopt;
       result.push_back(place(s, t));
@@ -245,8 +245,8 @@ std::optional<TouchedEdge::Place> TouchedEdge::tangent_from(const Place& end, co
   const auto between = [&](std::size_t side, double from, double to) -> std::optional<Place> {
     const auto miss = [&](double t) {
       const Place p = place(side, t);
-      const Place a = place(side, t - difference);
-      const Place b = place(side, t + difference);
+      const Place a = place(side, t - touch_difference);
+      const Place b = place(side, t + touch_difference);
       return (b.value - a.value) / (b.at - a.at) * (p.at - end.at) - (p.value - end.value);
     };
     if ((miss(from) < 0) == (miss(to) < 0)) return std::nullopt;

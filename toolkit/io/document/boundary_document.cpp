@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "taut/bounds/contact_geometry.h"
+#include "taut/core/integers.h"
 #include "taut/hull/result/hull_sources.h"
 
 namespace taut {
@@ -16,8 +17,6 @@ constexpr int border_segments = 8;
 /// Curves meet in the same points but for rounding; what is farther apart, in the scene's frame, is
 /// no outline.
 constexpr double outline_gap = 1e-6;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// A contact in the terms of the element that it is expressed in, on its border or not: a point of
 /// an edge as its neighbouring faces have it may be another one by join_distance. Seams and their

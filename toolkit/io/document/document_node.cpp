@@ -92,6 +92,12 @@ dvec3 DocumentNode::vector() const {
   return {(*this)[0].number(), (*this)[1].number(), (*this)[2].number()};
 }
 
+std::vector<dvec3> DocumentNode::vectors() const {
+  std::vector<dvec3> result(size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = (*this)[i].vector();
+  return result;
+}
+
 std::string DocumentNode::path() const {
   if (parent_ == nullptr) return "";
   const std::string before = parent_->path();

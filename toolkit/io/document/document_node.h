@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "taut/core/geometry.h"
 #include "taut/core/progress.h"
@@ -66,6 +67,8 @@ class DocumentNode {
   const std::string& string() const;
   /// Three numbers.
   dvec3 vector() const;
+  /// An array of such.
+  std::vector<dvec3> vectors() const;
 
   const DocumentValue& value() const { return value_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(value_.value); }

@@ -3,10 +3,10 @@
 #include <cassert>
 #include <span>
 
+#include "taut/core/integers.h"
+
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// Knots over the ends of intervals; `shared[k]`: the pieces k and k + 1 share control points.
 std::vector<double> knots_over(const std::vector<double>& ends, const std::vector<bool>& shared,

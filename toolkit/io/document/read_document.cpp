@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
 #include "taut/io/document/document_format.h"
 #include "taut/io/document/document_node.h"
@@ -18,11 +19,6 @@ namespace taut {
 namespace {
 
 constexpr int most = std::numeric_limits<int>::max();
-
-/// Most control points that the Bezier pieces of a document may have together (2 GiB of them).
-constexpr double max_piece_points = 1 << 26;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// Control points in one direction once decomposed. @pre the knots are valid
 double piece_points(const std::vector<double>& knots, int degree) {
@@ -223,13 +219,6 @@ void PartReader::read_edges(const DocumentNode& list) {
   }
 }
 
-std::vector<dvec3> read_points(const DocumentNode& cage) {
-  const DocumentNode points = cage.at("points");
-  std::vector<dvec3> result(points.size());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = points[i].vector();
-  return result;
-}
-
 std::vector<std::vector<int>> read_faces(const DocumentNode& cage) {
   const int last = int(std::min(cage.at("points").size(), to_size(most))) - 1;
   const DocumentNode faces = cage.at("faces");
@@ -258,7 +247,7 @@ void PartReader::read_cage(const DocumentNode& node) {
 }
 
 void PartReader::read_polygons(const DocumentNode& node) {
-  const PolygonMesh mesh{read_points(node), read_faces(node)};
+  const PolygonMesh mesh{node.at("points").vectors(), read_faces(node)};
   node.placed([&] { part_.add_polygons(mesh); });
 }
 
@@ -281,7 +270,7 @@ std::size_t choice(const DocumentNode& node, std::string_view key,
 ControlCage PartReader::read_control_cage(const DocumentNode& node, CageScheme scheme) {
   ControlCage cage;
   cage.scheme = scheme;
-  cage.points = read_points(node);
+  cage.points = node.at("points").vectors();
   cage.faces = read_faces(node);
   const int last = int(std::min(cage.points.size(), to_size(most))) - 1;
   if (const auto creases = node.find("creases")) {

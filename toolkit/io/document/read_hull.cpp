@@ -16,7 +16,7 @@
 namespace taut {
 namespace {
 
-constexpr int most = std::numeric_limits<int>::max();
+constexpr int most_id = std::numeric_limits<int>::max();
 
 /// Ids as they stand in the file, and the places of what has them.
 using Ids = std::map<int, int>;
@@ -33,7 +33,7 @@ Ids read_ids(const DocumentNode& list, const char* what) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const DocumentNode element = list[i];
     const DocumentNode id = element.at("id");
-    if (!ids.emplace(id.integer(0, most), int(i)).second) {
+    if (!ids.emplace(id.integer(0, most_id), int(i)).second) {
       id.refuse("another " + std::string(what) + " has this id");
     }
   }
@@ -41,18 +41,12 @@ Ids read_ids(const DocumentNode& list, const char* what) {
 }
 
 int reference(const DocumentNode& node, const Ids& ids, const char* what) {
-  const int id = node.integer(0, most);
+  const int id = node.integer(0, most_id);
   const auto found = ids.find(id);
   if (found == ids.end()) {
     node.refuse("no " + std::string(what) + " has the id " + std::to_string(id));
   }
   return found->second;
-}
-
-std::vector<dvec3> read_points(const DocumentNode& list) {
-  std::vector<dvec3> points(list.size());
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = list[i].vector();
-  return points;
 }
 
 std::vector<dvec2> read_parameters(const DocumentNode& list) {
@@ -104,13 +98,13 @@ class HullReader {
   Ids sources_, faces_, curves_;
 };
 
-void check_header(const DocumentNode& root) {
+void check_hull_header(const DocumentNode& root) {
   root.expect_keys("document", {"format", "version", "diagonal", "dimension", "sources", "faces",
                                 "curves", "report"});
   if (root.at("format").string() != hull_format) {
     root.at("format").fail("this is no hull document: \"taut-hull\" expected");
   }
-  const int version = root.at("version").integer(std::numeric_limits<int>::min(), most);
+  const int version = root.at("version").integer(std::numeric_limits<int>::min(), most_id);
   if (version != hull_version) {
     root.at("version").fail("version " + std::to_string(version) + " is not known, only " +
                             std::to_string(hull_version));
@@ -118,7 +112,7 @@ void check_header(const DocumentNode& root) {
 }
 
 HullDocument HullReader::read(const DocumentNode& root) {
-  check_header(root);
+  check_hull_header(root);
   const DocumentNode diagonal = root.at("diagonal");
   hull_.diagonal = diagonal.number();
   if (hull_.diagonal < 0) diagonal.refuse("is negative");
@@ -200,7 +194,7 @@ HullDocument::Patch read_bezier(const DocumentNode& node, std::size_t parameters
 HullDocument::Source HullReader::read_source(const DocumentNode& node) const {
   node.expect_keys("source", {"id", "kind", "file", "name", "patches"});
   HullDocument::Source source;
-  source.id = node.at("id").integer(0, most);
+  source.id = node.at("id").integer(0, most_id);
   source.kind = SourceKind(read_kind(node.at("kind"), source_kind_names));
   source.file = text_of(node, "file");
   source.name = text_of(node, "name");
@@ -279,7 +273,7 @@ void HullReader::read_facet(const DocumentNode& node, HullDocument::Face& face) 
     }
   }
   if (const auto curves = node.find("curves")) face.outline = read_curves(*curves);
-  face.boundary = read_points(node.at("boundary"));
+  face.boundary = node.at("boundary").vectors();
 }
 
 HullDocument::Contact HullReader::read_contact(const DocumentNode& node) const {
@@ -316,11 +310,11 @@ HullDocument::Curve HullReader::read_curve(const DocumentNode& node) const {
   const DocumentNode faces = node.at("faces");
   faces.expect_size(2);
   for (std::size_t k = 0; k < 2; ++k) {
-    const bool missing = faces[k].integer(-1, most) < 0;
+    const bool missing = faces[k].integer(-1, most_id) < 0;
     curve.faces[k] = missing ? -1 : reference(faces[k], faces_, "face");
   }
   curve.source = read_source_of(node);
-  curve.points = read_points(node.at("points"));
+  curve.points = node.at("points").vectors();
   if (curve.points.size() < 2) node.at("points").refuse("a curve has two points at least");
   return curve;
 }

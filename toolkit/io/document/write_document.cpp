@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "taut/core/integers.h"
 #include "taut/io/document/document_encoder.h"
 #include "taut/io/document/document_format.h"
 #include "taut/io/document/joined_pieces.h"
@@ -12,8 +12,6 @@
 
 namespace taut {
 namespace {
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// A coordinate x with x * w, rounded, `ulps` doubles below the homogeneous one; zero wherever
 /// there is one.
@@ -25,7 +23,6 @@ struct Quotient {
 Quotient quotient(double homogeneous, double w) {
   const double x = homogeneous / w;
   if (!std::isfinite(x)) throw InvalidInput("a control point's coordinate overflows");
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double near : {x, std::nextafter(x, -infinity), std::nextafter(x, infinity)}) {
     if (near * w == homogeneous) return {near, 0};
   }

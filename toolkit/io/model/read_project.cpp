@@ -30,7 +30,7 @@ constexpr std::size_t max_repeated_points = std::size_t{1} << 26;
 /// Of a file's name in messages.
 constexpr std::size_t longest_path = 4096;
 
-struct Layer {
+struct ProjectLayer {
   std::string file;
   std::string label;
   AffineMap map;
@@ -43,7 +43,7 @@ class ProjectParser {
   ProjectParser(const std::string& file, std::string_view data, const Progress& progress)
       : scanner_(file, data), file_(file), data_(data), progress_(progress) {}
 
-  std::vector<Layer> parse();
+  std::vector<ProjectLayer> parse();
 
  private:
   long line_at(std::ptrdiff_t offset);
@@ -58,7 +58,7 @@ class ProjectParser {
   const std::string& file_;
   std::string_view data_;
   const Progress& progress_;
-  std::vector<Layer> layers_;
+  std::vector<ProjectLayer> layers_;
   int invisible_ = 0;
   bool has_rasters_ = false;
   // Where line_at() was asked last.
@@ -66,7 +66,7 @@ class ProjectParser {
   long line_ = 1;
 };
 
-std::vector<Layer> ProjectParser::parse() {
+std::vector<ProjectLayer> ProjectParser::parse() {
   if (data_.size() > max_project_bytes) {
     throw LimitExceeded(file_ + ": is larger than " + std::to_string(max_project_bytes >> 20) +
                         " MiB, the most that a project may have");
@@ -122,7 +122,7 @@ void ProjectParser::read_group(const pugi::xml_node& group) {
 }
 
 void ProjectParser::read_layer(const pugi::xml_node& node) {
-  Layer layer;
+  ProjectLayer layer;
   layer.line = line_at(node.offset_debug());
   layer.file = node.attribute("filename").value();
   layer.label = node.attribute("label").value();
@@ -178,7 +178,7 @@ class ProjectLoader {
   ProjectLoader(const std::string& file, const ReadOptions& options)
       : file_(file), options_(options) {}
 
-  void add(const Layer& layer);
+  void add(const ProjectLayer& layer);
   void put_into(Model& model);
 
  private:
@@ -190,7 +190,7 @@ class ProjectLoader {
   };
 
   File& file(const std::filesystem::path& path);
-  void add_placed(const Layer& layer);
+  void add_placed(const ProjectLayer& layer);
 
   const std::string& file_;
   const ReadOptions& options_;
@@ -201,7 +201,7 @@ class ProjectLoader {
   std::vector<Instance> instances_;
 };
 
-void ProjectLoader::add(const Layer& layer) {
+void ProjectLoader::add(const ProjectLayer& layer) {
   const auto place = [&](const Error& error) {
     return file_ + ":" + std::to_string(layer.line) + ": layer " + in_quotes(layer.label) + ": " +
            error.what();
@@ -217,7 +217,7 @@ void ProjectLoader::add(const Layer& layer) {
   }
 }
 
-void ProjectLoader::add_placed(const Layer& layer) {
+void ProjectLoader::add_placed(const ProjectLayer& layer) {
   File& source = file(std::filesystem::path(file_).parent_path() / layer.file);
   if (!is_rigid(layer.map)) {
     if (std::exchange(source.used, true)) repeated_points_ += size_of(source.part);
@@ -292,9 +292,9 @@ void ProjectLoader::put_into(Model& model) {
 
 void read_project(const std::string& file, std::string_view data, Model& model,
                   const ReadOptions& options) {
-  const std::vector<Layer> layers = ProjectParser(file, data, options.progress).parse();
+  const std::vector<ProjectLayer> layers = ProjectParser(file, data, options.progress).parse();
   ProjectLoader loader(file, options);
-  for (const Layer& layer : layers) loader.add(layer);
+  for (const ProjectLayer& layer : layers) loader.add(layer);
   loader.put_into(model);
 }
 

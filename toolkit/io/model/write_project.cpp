@@ -18,7 +18,7 @@ constexpr int curve_segments = 24;
 constexpr std::array<std::string_view, 3> layer_names = {"hull", "curves", "model"};
 
 /// Vertices, edges and triangles of a PLY file.
-struct Layer {
+struct MeshLayer {
   std::vector<dvec3> points;
   std::vector<std::array<int, 2>> edges;
   std::vector<std::array<int, 3>> triangles;
@@ -42,7 +42,7 @@ struct Layer {
   }
 };
 
-void add_patch(const Patch& patch, const RigidMotion& pose, Layer& layer) {
+void add_patch(const Patch& patch, const RigidMotion& pose, MeshLayer& layer) {
   constexpr int n = patch_segments;
   const auto first = int(layer.points.size());
   const auto collapsed = [&](Side side) {
@@ -67,7 +67,7 @@ void add_patch(const Patch& patch, const RigidMotion& pose, Layer& layer) {
   }
 }
 
-void add_part(const Part& part, const RigidMotion& pose, Layer& layer) {
+void add_part(const Part& part, const RigidMotion& pose, MeshLayer& layer) {
   for (const Patch& patch : part.patches()) add_patch(patch, pose, layer);
   for (const EdgePiece& piece : part.pieces()) {
     if (piece.edge < 0) break;                                           // seams
@@ -89,15 +89,15 @@ void add_part(const Part& part, const RigidMotion& pose, Layer& layer) {
   }
 }
 
-Layer model_layer(const Model& model) {
-  Layer layer;
+MeshLayer model_layer(const Model& model) {
+  MeshLayer layer;
   for (const Instance& instance : model.instances()) {
     add_part(model.parts()[std::size_t(instance.part)], instance.pose, layer);
   }
   return layer;
 }
 
-void write_layer(OutputBuffer& out, const Layer& layer) {
+void write_layer(OutputBuffer& out, const MeshLayer& layer) {
   out.text("ply\nformat binary_little_endian 1.0\nelement vertex ")
       .text(long(layer.points.size()))
       .text("\nproperty double x\nproperty double y\nproperty double z\n");
@@ -201,7 +201,7 @@ void write_project(const std::filesystem::path& path, const HullMesh& mesh,
   write_mesh(hull, files[0].string(), ".ply", mesh);
   add(0).text(hull);
   layers.push_back(0);
-  Layer lines;
+  MeshLayer lines;
   for (const Polyline& curve : curves) lines.add_line(curve);
   if (!lines.points.empty()) {
     write_layer(add(1), lines);

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "taut/core/integers.h"
+#include "taut/core/tolerances.h"
 #include "taut/io/obj/obj_file.h"
 #include "taut/io/obj/trim_sense.h"
 #include "taut/io/text/text_scanner.h"
@@ -13,15 +15,9 @@
 namespace taut {
 namespace {
 
-/// Most control points that the Bezier pieces of a file may have together (2 GiB of them). A
-/// B-spline of degree 31 has a thousand for each control point in the file.
-constexpr std::size_t max_piece_points = std::size_t{1} << 26;
-
-/// Most of them in trimming loops, on top of one for each byte of the file: a few bytes suffice to
-/// name a long curve again.
+/// Most control points in trimming loops, on top of one for each byte of the file: a few bytes
+/// suffice to name a long curve again.
 constexpr std::size_t max_trim_points = std::size_t{1} << 20;
-
-std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 /// A B-spline's knots in one direction, and how many control points belong to them.
 struct Basis {
@@ -158,10 +154,10 @@ void Builder::require_vertices(const ObjElement& e, std::size_t count) const {
 
 void Builder::count_piece_points(long line, double points) {
   piece_points_ += points;
-  if (piece_points_ <= static_cast<double>(max_piece_points)) return;
+  if (piece_points_ <= max_piece_points) return;
   throw LimitExceeded(scanner_.file() + ":" + std::to_string(line) +
                       ": the Bezier pieces of this file have more than " +
-                      std::to_string(max_piece_points) + " control points");
+                      std::to_string(int(max_piece_points)) + " control points");
 }
 
 void Builder::count_trim_points(long line, std::size_t points) {

@@ -5,20 +5,20 @@
 namespace taut {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using ReportJson = nlohmann::ordered_json;
 
-Json to_json(const dvec3& p) { return {p.x, p.y, p.z}; }
+ReportJson to_json(const dvec3& p) { return {p.x, p.y, p.z}; }
 
-Json to_json(const Report::Input& input) {
-  Json json = {{"files", input.files},     {"faces", input.faces},
-               {"edges", input.edges},     {"vertices", input.vertices},
-               {"patches", input.patches}, {"diagonal", input.diagonal}};
+ReportJson to_json(const Report::Input& input) {
+  ReportJson json = {{"files", input.files},     {"faces", input.faces},
+                     {"edges", input.edges},     {"vertices", input.vertices},
+                     {"patches", input.patches}, {"diagonal", input.diagonal}};
   if (!input.box.empty()) json["box"] = {to_json(input.box.lower), to_json(input.box.upper)};
   return json;
 }
 
-Json to_json(const Report::ExactHull& hull) {
-  Json json = Json::object();
+ReportJson to_json(const Report::ExactHull& hull) {
+  ReportJson json = ReportJson::object();
   if (hull.counts) {
     json["patches"] = hull.counts->patches;
     json["scrolls"] = hull.counts->scrolls;
@@ -39,8 +39,8 @@ Json to_json(const Report::ExactHull& hull) {
   return json;
 }
 
-Json to_json(const Report::Mesh& mesh) {
-  Json files = Json::array();
+ReportJson to_json(const Report::Mesh& mesh) {
+  ReportJson files = ReportJson::array();
   for (const auto& f : mesh.files) files.push_back({{"file", f.file}, {"rounding", f.rounding}});
   return {{"vertices", mesh.vertices},
           {"edges", mesh.edges},
@@ -52,19 +52,19 @@ Json to_json(const Report::Mesh& mesh) {
           {"files", files}};
 }
 
-Json to_json(const Report::Queries& queries) {
+ReportJson to_json(const Report::Queries& queries) {
   return {{"support", queries.support}, {"newton_iterations", queries.newton_iterations}};
 }
 
-Json to_json(const Report::Seconds& seconds) {
+ReportJson to_json(const Report::Seconds& seconds) {
   return {{"read", seconds.read},  {"build", seconds.build},     {"sample", seconds.sample},
           {"cull", seconds.cull},  {"trace", seconds.trace},     {"stitch", seconds.stitch},
           {"mesh", seconds.mesh},  {"measure", seconds.measure}, {"write", seconds.write},
           {"total", seconds.total}};
 }
 
-Json to_json(const std::vector<Warning>& warnings) {
-  Json json = Json::array();
+ReportJson to_json(const std::vector<Warning>& warnings) {
+  ReportJson json = ReportJson::array();
   for (const Warning& w : warnings) json.push_back({{"code", w.code}, {"text", w.text}});
   return json;
 }
@@ -72,9 +72,9 @@ Json to_json(const std::vector<Warning>& warnings) {
 }  // namespace
 
 std::string to_json(const Report& report) {
-  Json json = {{"taut", TAUT_VERSION},         {"input", to_json(report.input)},
-               {"method", report.method},      {"dimension", report.dimension},
-               {"hull", to_json(report.hull)}, {"mesh", to_json(report.mesh)}};
+  ReportJson json = {{"taut", TAUT_VERSION},         {"input", to_json(report.input)},
+                     {"method", report.method},      {"dimension", report.dimension},
+                     {"hull", to_json(report.hull)}, {"mesh", to_json(report.mesh)}};
   if (report.subdivision) {
     json["subdivision"] = {{"irregular_faces", report.subdivision->irregular_faces},
                            {"refined_faces", report.subdivision->refined_faces},
@@ -90,7 +90,7 @@ std::string to_json(const Report& report) {
   json["peak_bytes"] = report.peak_bytes;
   json["warnings"] = to_json(report.warnings);
   // File names are any bytes; what is no UTF-8 in them must not lose the report.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, ReportJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace taut

@@ -1,1 +1,0 @@
-// The headers of precompiled.h are compiled with this file.
