@@ -11,6 +11,7 @@
 #include "cages.h"
 #include "limit_support.h"
 #include "support_checks.h"
+#include "taut/bounds/model_support.h"
 #include "taut/hull/convex_hull.h"
 
 // Support values of control cages from elsewhere against those of the limit surface by uniform

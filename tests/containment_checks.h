@@ -10,7 +10,7 @@
 
 #include "models.h"
 #include "reference.h"
-#include "taut/bounds/support_query.h"
+#include "taut/bounds/model_support.h"
 #include "taut/containment/location.h"
 
 namespace taut_test {

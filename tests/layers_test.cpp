@@ -61,16 +61,11 @@ const std::map<std::string, Rooms> rooms_of = {
      }},
 };
 
-/// The layers that may include some rooms of hull only.
+/// The layers that may include some rooms of hull only. The envelope draws what culling leaves.
 const std::map<std::string, std::set<std::string>> rooms_of_hull_for = {
-    {"envelope", {"result", "polytope", "sample"}},
+    {"envelope", {"result", "polytope", "sample", "cull"}},
     {"containment", {"result", "polytope", "sample"}},
     {"verify", {"result", "polytope"}},
-};
-
-/// What breaks the rules today: to go, and none to come.
-const std::set<std::string> debts = {
-    "toolkit/envelope/gauss_triangles.h: taut/hull/cull/culling.h",
 };
 
 /// A third-party library and the only folders, of toolkit/ and plugins/, that may include it.
@@ -210,10 +205,6 @@ std::string header_violation(const std::string& file, const Include& include) {
   return "is third-party, in a header";
 }
 
-bool is_debt(const std::string& file, const Include& include) {
-  return debts.contains(file + ": " + include.path);
-}
-
 /// One line for each include below `root`/toolkit and `root`/plugins that breaks a rule:
 /// "toolkit/core/error.h:3: <GL/gl.h> is ...". `files` counts what was read.
 std::vector<std::string> violations(const fs::path& root, int& files) {
@@ -239,7 +230,7 @@ std::vector<std::string> violations(const fs::path& root, int& files) {
           faults.push_back(header_violation(file, include));
         }
         for (const std::string& fault : faults) {
-          if (fault.empty() || is_debt(file, include)) continue;
+          if (fault.empty()) continue;
           found.push_back(file + ":" + std::to_string(include.line) + ": " + include.path + " " +
                           fault);
         }
@@ -272,7 +263,6 @@ std::vector<std::string> uses_of_private_headers(const fs::path& root,
       const std::string file = entry.path().lexically_relative(root).generic_string();
       for (const Include& include : includes(entry.path())) {
         if (headers.contains(include.path) || !needs_public(file, include, headers)) continue;
-        if (is_debt(file, include)) continue;
         found.push_back(file + ":" + std::to_string(include.line) + ": " + include.path +
                         " is none of its layer's PUBLIC_HEADERS");
       }
@@ -321,16 +311,6 @@ TEST_F(Layers, RepositoryKeepsDirections) {
   const std::vector<std::string> found = violations(TAUT_SOURCE_DIR, files);
   EXPECT_TRUE(found.empty()) << joined(found);
   EXPECT_GT(files, 10);
-}
-
-TEST_F(Layers, DebtsAreStillOwed) {
-  for (const std::string& debt : debts) {
-    const std::size_t colon = debt.find(": ");
-    const std::vector<Include> found = includes(fs::path(TAUT_SOURCE_DIR) / debt.substr(0, colon));
-    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Include& include) {
-      return include.path == debt.substr(colon + 2);
-    })) << debt;
-  }
 }
 
 TEST_F(Layers, FindsPlantedDirectionBetweenRooms) {

@@ -10,8 +10,8 @@
 #include "freeform.h"
 #include "hull_checks.h"
 #include "support_checks.h"
+#include "taut/bounds/model_support.h"
 #include "taut/bounds/scene_content.h"
-#include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
 

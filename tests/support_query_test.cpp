@@ -1,5 +1,3 @@
-#include "taut/bounds/support_query.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "freeform.h"
 #include "support_checks.h"
+#include "taut/bounds/model_support.h"
 #include "taut/core/error.h"
 
 namespace taut {

@@ -119,7 +119,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop)
   rounding_ =
       coordinate_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z);
   tie_ = std::max(support_tie, rounding_);
-  const Scene::Content& content = scene.content();
+  const SceneContent& content = scene.content();
   const std::vector<Part>& parts = scene.model().parts();
   parts_.resize(parts.size());
   for (std::size_t k = 0; k < parts.size(); ++k) {

@@ -20,8 +20,7 @@ constexpr int split_limit = 64;
 
 class ReachTest::Search {
  public:
-  Search(const Scene::Content& scene, std::stop_token stop)
-      : scene_(scene), stop_(std::move(stop)) {}
+  Search(const SceneContent& scene, std::stop_token stop) : scene_(scene), stop_(std::move(stop)) {}
 
   bool run(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
            std::span<const PatchRectangle> except, int finest) {
@@ -229,7 +228,7 @@ class ReachTest::Search {
     std::vector<double> weights;
   };
 
-  const Scene::Content& scene_;
+  const SceneContent& scene_;
   std::stop_token stop_;
   Directions frame_, local_;
   dvec4 offset_ = dvec4(0.0);  // of the instance that is looked at

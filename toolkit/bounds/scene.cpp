@@ -412,16 +412,6 @@ Box moved(const Box& box, const RigidMotion& pose) {
 
 }  // namespace
 
-SceneFrame scene_frame(const Box& box) {
-  const dvec3 half = 0.5 * box.upper - 0.5 * box.lower;
-  const double size = std::max({half.x, half.y, half.z});
-  int exponent = 0;
-  std::frexp(size, &exponent);
-  if (size == 0) exponent = 0;
-  // 2^1023 is the largest power of two: below 2^-1023 the frame stays smaller than one.
-  return {box.center(), std::ldexp(1.0, std::min(-exponent, 1023))};
-}
-
 BoxTree::BoxTree(std::span<const Box> boxes) {
   if (!boxes.empty()) BoxTreeBuilder(boxes, *this).build();
 }
@@ -436,20 +426,20 @@ BoxTree::BoxTree(std::span<const dvec3> points) {
   if (!points.empty()) BoxTreeBuilder(points, *this).build();
 }
 
-int Scene::Content::element(const Contact& contact) const {
+int SceneContent::element(const Contact& contact) const {
   if (contact.kind == SourceKind::vertex) return -1;
   const ScenePart& part = part_of(contact.instance);
   const bool is_face = contact.kind == SourceKind::face;
   return (is_face ? part.element_of_patch : part.element_of_piece)[std::size_t(contact.element)];
 }
 
-bool Scene::Content::can_support(const Contact& contact) const {
+bool SceneContent::can_support(const Contact& contact) const {
   if (contact.kind != SourceKind::vertex) return element(contact) >= 0;
   const int part = instances[std::size_t(contact.instance)].part;
   return contact.element < model.parts()[std::size_t(part)].point_count();
 }
 
-dvec3 Scene::Content::local_point(const Contact& contact) const {
+dvec3 SceneContent::local_point(const Contact& contact) const {
   const int part_index = instances[std::size_t(contact.instance)].part;
   const ScenePart& part = parts[std::size_t(part_index)];
   if (contact.kind == SourceKind::vertex) {
@@ -466,14 +456,15 @@ dvec3 Scene::Content::local_point(const Contact& contact) const {
   });
 }
 
-dvec3 Scene::Content::frame_point(const Contact& contact) const {
+dvec3 SceneContent::frame_point(const Contact& contact) const {
   const SceneInstance& instance = instances[std::size_t(contact.instance)];
   const dvec3 local = local_point(contact);
   return (instance.rotated ? instance.rotation * local : local) + instance.translation;
 }
 
-Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_unique<Content>()) {
-  Content& c = *content_;
+Scene::Scene(Model model, const SceneOptions& options)
+    : content_(std::make_unique<SceneContent>()) {
+  SceneContent& c = *content_;
   c.model = std::move(model);
   Box control;
   std::vector<Box> boxes;
@@ -532,7 +523,7 @@ Scene::Scene(Model model, const SceneOptions& options) : content_(std::make_uniq
   c.rounding += pose_rounding;
   c.tree = tree_over(c.distinct_instances, boxes);
 
-  SupportQuery query(*this);
+  SupportQuery query(c);
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
     dvec3 n(0.0);

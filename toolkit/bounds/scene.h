@@ -3,51 +3,14 @@
 #include <memory>
 #include <vector>
 
-#include "taut/bounds/coons_bvh.h"
+#include "taut/bounds/contact.h"
+#include "taut/bounds/scene_frame.h"
 #include "taut/core/progress.h"
 #include "taut/surface/model.h"
 
 namespace taut {
 
-/// A place on the model: an instance's patch with (u, v) in [0, 1]^2, a piece of a free curve with
-/// t in [0, 1] as u, or a free point. What support queries return and start from.
-struct Contact {
-  int instance = -1;  ///< -1: no contact
-  SourceKind kind = SourceKind::face;
-  int element = -1;  ///< index of the patch, piece or vertex in the instance's part
-  double u = 0;
-  double v = 0;
-};
-
-/// Both lie on the same patch, piece or vertex.
-inline bool same_element(const Contact& a, const Contact& b) {
-  return a.instance == b.instance && a.kind == b.kind && a.element == b.element;
-}
-
-inline dvec2 parameters(const Contact& c) { return {c.u, c.v}; }
-
-/// A contact in the terms of the model: its source and the source's own parameters.
-struct SourceContact {
-  int source = -1;
-  SourceKind kind = SourceKind::face;
-  double u = 0;
-  double v = 0;
-};
-
-/// How the model's coordinates relate to the scene's frame: x_frame = (x - center) * scale.
-/// The scale is a power of two, so scaling is exact.
-struct SceneFrame {
-  dvec3 center = dvec3(0.0);
-  double scale = 1;
-
-  dvec3 to_frame(const dvec3& x) const { return (x - center) * scale; }
-  dvec3 to_model(const dvec3& x) const { return x / scale + center; }
-  double length_to_model(double length) const { return length / scale; }
-  double length_to_frame(double length) const { return length * scale; }
-};
-
-/// The frame of a scene whose model has this control box (Model::control_box).
-SceneFrame scene_frame(const Box& control_box);
+struct SceneContent;  // in scene_content.h, for the bounds layer
 
 struct SceneOptions {
   int threads = 0;
@@ -98,11 +61,12 @@ class Scene {
   /// Bytes held by the CBVHs and hierarchies.
   std::size_t memory() const;
 
-  struct Content;  // defined in scene_content.h, for the bounds layer
-  const Content& content() const { return *content_; }
+  const SceneContent& content() const { return *content_; }
+  /// Queries read what a scene holds and know nothing of the scene.
+  operator const SceneContent&() const { return *content_; }
 
  private:
-  std::unique_ptr<Content> content_;
+  std::unique_ptr<SceneContent> content_;
 };
 
 }  // namespace taut

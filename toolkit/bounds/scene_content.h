@@ -4,9 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "taut/bounds/contact.h"
 #include "taut/bounds/coons_bvh.h"
 #include "taut/bounds/scalar_net.h"
-#include "taut/bounds/scene.h"
+#include "taut/bounds/scene_frame.h"
 
 namespace taut {
 
@@ -146,7 +147,7 @@ struct SceneInstance {
   dvec3 translation;  ///< of the part's centre, in the scene's frame
 };
 
-struct Scene::Content {
+struct SceneContent {
   Model model;
   SceneFrame frame;
   std::vector<ScenePart> parts;

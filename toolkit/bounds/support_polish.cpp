@@ -90,7 +90,7 @@ dvec2 SupportPolish::end_of_flat(const Net& net, const dvec2& uv, double h) cons
   return at;
 }
 
-std::optional<Contact> end_of_ruling(const Scene::Content& scene, const Contact& contact,
+std::optional<Contact> end_of_ruling(const SceneContent& scene, const Contact& contact,
                                      const dvec3& n, double h) {
   const int index = scene.instances[std::size_t(contact.instance)].part;
   const Part& part = scene.model.parts()[std::size_t(index)];

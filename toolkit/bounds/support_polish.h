@@ -59,7 +59,7 @@ class SupportPolish {
 /// x . n is as large as h; none if the contact is on no ruling or at the end of one. Points
 /// between are not extreme, and tell nothing.
 /// @pre kind face
-std::optional<Contact> end_of_ruling(const Scene::Content& scene, const Contact& contact,
+std::optional<Contact> end_of_ruling(const SceneContent& scene, const Contact& contact,
                                      const dvec3& n, double h);
 
 }  // namespace taut

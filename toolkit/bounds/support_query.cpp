@@ -42,7 +42,7 @@ constexpr double narrow_weights = 4;
 /// iteration, so rational elements need no quotient rule.
 class SupportQuery::Search {
  public:
-  Search(const Scene::Content& scene, std::stop_token stop, SupportBounds bounds)
+  Search(const SceneContent& scene, std::stop_token stop, SupportBounds bounds)
       : scene_(scene),
         stop_(std::move(stop)),
         bounds_(bounds),
@@ -159,7 +159,7 @@ class SupportQuery::Search {
   void polish_from(const Contact& hint);
   void finish();
 
-  const Scene::Content& scene_;
+  const SceneContent& scene_;
   std::stop_token stop_;
   SupportBounds bounds_;
   double rounding_;  ///< of a value x . n
@@ -547,8 +547,8 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
           scene_.frame_point(best_)};
 }
 
-SupportQuery::SupportQuery(const Scene& scene, std::stop_token stop, SupportBounds bounds)
-    : search_(std::make_unique<Search>(scene.content(), std::move(stop), bounds)) {}
+SupportQuery::SupportQuery(const SceneContent& scene, std::stop_token stop, SupportBounds bounds)
+    : search_(std::make_unique<Search>(scene, std::move(stop), bounds)) {}
 SupportQuery::~SupportQuery() = default;
 SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;
 
@@ -559,19 +559,5 @@ Support SupportQuery::operator()(const dvec3& n, const Contact& hint) {
 long SupportQuery::queries() const { return search_->queries; }
 long SupportQuery::newton_iterations() const { return search_->newton_iterations; }
 long SupportQuery::cells() const { return search_->cells; }
-
-ModelSupport support(SupportQuery& query, const Scene& scene, const dvec3& direction) {
-  const dvec3 n = unit(direction);
-  if (!(std::abs(glm::length(n) - 1) < 0.5)) {
-    throw InvalidInput("a direction must be finite and not zero");
-  }
-  const Support s = query(n);
-  const SceneFrame& frame = scene.frame();
-  // h = h_frame / scale + center . n: three products and sums of the centre's size.
-  const double shift = glm::dot(frame.center, n);
-  const double rounding = 8 * rounding_unit * glm::length(frame.center);
-  return {frame.length_to_model(s.h) + shift, frame.length_to_model(s.h_bound) + shift + rounding,
-          frame.to_model(s.point), scene.source(s.contact)};
-}
 
 }  // namespace taut

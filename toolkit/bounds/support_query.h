@@ -3,9 +3,11 @@
 #include <memory>
 #include <stop_token>
 
-#include "taut/bounds/scene.h"
+#include "taut/bounds/contact.h"
 
 namespace taut {
+
+struct SceneContent;  // of a Scene, which converts to it
 
 /// The support function's value at a direction, with the place where it is attained and a proof.
 /// Lengths and points are in the scene's frame (Scene::frame).
@@ -32,7 +34,7 @@ enum class SupportBounds {
 class SupportQuery {
  public:
   /// `stop`: makes the query that runs throw Cancelled, and each one after.
-  explicit SupportQuery(const Scene& scene, std::stop_token stop = {},
+  explicit SupportQuery(const SceneContent& scene, std::stop_token stop = {},
                         SupportBounds bounds = SupportBounds::bezier_nets);
   ~SupportQuery();
   SupportQuery(SupportQuery&&) noexcept;
@@ -57,17 +59,5 @@ class SupportQuery {
   class Search;
   std::unique_ptr<Search> search_;
 };
-
-/// Support value in model coordinates, with the contact in the model's terms.
-struct ModelSupport {
-  double h = 0;
-  double h_bound = 0;
-  dvec3 point = dvec3(0.0);
-  SourceContact contact;
-};
-
-/// max x . n over the model for the unit vector along `direction`, in model coordinates.
-/// @throws InvalidInput if the direction is zero or not finite
-ModelSupport support(SupportQuery& query, const Scene& scene, const dvec3& direction);
 
 }  // namespace taut

@@ -151,7 +151,7 @@ HullDistance::Atom HullDistance::moved(const Atom& a, const dvec3& n) {
     same.curved.n = n;
     return same;
   }
-  const Scene::Content& content = scene_.content();
+  const SceneContent& content = scene_.content();
   const SceneInstance& instance = content.instances[std::size_t(a.contact.instance)];
   const ScenePart& part = content.part_of(a.contact.instance);
   polish_.take(part.elements[std::size_t(content.element(a.contact))],

@@ -48,7 +48,7 @@ struct Chain {
 /// Chains the points of one image.
 class ImageChains {
  public:
-  ImageChains(const EnvelopeImages::Content& content, const ImageGrid& grid)
+  ImageChains(const EnvelopeContent& content, const ImageGrid& grid)
       : content_(content), grid_(grid) {}
 
   std::vector<Chain> run();
@@ -71,7 +71,7 @@ class ImageChains {
   void link(const ImageGrid::Block& block, std::size_t a, std::size_t b);
   Chain walk(int start);
 
-  const EnvelopeImages::Content& content_;
+  const EnvelopeContent& content_;
   const ImageGrid& grid_;
   std::vector<Crossing> crossings_;
   std::unordered_map<ImageGrid::SideNumber, int> number_;
@@ -292,7 +292,7 @@ class Joiner {
 };
 
 /// Cuts a chain where the source on one of its sides changes.
-void add_curves(const EnvelopeImages::Content& content, Chain chain, int number,
+void add_curves(const EnvelopeContent& content, Chain chain, int number,
                 std::vector<EnvelopeCurve>& result) {
   const auto sources = [&](const EnvelopeCurvePoint& p) {
     return std::array<int, 2>{content.scene.source(p.contact[0]).source,
@@ -320,7 +320,7 @@ void add_curves(const EnvelopeImages::Content& content, Chain chain, int number,
 
 }  // namespace
 
-std::vector<EnvelopeCurve> chain_curves(const EnvelopeImages::Content& content,
+std::vector<EnvelopeCurve> chain_curves(const EnvelopeContent& content,
                                         const std::array<ImageGrid, 2>& grids) {
   std::vector<Chain> chains;
   for (const ImageGrid& grid : grids) {

@@ -9,7 +9,7 @@
 namespace taut {
 
 /// The separating curves of both images (EnvelopeMap::curves), chain by chain.
-std::vector<EnvelopeCurve> chain_curves(const EnvelopeImages::Content& content,
+std::vector<EnvelopeCurve> chain_curves(const EnvelopeContent& content,
                                         const std::array<ImageGrid, 2>& grids);
 
 }  // namespace taut

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "taut/envelope/climbed_contact.h"
-#include "taut/envelope/envelope_images.h"
+#include "taut/envelope/envelope_pixel.h"
+#include "taut/envelope/envelope_statistics.h"
 #include "taut/envelope/gauss_triangles.h"
 #include "taut/envelope/offscreen_canvas.h"
 
@@ -14,8 +15,8 @@ namespace taut {
 /// rows below zero, or from the size on.
 inline constexpr int image_margin = 4;
 
-struct EnvelopeImages::Content {
-  explicit Content(const Scene& the_scene)
+struct EnvelopeContent {
+  explicit EnvelopeContent(const Scene& the_scene)
       : scene(the_scene), geometry(the_scene), elements(the_scene.model()) {}
 
   const Scene& scene;

@@ -66,7 +66,7 @@ class ImagePolytope {
                                  const std::vector<int>& facets) const;
 
   const EnvelopeImages& images_;
-  const EnvelopeImages::Content& content_;
+  const EnvelopeContent& content_;
   const HullOptions& options_;
   double tolerance_;  ///< in model units
   double rise_;       ///< in the scene's frame

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
-#include "taut/envelope/stereographic.h"
+#include "taut/envelope/envelope_pixel.h"
+#include "taut/envelope/envelope_statistics.h"
 
 namespace taut {
 
@@ -17,29 +17,7 @@ struct EnvelopeOptions {
   Progress progress;
 };
 
-/// What drawing the images took, and what was met.
-struct EnvelopeStatistics {
-  std::string driver;
-  long triangles = 0;
-  /// Pixels decided in double precision: at which two contacts were so close that depths of 32 bits
-  /// do not tell, or beside which another element is seen.
-  long decided_pixels = 0;
-  /// Pixels that no surface, edge or vertex covered, and that show the nearest of some points that
-  /// are sampled beforehand. None, unless surfaces turn faster than triangles are made fine.
-  long filled_pixels = 0;
-  /// Pixels without anything. None.
-  long empty_pixels = 0;
-  double seconds_triangles = 0;
-  double seconds_draw = 0;
-  double seconds_decide = 0;
-};
-
-/// A pixel of one of the two images.
-struct EnvelopePixel {
-  Hemisphere hemisphere = Hemisphere::north;
-  int column = 0;
-  int row = 0;
-};
+struct EnvelopeContent;  // in envelope_content.h, for this layer
 
 /// The upper envelope of a scene's support functions as two images of the sphere of directions
 /// (Kim, Kim, Kim, Elber: Precise convex hull computation for freeform models, section 3.1): which
@@ -77,11 +55,10 @@ class EnvelopeImages {
   /// The contact that is seen there, recomputed in double precision.
   Contact contact(const EnvelopePixel& p) const;
 
-  struct Content;  // defined in envelope_content.h, for this layer
-  const Content& content() const { return *content_; }
+  const EnvelopeContent& content() const { return *content_; }
 
  private:
-  std::unique_ptr<const Content> content_;
+  std::unique_ptr<const EnvelopeContent> content_;
 };
 
 }  // namespace taut

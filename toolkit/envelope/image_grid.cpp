@@ -10,7 +10,7 @@ constexpr double seen_margin = 2.5;
 
 }  // namespace
 
-ImageGrid::ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere,
+ImageGrid::ImageGrid(const EnvelopeContent& content, Hemisphere hemisphere,
                      const Progress& progress)
     : hemisphere_(hemisphere), size_(int(content.side())) {
   const auto count = std::size_t(size_) * std::size_t(size_);

@@ -15,8 +15,7 @@ class ImageGrid {
   using SideNumber = int;
 
   /// @throws Cancelled
-  ImageGrid(const EnvelopeImages::Content& content, Hemisphere hemisphere,
-            const Progress& progress);
+  ImageGrid(const EnvelopeContent& content, Hemisphere hemisphere, const Progress& progress);
 
   Hemisphere hemisphere() const { return hemisphere_; }
   /// Of the image as it is drawn.

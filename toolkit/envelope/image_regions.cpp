@@ -16,7 +16,7 @@ constexpr double equator_width = 1.5;
 
 class Regions {
  public:
-  Regions(const EnvelopeImages::Content& content, const std::array<ImageGrid, 2>& grids)
+  Regions(const EnvelopeContent& content, const std::array<ImageGrid, 2>& grids)
       : content_(content),
         grids_(grids),
         size_(grids[0].size()),
@@ -117,7 +117,7 @@ class Regions {
     return number;
   }
 
-  const EnvelopeImages::Content& content_;
+  const EnvelopeContent& content_;
   const std::array<ImageGrid, 2>& grids_;
   int size_;
   int count_;
@@ -127,7 +127,7 @@ class Regions {
 
 }  // namespace
 
-void find_regions(const EnvelopeImages::Content& content, const std::array<ImageGrid, 2>& grids,
+void find_regions(const EnvelopeContent& content, const std::array<ImageGrid, 2>& grids,
                   EnvelopeMap& map) {
   Regions(content, grids).run(map);
 }

@@ -31,13 +31,12 @@ bool share_node(const GaussTriangles::Triangle& a, const GaussTriangles::Triangl
   });
 }
 
-dvec3 to_model(const EnvelopeImages::Content& content, const dvec3& x) {
+dvec3 to_model(const EnvelopeContent& content, const dvec3& x) {
   return content.scene.frame().to_model(x);
 }
 
 /// Both triangles are of one element, side by side: what they show is one surface.
-bool are_neighbors(const EnvelopeImages::Content& content, const EnvelopePixel& p,
-                   const EnvelopePixel& q) {
+bool are_neighbors(const EnvelopeContent& content, const EnvelopePixel& p, const EnvelopePixel& q) {
   const OffscreenCanvas::Pixel& a = content.at(p);
   const OffscreenCanvas::Pixel& b = content.at(q);
   if (a.element != b.element) return false;
@@ -48,8 +47,7 @@ bool are_neighbors(const EnvelopeImages::Content& content, const EnvelopePixel& 
   return s.element == t.element && share_node(s, t);
 }
 
-dvec3 mean_direction(const EnvelopeImages::Content& content,
-                     std::span<const EnvelopePixel> pixels) {
+dvec3 mean_direction(const EnvelopeContent& content, std::span<const EnvelopePixel> pixels) {
   dvec3 sum(0.0);
   for (const EnvelopePixel& p : pixels) sum += content.direction(p);
   return unit(sum);
@@ -66,7 +64,7 @@ dvec3 plane_normal(const std::vector<ClimbedContact>& contacts, const dvec3& n) 
   return aligned(unit(sum), n);
 }
 
-EnvelopeTriplePoint triple_point(const EnvelopeImages::Content& content, const dvec3& n,
+EnvelopeTriplePoint triple_point(const EnvelopeContent& content, const dvec3& n,
                                  const std::vector<ClimbedContact>& contacts) {
   EnvelopeTriplePoint result{n, {}, {}};
   for (const ClimbedContact& c : contacts) {
@@ -78,8 +76,7 @@ EnvelopeTriplePoint triple_point(const EnvelopeImages::Content& content, const d
 
 }  // namespace
 
-bool is_bridging(const EnvelopeImages::Content& content, const EnvelopePixel& p,
-                 const EnvelopePixel& q) {
+bool is_bridging(const EnvelopeContent& content, const EnvelopePixel& p, const EnvelopePixel& q) {
   if (are_neighbors(content, p, q)) return false;
   const dvec3 m = content.direction(p);
   const dvec3 n = content.direction(q);
@@ -92,7 +89,7 @@ bool is_bridging(const EnvelopeImages::Content& content, const EnvelopePixel& p,
   return missed > bridging_share * distance;
 }
 
-EnvelopeCurvePoint curve_point(const EnvelopeImages::Content& content, const EnvelopePixel& p,
+EnvelopeCurvePoint curve_point(const EnvelopeContent& content, const EnvelopePixel& p,
                                const EnvelopePixel& q) {
   const dvec3 m = content.direction(p);
   const dvec3 n = content.direction(q);
@@ -112,7 +109,7 @@ EnvelopeCurvePoint curve_point(const EnvelopeImages::Content& content, const Env
   return result;
 }
 
-std::optional<EnvelopeTriplePoint> common_plane(const EnvelopeImages::Content& content,
+std::optional<EnvelopeTriplePoint> common_plane(const EnvelopeContent& content,
                                                 std::span<const EnvelopePixel> pixels,
                                                 double reach) {
   const dvec3 middle = mean_direction(content, pixels);
@@ -146,7 +143,7 @@ std::optional<EnvelopeTriplePoint> common_plane(const EnvelopeImages::Content& c
   return triple_point(content, n, three);
 }
 
-std::optional<EnvelopeTriplePoint> plane_over_hole(const EnvelopeImages::Content& content,
+std::optional<EnvelopeTriplePoint> plane_over_hole(const EnvelopeContent& content,
                                                    std::span<const EnvelopePixel> loop,
                                                    double reach) {
   const dvec3 middle = mean_direction(content, loop);

@@ -20,7 +20,7 @@ constexpr double plane_reach = 2.5;
 /// Finds the triple points of one image.
 class TriplePoints {
  public:
-  TriplePoints(const EnvelopeImages::Content& content, std::vector<EnvelopeTriplePoint>& result)
+  TriplePoints(const EnvelopeContent& content, std::vector<EnvelopeTriplePoint>& result)
       : content_(content), reach_(plane_reach * 4.0 / content.size), result_(result) {}
 
   void find(const ImageGrid& grid) {
@@ -85,7 +85,7 @@ class TriplePoints {
     result_.push_back(plane);
   }
 
-  const EnvelopeImages::Content& content_;
+  const EnvelopeContent& content_;
   double reach_;
   std::vector<EnvelopeTriplePoint>& result_;
 };
@@ -93,7 +93,7 @@ class TriplePoints {
 }  // namespace
 
 EnvelopeMap trace_envelope(const EnvelopeImages& images, const Progress& progress) {
-  const EnvelopeImages::Content& content = images.content();
+  const EnvelopeContent& content = images.content();
   const std::array<ImageGrid, 2> grids = {ImageGrid(content, Hemisphere::north, progress),
                                           ImageGrid(content, Hemisphere::south, progress)};
   progress.update("trace", 0.5);

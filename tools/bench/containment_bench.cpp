@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "taut/bounds/support_query.h"
+#include "taut/bounds/model_support.h"
 #include "taut/containment/hull_containment.h"
 #include "taut/core/stopwatch.h"
 #include "taut/hull/convex_hull.h"

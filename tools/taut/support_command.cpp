@@ -6,7 +6,7 @@
 #include "command.h"
 #include "directions.h"
 #include "input.h"
-#include "taut/bounds/support_query.h"
+#include "taut/bounds/model_support.h"
 #include "taut/core/parallel.h"
 #include "text.h"
 

@@ -473,7 +473,7 @@ class PatchCulling {
     return points;
   }
 
-  const Scene::Content& content_;
+  const SceneContent& content_;
   const SpreadSamples& spread_;
   int instance_;
   const SceneInstance& placed_;
@@ -589,7 +589,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
   options.progress.update("cull", 0);
   Culling result;
   result.levels.resize(std::size_t(options.levels) + 1);
-  const Scene::Content& content = scene.content();
+  const SceneContent& content = scene.content();
   std::vector<CellPlace> places;
   for (const int i : content.distinct_instances) {
     const int roots = map.root_count(content.instances[std::size_t(i)].part);

@@ -507,7 +507,7 @@ void FreeEndSearch::search_cell(const CurvatureNets& nets, const Contact& c, Pat
 }
 
 void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
-  const Scene::Content& content = geometry_.scene().content();
+  const SceneContent& content = geometry_.scene().content();
   std::optional<CurvatureNets> nets;  // of the last cell's patch
   const SceneElement* element = nullptr;
   for (const CulledCell& cell : cells) {

@@ -255,7 +255,7 @@ void GraphTracer::add_pole(const SupportingPole& pole) {
 
 /// Stand-ins all cells of which are on: what they have of branches is not the surface's.
 void GraphTracer::find_settled(const std::vector<CulledCell>& cells) {
-  const Scene::Content& content = geometry_.scene().content();
+  const SceneContent& content = geometry_.scene().content();
   std::set<std::pair<int, int>> left;
   for (const CulledCell& c : cells) {
     const ScenePart& part = content.part_of(c.instance);

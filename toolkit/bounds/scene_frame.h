@@ -1,0 +1,22 @@
+#pragma once
+
+#include "taut/core/geometry.h"
+
+namespace taut {
+
+/// How the model's coordinates relate to the scene's frame: x_frame = (x - center) * scale.
+/// The scale is a power of two, so scaling is exact.
+struct SceneFrame {
+  dvec3 center = dvec3(0.0);
+  double scale = 1;
+
+  dvec3 to_frame(const dvec3& x) const { return (x - center) * scale; }
+  dvec3 to_model(const dvec3& x) const { return x / scale + center; }
+  double length_to_model(double length) const { return length / scale; }
+  double length_to_frame(double length) const { return length * scale; }
+};
+
+/// The frame of a scene whose model has this control box (Model::control_box).
+SceneFrame scene_frame(const Box& control_box);
+
+}  // namespace taut
