@@ -77,7 +77,7 @@ class ContactGeometry {
   /// of a piece, its vertex.
   Contact canonical(const Contact& c) const;
 
-  /// The same point on the first of the elements that coincide with the contact's, within
+  /// The contact's point on the first of the elements that coincide with the contact's, within
   /// tie(); of a point beside which no edge ends and that lies on an edge, on the edge.
   Contact first(const Contact& c) const {
     Contact own = c;
@@ -105,7 +105,7 @@ class ContactGeometry {
   /// Also of the pieces that repeat this one.
   /// @pre kind edge, not repeated
   const std::vector<PieceSide>& sides(const Contact& c) const;
-  /// The same of ruled patches. @pre kind edge
+  /// Sides of ruled patches along the piece. @pre kind edge
   const std::vector<PieceSide>& ruled_sides(const Contact& c) const;
   /// @pre kind vertex, not repeated
   const std::vector<PieceEnd>& ends(const Contact& c) const;

@@ -61,7 +61,7 @@ class GaussMap {
   /// whose normal lies in the cell; entries may repeat if the cell is above the finest level.
   /// @pre cell.level <= levels()
   std::span<const Entry> entries(int part, const DirectionCell& cell) const;
-  /// The same for one direction, in the part's frame: the leaves whose pyramids may contain it.
+  /// The leaves whose pyramids may contain one direction, in the part's frame.
   std::vector<Entry> entries(int part, const dvec3& n) const;
 
   /// Bytes held.

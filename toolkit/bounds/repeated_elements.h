@@ -38,7 +38,7 @@ class RepeatedElements {
   bool repeats(const Contact& c) const {
     return !empty() && (repeats_.contains(key(c)) || places_.contains(key(c)));
   }
-  /// The same point on the first element that is the same, or on the edge on which it was placed.
+  /// The contact's point on the first of the equal elements, or on the edge on which it was placed.
   Contact first(const Contact& c) const;
   /// The element repeats another one with its first parameter reversed.
   bool reversed(const Contact& c) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/core/geometry.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/bernstein.h"
 

@@ -42,7 +42,7 @@ struct BoxTree {
       return glm::dot(center, n) + glm::dot(half, abs_n);
     }
     Slab slab = {};
-    /// The same over what lies in the slab, too.
+    /// Upper bound of x . n over what of the box lies in the slab.
     double slab_bound(const dvec3& n) const { return slab.upper_bound(center, half, n); }
   };
   std::vector<Node> nodes;  ///< the root first; empty without items

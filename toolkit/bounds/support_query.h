@@ -42,7 +42,7 @@ class SupportQuery {
   /// The support in direction n. h_bound - h is about 2^-43 of the scene's size and what rounding
   /// may amount to, in all below 1e-12 for degrees up to 9, whatever the weights; more for higher
   /// degrees, for models turned far from the origin, and where the search met its limit of cells.
-  /// It is proven in any case.
+  /// h_bound is proven in any case.
   ///
   /// `hint`: a contact near the answer, usually that of a nearby direction; makes the query faster,
   /// never different in h beyond h_bound - h.

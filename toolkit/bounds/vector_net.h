@@ -20,7 +20,7 @@ void halve_u(NetShape shape, Vector* b, Vector* lower) {
   }
 }
 
-/// The same along v.
+/// Halves a net along v.
 template <class Vector>
 void halve_v(NetShape shape, Vector* b, Vector* lower) {
   const int row = shape.q + 1;

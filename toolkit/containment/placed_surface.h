@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "taut/bounds/scene.h"
 #include "taut/bounds/scene_content.h"
 #include "taut/containment/triangle_rays.h"
 #include "taut/surface/bezier.h"

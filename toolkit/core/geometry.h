@@ -63,7 +63,7 @@ struct RigidMotion {
   dvec3 translation = dvec3(0.0);
 
   dvec3 operator()(const dvec3& x) const { return rotation * x + translation; }
-  /// It moves nothing.
+  /// The motion moves nothing.
   bool at_rest() const { return rotation == dmat3(1.0) && translation == dvec3(0.0); }
 };
 

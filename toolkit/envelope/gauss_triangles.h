@@ -79,7 +79,7 @@ class InnerPoints {
   /// True is certain: in all directions between the given ones (non-negative combinations), one of
   /// the points is higher than everything between x (convex combinations), by more than `rise`.
   bool surely_hides(std::span<const dvec3> x, std::span<const dvec3> n, double rise = 0) const;
-  /// The same of all values over a triangle.
+  /// True is certain: one of the points is higher than all values over the triangle.
   bool surely_hides(const GaussTriangles& triangles, const GaussTriangles::Triangle& t) const;
   /// Takes the triangles out that are hidden, and nodes that no other one has.
   void remove_hidden(GaussTriangles& triangles) const;

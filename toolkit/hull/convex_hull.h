@@ -10,7 +10,7 @@ namespace taut {
 /// precise_hull() otherwise. A model without geometry has the empty hull.
 /// @throws as these do
 Hull convex_hull(const Model& model, const HullOptions& options = {});
-/// The same of a scene that is there already.
+/// Convex hull of the model of a scene that is there already.
 Hull convex_hull(const Scene& scene, const HullOptions& options = {});
 
 }  // namespace taut

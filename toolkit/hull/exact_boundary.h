@@ -33,7 +33,7 @@ Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& o
 HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
                             const HullOptions& options, HullStatistics& statistics,
                             const std::vector<Sample>& more = {});
-/// The same from the beginning. @pre the map is the scene's, which spans space
+/// The boundary from the beginning: culling first. @pre the map is the scene's, which spans space
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
                             HullStatistics& statistics);
 

@@ -33,7 +33,7 @@ struct CellPatch {
     cap,
   };
   Kind kind = Kind::none;
-  /// It is, or meets in a vertex, what is semi-sharp.
+  /// The cell is semi-sharp, or meets what is in a vertex.
   bool semi_sharp = false;
   /// Catmull-Clark: a bicubic net, 16 points along v within along u. Loop: 15 points of a quartic
   /// triangle, (i, j) counts towards the second and third corner: (0,0) .. (4,0), (0,1) .. (3,1),

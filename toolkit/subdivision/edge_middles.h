@@ -22,7 +22,7 @@ class EdgeMiddles {
     const auto found = middles_.find(key(a, b));
     return found == middles_.end() ? -1 : found->second;
   }
-  /// The same, a new vertex if it is not known yet.
+  /// The middle of the edge, a new vertex if the edge has none yet.
   int add(int a, int b) {
     const auto [entry, is_new] = middles_.try_emplace(key(a, b), count_);
     if (is_new) ++count_;

@@ -88,7 +88,7 @@ PatchJet3 jet3(const BezierPatch& patch, double u, double v);
 dvec3 unit_normal(const BezierPatch& patch, double u, double v);
 
 /// @name Exact changes of representation
-/// The same curve or patch up to the rounding of convex combinations.
+/// The curve or patch stays as it is up to the rounding of convex combinations.
 /// @{
 BezierCurve elevated(const BezierCurve& curve, int degree);
 BezierPatch elevated(const BezierPatch& patch, int degree_u, int degree_v);

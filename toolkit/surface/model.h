@@ -58,8 +58,8 @@ struct Patch {
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
   /// Indexed by Side: known to go on smoothly there, whatever its tangent planes say.
   std::array<bool, 4> smooth_sides = {};
-  /// It stands for a surface that is within the part's deviation bound of it, and to which it is
-  /// like in no other way: its curvature tells nothing.
+  /// The patch stands for a surface that is within the part's deviation bound of it, and to which
+  /// it is like in no other way: its curvature tells nothing.
   bool stand_in = false;
   /// The first patch of the part with the same control points, which lies before this one, or -1.
   /// A patch that repeats one takes no part in joins; its borders and corners are those of the

@@ -26,7 +26,7 @@ NurbsSurface joined(const std::vector<PatchPiece>& pieces);
 /// @pre validate() passes; the range lies in the domain and is not empty
 /// @{
 NurbsCurve restricted(const NurbsCurve& curve, const Interval& range);
-/// The same of a curve's pieces.
+/// The part of a curve given by its pieces.
 NurbsCurve restricted(const std::vector<CurvePiece>& curve, const Interval& range);
 NurbsSurface restricted(const NurbsSurface& surface, const Interval& u, const Interval& v);
 /// @}

@@ -74,7 +74,8 @@ class DocumentOutlines {
   const std::vector<int>& regions_of(int source) const;
   /// The stretch between two points of an outline on a source.
   OutlineStretch stretch(int source, const dvec2& from, const dvec2& to) const;
-  /// The same along a side of one of its Bezier patches, be it a track; none if it is not.
+  /// The stretch along a side of one of the source's Bezier patches, be it a track; none if there
+  /// is no such side.
   std::optional<OutlineStretch> border(int source, const dvec2& from, const dvec2& to) const;
   /// Whether a region of the source may contain the place.
   bool covers(int source, const dvec2& uv) const;

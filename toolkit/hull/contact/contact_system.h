@@ -67,9 +67,9 @@ class ContactSystem {
   bool solve(CommonSupport& s, Equation equation) const {
     return iterate(s, equation, Steps::full, noise_step);
   }
-  /// The same of contacts so near to each other that the system is nearly singular, from a start
-  /// near the solution: rounding may move them by more, and if need be steps of least length leave
-  /// alone what the system does not tell. What is found supports to within rounding as well.
+  /// Newton's method for contacts so near to each other that the system is nearly singular, from a
+  /// start near the solution: rounding may move them by more, and if need be steps of least length
+  /// leave alone what the system does not tell. What is found supports to within rounding as well.
   template <class Equation>
   bool settle(CommonSupport& s, Equation equation) const {
     const CommonSupport start = s;
@@ -77,7 +77,7 @@ class ContactSystem {
     s = start;
     return iterate(s, equation, Steps::least, merging_noise_step);
   }
-  /// The same of three contacts.
+  /// Newton's method for three contacts, which leave no equation open.
   bool solve(CommonSupport& s) const;
 
   /// The direction near that of `s` in which its two contacts, of different surfaces or curves, are

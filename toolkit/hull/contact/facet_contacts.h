@@ -27,7 +27,7 @@ struct FacetContacts {
   /// The side from corner k to the next one runs along an edge.
   bool is_curved(std::size_t k) const { return !sides.empty() && sides[k].piece >= 0; }
   bool is_curved() const;
-  /// It has an inside.
+  /// The contacts span a face with an inside.
   bool is_facet() const { return contacts.size() >= 3 || is_curved(); }
 };
 

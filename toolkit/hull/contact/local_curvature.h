@@ -55,7 +55,7 @@ std::optional<CurveCurvature> curve_curvature(const ContactGeometry& geometry, c
 double twist_rounding(const ContactGeometry& geometry, const Contact& c,
                       const CurveCurvature& local);
 
-/// It is on an edge, at the end of a piece that has no curvature there but for rounding.
+/// The contact is on an edge, at the end of a piece without curvature there but for rounding.
 bool ends_straight(const ContactGeometry& geometry, const Contact& c);
 
 }  // namespace taut

@@ -14,7 +14,7 @@ Contact on_side_of(Contact patch, Side side, double t);
 /// The piece of a straight edge that is the patch's side; none if it is no straight edge.
 std::optional<Contact> straight_piece(const ContactGeometry& geometry, const Contact& patch,
                                       Side side);
-/// The same of the straight edge or seam.
+/// The piece of a straight edge or seam that is the patch's side; none if it is no straight one.
 std::optional<Contact> straight_piece_or_seam(const ContactGeometry& geometry, const Contact& patch,
                                               Side side);
 

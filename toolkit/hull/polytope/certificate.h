@@ -10,7 +10,7 @@ namespace taut {
 /// Lower bound of the distance of the origin from the convex hull of unit vectors, at most one.
 /// Not positive if they lie in no open half-space, or hardly.
 ///
-/// It is what turns gaps into distances. Let P be a polytope inside a convex body H, v a vertex of
+/// This depth turns gaps into distances. Let P be a polytope inside a convex body H, v a vertex of
 /// P and n_1 .. n_k directions whose cone holds the unit vector n, n = sum l_i n_i with l_i >= 0.
 /// The support function is convex and homogeneous, so
 ///     h_H(n) - v.n <= sum l_i (h_H(n_i) - v.n_i) <= max_i (h_H(n_i) - v.n_i) * sum l_i,

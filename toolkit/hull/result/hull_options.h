@@ -8,7 +8,7 @@ namespace taut {
 struct HullOptions {
   /// Largest distance of the mesh from the true hull, in model units. Zero: `relative` counts.
   double tolerance = 0;
-  /// The same as a fraction of the diagonal of the model's box.
+  /// That distance as a fraction of the diagonal of the model's box.
   double relative = 1e-4;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;

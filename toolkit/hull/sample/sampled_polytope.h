@@ -22,7 +22,7 @@ class EdgeConstraints {
   virtual ~EdgeConstraints() = default;
   /// A point of the hull between two points, by number, if these are the ends of such an edge.
   virtual std::optional<Middle> middle(int a, int b) const = 0;
-  /// It was inserted, with this number.
+  /// The middle was inserted, with this number.
   virtual void bisect(int a, int b, int middle) = 0;
 };
 

@@ -15,7 +15,8 @@ namespace taut {
 std::size_t obj_index(const TextScanner& scanner, const Word& word, std::size_t count,
                       std::string_view kind = "a vertex");
 
-/// The same of something that must stand before it is referred to. @throws InvalidInput also then
+/// The index of something that must stand before it is referred to, as by obj_index.
+/// @throws InvalidInput also where it stands later
 std::size_t earlier_obj_index(const TextScanner& scanner, const Word& word, std::size_t count,
                               std::string_view kind);
 

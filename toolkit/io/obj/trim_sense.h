@@ -8,7 +8,7 @@ namespace taut {
 /// of many points on it. False where that is zero. @pre its curves are valid
 bool runs_counter_clockwise(const TrimLoop& loop);
 
-/// The same loop in the other sense, over the same ranges of its curves' parameters.
+/// The loop run through in the other sense, over the same ranges of its curves' parameters.
 TrimLoop reversed(const TrimLoop& loop);
 
 }  // namespace taut
