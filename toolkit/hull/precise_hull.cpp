@@ -12,7 +12,7 @@ namespace {
 
 /// How often the boundary is sought again with support points that the mesh met on no face of it,
 /// unless more spots of it than so many could not be resolved: these are then not what it wants.
-constexpr int stray_rounds = 2;
+constexpr int uncovered_rounds = 2;
 constexpr std::size_t few_unresolved = 16;
 
 bool wants_more(const HullBoundary& boundary) {
@@ -40,18 +40,18 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   for (int round = 0;; ++round) {
     auto boundary = std::make_shared<HullBoundary>(
         exact_boundary(geometry, culling, options, statistics, found));
-    std::vector<Sample> strays;
+    std::vector<Sample> uncovered_samples;
     try {
-      Hull hull = boundary_mesh(scene, geometry, boundary, options, &strays);
-      if (!strays.empty() && round < stray_rounds && wants_more(*boundary)) {
+      Hull hull = boundary_mesh(scene, geometry, boundary, options, &uncovered_samples);
+      if (!uncovered_samples.empty() && round < uncovered_rounds && wants_more(*boundary)) {
         // The mesh has met faces that were not known: once more, with what it met.
-        found.insert(found.end(), strays.begin(), strays.end());
+        found.insert(found.end(), uncovered_samples.begin(), uncovered_samples.end());
         statistics += hull.statistics;
         continue;
       }
       // Of a search that was given up they tell nothing new.
-      if (boundary->exhausted) strays.clear();
-      for (const Sample& s : strays) {
+      if (boundary->exhausted) uncovered_samples.clear();
+      for (const Sample& s : uncovered_samples) {
         boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
       }
       hull.statistics += statistics;
