@@ -10,7 +10,6 @@
 #include "taut/bounds/search_stack.h"
 #include "taut/bounds/second_order.h"
 #include "taut/bounds/support_polish.h"
-#include "taut/core/error.h"
 #include "taut/core/progress.h"
 
 namespace taut {
