@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -158,6 +160,61 @@ TEST(Climb, OnCurves) {
   const Climbs open = climb_nearby({{}, {twisted_cubic()}, {}}, 0.01, 300);
   EXPECT_EQ(open.none, 0);
   EXPECT_GE(open.reached, 280);
+}
+
+/// Strips of z = -a x^2 - b y^2 - kink |x| over |y| <= 1, between these values of x.
+Shape parabolic_strips(const std::vector<double>& x, double a, double b, double kink) {
+  Shape result;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const std::array<double, 3> along = {x[k], 0.5 * (x[k] + x[k + 1]), x[k + 1]};
+    const std::array<double, 3> squares = {x[k] * x[k], x[k] * x[k + 1], x[k + 1] * x[k + 1]};
+    BezierPatch strip{2, 2, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double z = -a * squares[i] - b * (j == 1 ? -1 : 1) - kink * std::abs(along[i]);
+        strip.points.emplace_back(along[i], j - 1, z, 1);
+      }
+    }
+    result.surfaces.push_back(as_nurbs(strip));
+  }
+  return result;
+}
+
+TEST(Climb, OverManyPatches) {
+  std::vector<double> x(101);
+  std::iota(x.begin(), x.end(), 0);
+  const Scene scene = make_scene(parabolic_strips(x, 1e-3, 0.1, 0));
+  const ContactGeometry geometry(scene);
+  const std::optional<Contact> top =
+      climbed(geometry, {0, SourceKind::face, 0, 0.5, 0.5}, unit(dvec3(2e-3 * 98.25, 0, 1)));
+  ASSERT_TRUE(top);
+  EXPECT_LT(glm::distance(scene.frame().to_model(geometry.point(*top)),
+                          dvec3(98.25, 0, -1e-3 * 98.25 * 98.25)),
+            1e-9);
+}
+
+/// Along a join that is a ridge, if one that counts as smooth: the maximum on it is met, though no
+/// direction near it is normal to a patch there.
+TEST(Climb, AlongARidge) {
+  const Scene scene = make_scene(parabolic_strips({-1, 0, 1}, 0.3, 0.4, 2e-4));
+  const ContactGeometry geometry(scene);
+  Random random(3);
+  for (int k = 0; k < 100; ++k) {
+    const double y = uniform(random, -0.9, 0.9);
+    const double lean = uniform(random, -1e-4, 1e-4);
+    const dvec3 n = unit(dvec3(lean, 0.8 * y, 1));
+    const Contact from{0, SourceKind::face, pick(random, 0, 1), uniform(random, 0.1, 0.9),
+                       uniform(random, 0.1, 0.9)};
+    const ClimbedContact top = climb(geometry, from, n);
+    EXPECT_LT(glm::distance(scene.frame().to_model(top.x), dvec3(0, y, -0.4 * y * y)), 1e-8) << k;
+    EXPECT_EQ(top.h, glm::dot(top.x, n));
+    EXPECT_EQ(geometry.point(top.contact), top.x);
+    // Where the direction leaves the ridge, the climb does.
+    const dvec3 aside = unit(dvec3(std::copysign(0.1, lean), 0.8 * y, 1));
+    const std::optional<Contact> off = climbed(geometry, top.contact, aside);
+    ASSERT_TRUE(off) << k;
+    EXPECT_LT(glm::length(glm::cross(unit_normal(geometry, *off), aside)), 1e-9) << k;
+  }
 }
 
 TEST(Climb, StartsAtPolesAndCorners) {

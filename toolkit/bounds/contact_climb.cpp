@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
@@ -66,6 +65,9 @@ class Climb {
   Climb(const ContactGeometry& geometry, const Contact& c, const dvec3& n)
       : geometry_(geometry), c_(c), n_(n) {}
 
+  /// The highest contact that the climb has been at.
+  const ClimbedContact& highest() const { return highest_; }
+
   std::optional<Contact> run() {
     if (c_.kind == SourceKind::face && geometry_.is_ruled(c_)) c_ = at_rest(geometry_, c_, n_);
     for (int k = 0; k < step_limit; ++k) {
@@ -80,7 +82,7 @@ class Climb {
 
  private:
   enum class Progress { moved, arrived, lost };
-  static constexpr int step_limit = 60;
+  static constexpr int step_limit = 400;
   /// Steps of the point shorter than this end the climb; the maximum is flat there.
   static constexpr double short_step = 1e-13;
   /// Steps shorter than this that do not get shorter are rounding, which poles magnify.
@@ -92,8 +94,18 @@ class Climb {
   /// Beside the tangents' own length: those about a pole are as short as they like, their rounding
   /// is not.
   static constexpr double small_tangent = 0.01;
+  /// A rise of the value that is more than rounding.
+  static constexpr double least_gain = 16 * rounding_unit;
   /// Share of a patch that steps may take where the value is not concave.
   static constexpr double stride = 0.2;
+
+  /// The jet at the contact, which becomes the highest one if it is.
+  ContactJet visit() {
+    const ContactJet j = geometry_.jet(c_);
+    const double h = glm::dot(j.x, n_);
+    if (h >= highest_.h - least_gain) highest_ = {c_, j.x, h};
+    return j;
+  }
 
   /// What rounding may leave of a level tangent's slope, by the tangent's length.
   double slack(double size) const { return flat * size + geometry_.rounding(); }
@@ -114,34 +126,73 @@ class Climb {
   Progress leave(const ContactExit& exit) {
     const std::optional<Contact> next = beyond(geometry_, c_, exit);
     if (!next) return Progress::lost;
+    came_from_ = c_;
     c_ = *next;
     return Progress::moved;
   }
+  /// Over the side lies what the climb has just come from: the join is a ridge.
+  bool leads_back(Side side) const {
+    if (!came_from_) return false;
+    const std::optional<Contact> next = beyond(geometry_, c_, {ContactExit::Kind::side, int(side)});
+    return next && same_element(*next, *came_from_);
+  }
 
   Progress on_face() {
-    if (at_its_pole()) return Progress::arrived;
-    const ContactJet j = geometry_.jet(c_);
+    const bool at_pole_for_good = at_its_pole();
+    const ContactJet j = visit();
+    if (at_pole_for_good) return Progress::arrived;
     const dvec2 slope(glm::dot(j.dx[0], n_), glm::dot(j.dx[1], n_));
     const dvec2 size(glm::length(j.dx[0]), glm::length(j.dx[1]));
-    dvec2 at(c_.u, c_.v);
+    std::optional<int> held;
     for (int a = 0; a < 2; ++a) {
-      const bool low = at[a] <= 0 && slope[a] < -slack(size[a] + small_tangent);
-      const bool high = at[a] >= 1 && slope[a] > slack(size[a] + small_tangent);
-      if (!low && !high) continue;
-      const Side side = a == 0 ? (low ? Side::u0 : Side::u1) : (low ? Side::v0 : Side::v1);
-      if (is_pole(geometry_, c_, side)) return off_the_pole();
-      return leave({ContactExit::Kind::side, int(side)});
+      const std::optional<Side> side = uphill_side(a, slope[a], size[a]);
+      if (!side) continue;
+      if (is_pole(geometry_, c_, *side)) return off_the_pole();
+      if (!leads_back(*side)) return leave({ContactExit::Kind::side, int(*side)});
+      held = a;
     }
+    const dvec2 step = step_uphill(j, slope, size, held);
+    for (int a = 0; a < 2; ++a) {
+      if (step[a] != 0 && at_pole(a, step[a]) && distance_to_side(a, step[a]) < pole_parameter) {
+        return off_the_pole();
+      }
+    }
+    const double length = glm::length(step * size);
+    const bool noise = length < noise_step && length > 0.5 * last_length_;
+    last_length_ = length;
+    came_from_.reset();
+    if (length <= short_step || noise) {
+      if (held) return Progress::lost;
+      return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
+    }
+    const bool still = glm::length(taken(step) * size) <= short_step;
+    return still && ++stuck_ > 4 ? Progress::lost : Progress::moved;
+  }
+
+  /// The side on which the contact is, of the two that bound the parameter, if the value grows
+  /// beyond.
+  std::optional<Side> uphill_side(int parameter, double slope, double size) const {
+    const double at = parameter == 0 ? c_.u : c_.v;
+    const double least = slack(size + small_tangent);
+    if (at <= 0 && slope < -least) return parameter == 0 ? Side::u0 : Side::v0;
+    if (at >= 1 && slope > least) return parameter == 0 ? Side::u1 : Side::v1;
+    return std::nullopt;
+  }
+
+  /// Newton's step where the value is concave; else uphill in each parameter but the one that is
+  /// held. None over a border.
+  dvec2 step_uphill(const ContactJet& j, const dvec2& slope, const dvec2& size,
+                    std::optional<int> held) const {
     const double uu = glm::dot(j.dxx, n_);
     const double uv = glm::dot(j.dxy, n_);
     const double vv = glm::dot(j.dyy, n_);
     dvec2 step(0.0);
     const double det = uu * vv - uv * uv;
-    if (uu < 0 && det > geometry_.rounding() * std::abs(uu + vv)) {
+    if (!held && uu < 0 && det > geometry_.rounding() * std::abs(uu + vv)) {
       step = {(uv * slope.y - vv * slope.x) / det, (uv * slope.x - uu * slope.y) / det};
     } else {
       for (int a = 0; a < 2; ++a) {
-        if (size[a] == 0) continue;
+        if (size[a] == 0 || a == held) continue;
         const double second = a == 0 ? uu : vv;
         // Where the value is not concave, far, off a minimum too; where it is flat, nowhere.
         const bool level = std::abs(slope[a]) <= slack(size[a] + small_tangent) &&
@@ -149,20 +200,14 @@ class Climb {
         step[a] = level ? 0 : second < 0 ? -slope[a] / second : std::copysign(stride, slope[a]);
       }
     }
-    // On a border that the slope does not lead over.
     for (int a = 0; a < 2; ++a) {
       if (step[a] != 0 && room_for(a, step[a]) <= 0) step[a] = 0;
     }
-    for (int a = 0; a < 2; ++a) {
-      const double room = step[a] < 0 ? at[a] : 1 - at[a];
-      if (step[a] != 0 && at_pole(a, step[a]) && room < pole_parameter) return off_the_pole();
-    }
-    const double length = glm::length(step * size);
-    const bool noise = length < noise_step && length > 0.5 * last_length_;
-    last_length_ = length;
-    if (length <= short_step || noise) {
-      return pole_side(geometry_, c_) ? off_the_pole() : Progress::arrived;
-    }
+    return step;
+  }
+
+  /// Takes the step, half of the patch at most, up to the border. What is left of it.
+  dvec2 taken(dvec2 step) {
     const double longest = std::max(std::abs(step.x), std::abs(step.y));
     if (longest > 0.5) step *= 0.5 / longest;
     double share = 1;
@@ -170,17 +215,19 @@ class Climb {
       const double room = room_for(a, step[a]);
       if (std::abs(step[a]) > room) share = std::min(share, room / std::abs(step[a]));
     }
+    dvec2 at(c_.u, c_.v);
     for (int a = 0; a < 2; ++a) {
       const double room = room_for(a, step[a]);
-      // The same quotient: the product may be rounded to less than the room.
+      const double end = step[a] < 0 ? 0 : 1;
+      at[a] = std::clamp(at[a] + share * step[a], 0.0, 1.0);
+      // The product may be rounded to less than the room, or leave of it what is rounding alone.
       const bool meets = std::abs(step[a]) > room && room / std::abs(step[a]) <= share;
-      at[a] = meets && !at_pole(a, step[a]) ? (step[a] < 0 ? 0.0 : 1.0)
-                                            : std::clamp(at[a] + share * step[a], 0.0, 1.0);
+      const bool all_but_meets = step[a] != 0 && std::abs(end - at[a]) < rounding_unit;
+      if ((meets || all_but_meets) && !at_pole(a, step[a])) at[a] = end;
     }
-    const bool still = share * glm::length(step * size) <= short_step;
     c_.u = at.x;
     c_.v = at.y;
-    return still && ++stuck_ > 4 ? Progress::lost : Progress::moved;
+    return share * step;
   }
 
   /// About a pole whose normal is n: moves there. Parameters are of no use so near to it.
@@ -213,16 +260,19 @@ class Climb {
         parameter == 0 ? (step < 0 ? Side::u0 : Side::u1) : (step < 0 ? Side::v0 : Side::v1);
     return is_pole(geometry_, c_, side);
   }
+  double distance_to_side(int parameter, double step) const {
+    const double at = parameter == 0 ? c_.u : c_.v;
+    return step < 0 ? at : 1 - at;
+  }
   /// How far a step may go: to the border, but only most of the way to a pole, where the parameters
   /// fail.
   double room_for(int parameter, double step) const {
-    const double at = parameter == 0 ? c_.u : c_.v;
-    const double room = step < 0 ? at : 1 - at;
+    const double room = distance_to_side(parameter, step);
     return at_pole(parameter, step) ? 0.95 * room : room;
   }
 
   Progress on_edge() {
-    const ContactJet j = geometry_.jet(c_);
+    const ContactJet j = visit();
     const double slope = glm::dot(j.dx[0], n_);
     const double size = glm::length(j.dx[0]);
     if (c_.u <= 0 && slope < -slack(size)) return leave({ContactExit::Kind::end, 0});
@@ -254,6 +304,7 @@ class Climb {
   }
 
   Progress at_vertex() {
+    visit();
     const auto& ends = geometry_.ends(c_);
     for (std::size_t k = 0; k < ends.size(); ++k) {
       // The other end of a straight edge is a contact of its own.
@@ -270,13 +321,24 @@ class Climb {
   dvec3 n_;
   int stuck_ = 0;
   bool left_pole_ = false;
-  double last_length_ = std::numeric_limits<double>::infinity();
+  /// The contact before the last step, if that led to another element.
+  std::optional<Contact> came_from_;
+  double last_length_ = infinity;
+  ClimbedContact highest_;
 };
 
 }  // namespace
 
 std::optional<Contact> climbed(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
   return Climb(geometry, geometry.canonical(clamped(c)), n).run();
+}
+
+ClimbedContact climb(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
+  Climb way(geometry, geometry.canonical(clamped(c)), n);
+  way.run();
+  ClimbedContact result = way.highest();
+  result.contact = geometry.canonical(result.contact);
+  return result;
 }
 
 std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "taut/envelope/contact_climb.h"
+#include "taut/bounds/contact_climb.h"
 #include "taut/envelope/envelope_pixel.h"
 #include "taut/envelope/envelope_statistics.h"
 #include "taut/envelope/gauss_triangles.h"

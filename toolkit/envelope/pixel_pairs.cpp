@@ -84,8 +84,8 @@ bool is_bridging(const EnvelopeContent& content, const EnvelopePixel& p, const E
   const ClimbedContact b = content.climbed(q);
   const double distance = glm::distance(a.x, b.x);
   if (distance <= least_distance) return false;
-  const double missed = glm::distance(climb(content.geometry, a.place, n).x, b.x) +
-                        glm::distance(climb(content.geometry, b.place, m).x, a.x);
+  const double missed = glm::distance(climb(content.geometry, a.contact, n).x, b.x) +
+                        glm::distance(climb(content.geometry, b.contact, m).x, a.x);
   return missed > bridging_share * distance;
 }
 
@@ -101,8 +101,8 @@ EnvelopeCurvePoint curve_point(const EnvelopeContent& content, const EnvelopePix
     const double at_n = glm::dot(a.x - b.x, n);
     const double t = at_m > at_n ? std::clamp(at_m / (at_m - at_n), 0.0, 1.0) : 0.5;
     result.n = unit((1 - t) * m + t * n);
-    a = climb(content.geometry, a.place, result.n);
-    b = climb(content.geometry, b.place, result.n);
+    a = climb(content.geometry, a.contact, result.n);
+    b = climb(content.geometry, b.contact, result.n);
   }
   result.contact = {content.told(a.contact), content.told(b.contact)};
   result.point = {to_model(content, a.x), to_model(content, b.x)};
@@ -125,15 +125,19 @@ std::optional<EnvelopeTriplePoint> common_plane(const EnvelopeContent& content,
     const double moved = glm::distance(next, n);
     n = next;
     for (std::size_t k = 0; k < 3; ++k) {
-      three[k] = climb(content.geometry, three[k].place, n);
+      three[k] = climb(content.geometry, three[k].contact, n);
     }
     if (moved < 1e-14) break;
   }
   const double tie = 1e-9;
   const auto on_plane = [&](const ClimbedContact& c) { return std::abs(c.h - three[0].h) < tie; };
   if (!on_plane(three[1]) || !on_plane(three[2])) return std::nullopt;
+  // Climbs of two may end in one contact, through which and the third there is no one plane.
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (glm::distance(three[k].x, three[(k + 1) % 3].x) <= least_distance) return std::nullopt;
+  }
   for (std::size_t k = 3; k < contacts.size(); ++k) {
-    const ClimbedContact c = climb(content.geometry, contacts[k].place, n);
+    const ClimbedContact c = climb(content.geometry, contacts[k].contact, n);
     if (on_plane(c)) {
       three.push_back(c);
     } else if (c.h > three[0].h) {
@@ -166,7 +170,7 @@ std::optional<EnvelopeTriplePoint> plane_over_hole(const EnvelopeContent& conten
     const auto [e0, e1] = tangent_frame(n);
     const std::array<dvec3, 4> around = {e0, e1, -e0, -e1};
     for (std::size_t k = 0; k < contacts.size(); ++k) {
-      contacts[k] = climb(content.geometry, contacts[k].place, unit(n + angle * around[k % 4]));
+      contacts[k] = climb(content.geometry, contacts[k].contact, unit(n + angle * around[k % 4]));
     }
     if (spread() < hole_size) return std::nullopt;
     n = plane_normal(contacts, n);
