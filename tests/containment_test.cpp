@@ -9,8 +9,8 @@
 #include "error_checks.h"
 #include "taut/containment/contact_curvature.h"
 #include "taut/containment/hull_containment.h"
-#include "taut/containment/nearest_in_simplex.h"
 #include "taut/containment/triangle_rays.h"
+#include "taut/core/nearest_in_simplex.h"
 
 namespace taut {
 namespace {

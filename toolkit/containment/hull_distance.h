@@ -7,7 +7,7 @@
 #include "taut/bounds/support_polish.h"
 #include "taut/bounds/support_query.h"
 #include "taut/containment/contact_curvature.h"
-#include "taut/containment/nearest_in_simplex.h"
+#include "taut/core/nearest_in_simplex.h"
 #include "taut/hull/polytope/point_hull.h"
 #include "taut/hull/result/sample.h"
 

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "taut/containment/closed_surface.h"
-#include "taut/containment/nearest_in_simplex.h"
 #include "taut/containment/placed_surface.h"
 #include "taut/containment/point_batches.h"
 #include "taut/containment/ray_crossings.h"
 #include "taut/containment/surface_distance.h"
+#include "taut/core/nearest_in_simplex.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {

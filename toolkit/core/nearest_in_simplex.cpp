@@ -1,4 +1,4 @@
-#include "taut/containment/nearest_in_simplex.h"
+#include "taut/core/nearest_in_simplex.h"
 
 #include <limits>
 
