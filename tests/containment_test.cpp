@@ -313,43 +313,6 @@ TEST(ContactCurvature, ProjectionStepsFindTheRulingOfTwoContacts) {
   EXPECT_NEAR(glm::distance(next, unit({0.2, 1.7, 0.4})), 0, 1e-14);
 }
 
-TEST(NearestInSimplex, LiesInTheSimplexAndNoCornerIsNearerToTheOrigin) {
-  Random random(11);
-  for (int k = 0; k < 10'000; ++k) {
-    std::vector<dvec3> points(std::size_t(pick(random, 1, 4)));
-    const double size = log_uniform(random, 1e-9, 1);
-    for (dvec3& p : points) p = dvec3(0.5, 0, 0) + size * random_point(random);
-    const NearestInSimplex nearest = nearest_in_simplex(points);
-    dvec3 sum(0.0);
-    double weights = 0;
-    for (int i = 0; i < nearest.size; ++i) {
-      const auto at = std::size_t(i);
-      EXPECT_GT(nearest.weight[at], 0);
-      weights += nearest.weight[at];
-      sum += nearest.weight[at] * points[std::size_t(nearest.carrier[at])];
-    }
-    EXPECT_NEAR(weights, 1, 1e-15);
-    if (nearest.contains_origin) continue;
-    EXPECT_NEAR(glm::distance(sum, nearest.point), 0, 1e-14);
-    // No corner is below the plane across the nearest point: it is the nearest of all.
-    for (const dvec3& p : points) {
-      EXPECT_GE(glm::dot(p - nearest.point, unit(nearest.point)), -1e-13);
-    }
-  }
-}
-
-TEST(NearestInSimplex, KnowsTheOriginInATetrahedron) {
-  const std::vector<dvec3> about = {{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
-  EXPECT_TRUE(nearest_in_simplex(about).contains_origin);
-  std::vector<dvec3> beside = about;
-  for (dvec3& p : beside) p.x += 1.2;
-  EXPECT_FALSE(nearest_in_simplex(beside).contains_origin);
-  EXPECT_FALSE(nearest_in_simplex(std::span(about).first(3)).contains_origin);
-  const std::vector<dvec3> flat = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
-  EXPECT_FALSE(nearest_in_simplex(flat).contains_origin);
-  EXPECT_EQ(glm::length(nearest_in_simplex(flat).point), 0);
-}
-
 /// An octahedron, far from the origin and small.
 struct Octahedron {
   dvec3 middle = dvec3(100, 200, 300);

@@ -70,7 +70,7 @@ class Climb {
 
   std::optional<Contact> run() {
     if (c_.kind == SourceKind::face && geometry_.is_ruled(c_)) c_ = at_rest(geometry_, c_, n_);
-    for (int k = 0; k < step_limit; ++k) {
+    for (int k = 0; k < step_limit && idle_ < idle_limit; ++k) {
       const Progress progress = c_.kind == SourceKind::face   ? on_face()
                                 : c_.kind == SourceKind::edge ? on_edge()
                                                               : at_vertex();
@@ -82,7 +82,10 @@ class Climb {
 
  private:
   enum class Progress { moved, arrived, lost };
+  /// Steps, and those since the last gain. Usual are five; one or two more for each patch on the
+  /// way.
   static constexpr int step_limit = 400;
+  static constexpr int idle_limit = 60;
   /// Steps of the point shorter than this end the climb; the maximum is flat there.
   static constexpr double short_step = 1e-13;
   /// Steps shorter than this that do not get shorter are rounding, which poles magnify.
@@ -103,6 +106,7 @@ class Climb {
   ContactJet visit() {
     const ContactJet j = geometry_.jet(c_);
     const double h = glm::dot(j.x, n_);
+    idle_ = h > highest_.h + least_gain ? 0 : idle_ + 1;
     if (h >= highest_.h - least_gain) highest_ = {c_, j.x, h};
     return j;
   }
@@ -319,6 +323,7 @@ class Climb {
   const ContactGeometry& geometry_;
   Contact c_;
   dvec3 n_;
+  int idle_ = 0;
   int stuck_ = 0;
   bool left_pole_ = false;
   /// The contact before the last step, if that led to another element.

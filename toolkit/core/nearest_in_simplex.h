@@ -9,9 +9,11 @@ namespace taut {
 
 /// The point of least norm in the convex hull of up to four points.
 struct NearestInSimplex {
-  /// In the convex hull but for four rounding units of the farthest point's distance.
+  /// The sum of the carrying points times their weights, so that it lies in the convex hull but for
+  /// four rounding units of the farthest point's distance.
   dvec3 point = dvec3(0.0);
   /// Unit, towards it; across the triangle where it lies in one, also if the point is the origin.
+  /// Across the nearest side where the origin is inside.
   dvec3 direction = dvec3(0.0);
   /// The points that carry it, by number, with their positive weights of sum one.
   std::array<int, 4> carrier = {-1, -1, -1, -1};
@@ -21,7 +23,8 @@ struct NearestInSimplex {
   bool contains_origin = false;
 };
 
-/// Looks at all vertices, sides and faces; those of no area, up to underflow, are passed over.
+/// Looks at all vertices, sides and faces; those of no area, up to underflow, are passed over. Of
+/// faces that are equally near but for rounding the larger carries: its normal tells the direction.
 /// @pre 1 <= points.size() <= 4
 NearestInSimplex nearest_in_simplex(std::span<const dvec3> points);
 

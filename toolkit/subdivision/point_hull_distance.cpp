@@ -1,58 +1,31 @@
 #include "taut/subdivision/point_hull_distance.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "taut/core/nearest_in_simplex.h"
 #include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
 
-Eigen::Vector3d vector(const dvec3& p) { return {p.x, p.y, p.z}; }
-
-/// The corral of Wolfe's algorithm: points with their barycentric weights.
+/// Points that carry the point of their convex hull nearest to another one, as seen from that.
 struct Corral {
-  dvec3 origin;
-  std::vector<dvec3> points;
-  std::vector<double> weights;
+  std::vector<dvec3> offsets;
+  NearestInSimplex nearest;
 
-  /// From the origin to the point of these weights.
-  dvec3 sum() const {
-    dvec3 x(0.0);
-    for (std::size_t i = 0; i < points.size(); ++i) x += weights[i] * (points[i] - origin);
-    return x;
-  }
+  explicit Corral(const dvec3& offset) : offsets({offset}), nearest(nearest_in_simplex(offsets)) {}
 
-  /// Weights of the point of the affine hull that is nearest to the origin. By the differences of
-  /// points, not by their products, which would tell distances to the root of rounding only.
-  std::vector<double> affine_minimizer() const {
-    const auto n = static_cast<Eigen::Index>(points.size()) - 1;
-    Eigen::Matrix3Xd differences(3, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      differences.col(i) = vector(points[std::size_t(i) + 1] - points[0]);
+  /// With one more point, without those that carry nothing.
+  void add(const dvec3& offset) {
+    std::vector<dvec3> next;
+    for (int k = 0; k < nearest.size; ++k) {
+      next.push_back(offsets[std::size_t(nearest.carrier[std::size_t(k)])]);
     }
-    const Eigen::VectorXd solution =
-        differences.colPivHouseholderQr().solve(vector(origin - points[0]));
-    std::vector<double> result = {1 - solution.sum()};
-    result.insert(result.end(), solution.begin(), solution.end());
-    return result;
-  }
-
-  /// Moves towards the weights until one of them vanishes, and drops its point; false if none does.
-  bool step_towards(const std::vector<double>& to) {
-    double share = 1;
-    for (std::size_t i = 0; i < to.size(); ++i) {
-      if (to[i] <= 0) share = std::min(share, weights[i] / (weights[i] - to[i]));
-    }
-    const bool whole = std::all_of(to.begin(), to.end(), [](double w) { return w > 0; });
-    for (std::size_t i = 0; i < to.size(); ++i) weights[i] += share * (to[i] - weights[i]);
-    if (whole) return false;
-    const auto least = std::min_element(weights.begin(), weights.end());
-    points.erase(points.begin() + (least - weights.begin()));
-    weights.erase(least);
-    return true;
+    next.push_back(offset);
+    offsets = std::move(next);
+    nearest = nearest_in_simplex(offsets);
   }
 };
 
@@ -70,8 +43,8 @@ double PointHullDistance::bound(const dvec3& p, double enough) {
   const dvec3 nearest = points_.nearest(p);
   std::vector<dvec3> untried = recent_;  // each once: it may seem to descend by rounding
   std::erase(untried, nearest);
-  Corral corral{p, {nearest}, {1.0}};
-  dvec3 x = corral.sum();
+  Corral corral(nearest - p);
+  dvec3 x = corral.nearest.point;
   const auto rounding_of = [&](const dvec3& q) {
     return 16 * rounding_unit * (glm::length(p) + glm::length(q));
   };
@@ -92,17 +65,13 @@ double PointHullDistance::bound(const dvec3& p, double enough) {
       recent_.push_back(q);
     }
     Corral next = corral;
-    next.points.push_back(q);
-    next.weights.push_back(0);
-    while (next.points.size() > 1 && next.step_towards(next.affine_minimizer())) {
-    }
-    if (next.points.size() == 1) next.weights[0] = 1;
-    const dvec3 to = next.sum();
-    if (glm::length(to) < best) {
+    next.add(q - p);
+    if (glm::length(next.nearest.point) < best) {
       corral = std::move(next);
-      x = to;
+      x = corral.nearest.point;
       best = glm::length(x);
       rounding = std::max(rounding, rounding_of(q));
+      if (corral.nearest.contains_origin) break;
     } else if (!known) {
       break;
     }
