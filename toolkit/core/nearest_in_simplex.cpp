@@ -116,4 +116,17 @@ class Search {
 
 NearestInSimplex nearest_in_simplex(std::span<const dvec3> points) { return Search(points).run(); }
 
+Corral::Corral(const dvec3& point)
+    : points_{point}, nearest_(nearest_in_simplex(std::span(points_).first(1))) {}
+
+void Corral::add(const dvec3& point) {
+  const std::array<dvec3, 4> before = points_;
+  const auto size = std::size_t(nearest_.size);
+  for (std::size_t k = 0; k < size; ++k) {
+    points_[k] = before[std::size_t(nearest_.carrier[k])];
+  }
+  points_[size] = point;
+  nearest_ = nearest_in_simplex(std::span(points_).first(size + 1));
+}
+
 }  // namespace taut

@@ -28,4 +28,20 @@ struct NearestInSimplex {
 /// @pre 1 <= points.size() <= 4
 NearestInSimplex nearest_in_simplex(std::span<const dvec3> points);
 
+/// Points that carry the point of least norm in their convex hull (Wolfe 1976, "Finding the nearest
+/// point in a polytope"; Gilbert, Johnson and Keerthi 1988).
+class Corral {
+ public:
+  explicit Corral(const dvec3& point);
+
+  /// Takes one more point, and drops those that carry nothing then.
+  /// @pre the origin is not inside
+  void add(const dvec3& point);
+  const NearestInSimplex& nearest() const { return nearest_; }
+
+ private:
+  std::array<dvec3, 4> points_;
+  NearestInSimplex nearest_;
+};
+
 }  // namespace taut

@@ -1,7 +1,6 @@
 #include "taut/subdivision/point_hull_distance.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "taut/core/nearest_in_simplex.h"
@@ -9,25 +8,6 @@
 
 namespace taut {
 namespace {
-
-/// Points that carry the point of their convex hull nearest to another one, as seen from that.
-struct Corral {
-  std::vector<dvec3> offsets;
-  NearestInSimplex nearest;
-
-  explicit Corral(const dvec3& offset) : offsets({offset}), nearest(nearest_in_simplex(offsets)) {}
-
-  /// With one more point, without those that carry nothing.
-  void add(const dvec3& offset) {
-    std::vector<dvec3> next;
-    for (int k = 0; k < nearest.size; ++k) {
-      next.push_back(offsets[std::size_t(nearest.carrier[std::size_t(k)])]);
-    }
-    next.push_back(offset);
-    offsets = std::move(next);
-    nearest = nearest_in_simplex(offsets);
-  }
-};
 
 /// From the point p + x towards q it is nearer to p, by more than rounding.
 bool descends(const dvec3& p, const dvec3& x, const dvec3& q) {
@@ -44,7 +24,7 @@ double PointHullDistance::bound(const dvec3& p, double enough) {
   std::vector<dvec3> untried = recent_;  // each once: it may seem to descend by rounding
   std::erase(untried, nearest);
   Corral corral(nearest - p);
-  dvec3 x = corral.nearest.point;
+  dvec3 x = corral.nearest().point;
   const auto rounding_of = [&](const dvec3& q) {
     return 16 * rounding_unit * (glm::length(p) + glm::length(q));
   };
@@ -66,12 +46,12 @@ double PointHullDistance::bound(const dvec3& p, double enough) {
     }
     Corral next = corral;
     next.add(q - p);
-    if (glm::length(next.nearest.point) < best) {
-      corral = std::move(next);
-      x = corral.nearest.point;
+    if (glm::length(next.nearest().point) < best) {
+      corral = next;
+      x = corral.nearest().point;
       best = glm::length(x);
       rounding = std::max(rounding, rounding_of(q));
-      if (corral.nearest.contains_origin) break;
+      if (corral.nearest().contains_origin) break;
     } else if (!known) {
       break;
     }

@@ -1,8 +1,6 @@
 #include "taut/hull/polytope/certificate.h"
 
 #include <algorithm>
-#include <utility>
-#include <vector>
 
 #include "taut/core/nearest_in_simplex.h"
 #include "taut/core/tolerances.h"
@@ -33,23 +31,16 @@ double cone_depth(std::span<const dvec3> directions) {
   double best = bound_at(mean).bound;
   if (best > narrow) return best;
 
-  std::vector<dvec3> points = {directions.front()};
-  NearestInSimplex nearest = nearest_in_simplex(points);
+  Corral corral(directions.front());
   for (int k = 0; k < iterations; ++k) {
-    const double length = glm::length(nearest.point);
-    const auto [w, bound] = bound_at(nearest.direction);
+    const double length = glm::length(corral.nearest().point);
+    const auto [w, bound] = bound_at(corral.nearest().direction);
     best = std::max(best, bound);
-    if (nearest.contains_origin || length - bound < 0.01 * length) break;
-    std::vector<dvec3> next;
-    for (int i = 0; i < nearest.size; ++i) {
-      next.push_back(points[std::size_t(nearest.carrier[std::size_t(i)])]);
-    }
-    next.push_back(w);
-    points = std::move(next);
-    nearest = nearest_in_simplex(points);
-    if (glm::length(nearest.point) < length) continue;
+    if (corral.nearest().contains_origin || length - bound < 0.01 * length) break;
+    corral.add(w);
+    if (glm::length(corral.nearest().point) < length) continue;
     // Rounding is reached.
-    best = std::max(best, bound_at(nearest.direction).bound);
+    best = std::max(best, bound_at(corral.nearest().direction).bound);
     break;
   }
   return std::min(best, 1.0);
