@@ -94,7 +94,7 @@ class Climb {
   static constexpr double flat = 1e-13;
   /// Normal curvature from which on a level point is a minimum.
   static constexpr double bent = 1e-9;
-  /// Beside the tangents' own length: those about a pole are as short as they like, their rounding
+  /// Added to a tangent's length: about a pole tangents are as short as they like, their rounding
   /// is not.
   static constexpr double small_tangent = 0.01;
   /// A rise of the value that is more than rounding.
@@ -102,7 +102,7 @@ class Climb {
   /// Share of a patch that steps may take where the value is not concave.
   static constexpr double stride = 0.2;
 
-  /// The jet at the contact, which becomes the highest one if it is.
+  /// The jet at the contact, which becomes highest() if none was higher.
   ContactJet visit() {
     const ContactJet j = geometry_.jet(c_);
     const double h = glm::dot(j.x, n_);
@@ -116,7 +116,8 @@ class Climb {
   bool is_bent(double second, double size) const {
     return second > bent * size * size + geometry_.rounding();
   }
-  /// On an edge, to within rounding: near an inflection that makes steps without end.
+  /// At the maximum along an edge, to within rounding, which near an inflection makes steps without
+  /// end.
   bool is_on_top() const {
     if (c_.kind != SourceKind::edge) return false;
     const ContactJet j = geometry_.jet(c_);

@@ -26,7 +26,7 @@ std::optional<Contact> beyond_end(const ContactGeometry& geometry, const Contact
   }
   const int next = piece.end_neighbor[std::size_t(end)];
   if (next < 0) return std::nullopt;
-  // The end at which the neighbour goes on: the one that is nearer to this one's.
+  // The end at which the neighbour goes on: the one nearer to this piece's end.
   const dvec3 here = geometry.point({c.instance, SourceKind::edge, c.element, double(end), 0});
   const auto distance = [&](double t) {
     return glm::distance(geometry.point({c.instance, SourceKind::edge, next, t, 0}), here);

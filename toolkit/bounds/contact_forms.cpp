@@ -47,7 +47,7 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
 
 Contact moved_to_border(const ContactGeometry& geometry, Contact c, double distance) {
   const ContactJet j = geometry.jet(c);
-  // Along a pole all parameters are its point, and the one that is there tells where from.
+  // Along a pole all parameters are one point, and the contact's tells from where it came.
   const std::optional<Side> pole = pole_side(geometry, c);
   const auto snap = [&](double& t, const dvec3& dx) {
     const double nearest = std::round(std::clamp(t, 0.0, 1.0));

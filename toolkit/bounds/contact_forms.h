@@ -20,8 +20,8 @@ Contact moved_to_border(const ContactGeometry& geometry, Contact c, double dista
 Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance);
 
 /// The normal form of a contact on a collapsed side, where the parameter along the side is any: at
-/// that of a contact of the same element beside it, from which a curve comes. Others are as they
-/// are.
+/// that of a contact of the same element beside it, from which a curve comes. Other contacts
+/// stay as they are.
 Contact turned_to(const ContactGeometry& geometry, Contact c, const Contact& beside);
 
 }  // namespace taut

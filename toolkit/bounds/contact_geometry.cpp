@@ -22,7 +22,8 @@ const Item& own_of(const std::vector<Item>& all, const Contact& c,
   return all[std::size_t(c.element)];
 }
 
-/// In the scene's units about the part's centre, as queries see it; w (x - c) is rounded once.
+/// The points in the scene's units about the part's centre, as queries see them; w (x - c) is
+/// rounded once.
 std::vector<dvec4> moved(const std::vector<dvec4>& points, const dvec3& center, double scale) {
   std::vector<dvec4> result;
   result.reserve(points.size());
@@ -197,7 +198,7 @@ void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
     if (first < 0 || last < 0) continue;
     const dvec3 a = own.vertices[std::size_t(first)];
     const dvec3 along = unit(own.vertices[std::size_t(last)] - a);
-    // Joints may have kinks that are smooth to within what counts as such.
+    // Joints may have kinks small enough to count as smooth.
     const auto is_on = [&](const dvec4& p) {
       return glm::length(glm::cross(euclidean(p) - a, along)) <= tie_;
     };

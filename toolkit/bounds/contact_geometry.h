@@ -102,7 +102,7 @@ class ContactGeometry {
     int piece = -1;
     int end = 0;  ///< 0: begins there, 1: ends there
   };
-  /// Also of the pieces that repeat this one.
+  /// Sides along the piece, and along the pieces that repeat it.
   /// @pre kind edge, not repeated
   const std::vector<PieceSide>& sides(const Contact& c) const;
   /// Sides of ruled patches along the piece. @pre kind edge

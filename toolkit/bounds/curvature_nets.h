@@ -16,7 +16,7 @@ namespace taut {
 /// what they tell.
 ///
 /// At a pole, a side that is one point with one tangent plane, the form and N vanish. There, too,
-/// they tell: what vanishes as powers of the distance from it is divided by them.
+/// they tell: what vanishes as powers of the distance from the pole is divided by these powers.
 class CurvatureNets {
  public:
   /// `poles`: the sides (indexed by Side) that are poles. @pre degrees are at least 1, weights
@@ -28,15 +28,15 @@ class CurvatureNets {
   SecondForm over(const Interval& u, const Interval& v) const;
   /// Over all of the square.
   SecondForm over() const;
-  /// Which of the two it surely is over all of the square: -1 negative, 1 positive definite; 0 if
+  /// What the form surely is over all of the square: -1 negative, 1 positive definite; 0 if
   /// neither.
   int definite_sign() const;
-  /// Contains the normals there.
+  /// Contains the normals over the rectangle.
   std::optional<NormalPyramid> normals(const Interval& u, const Interval& v) const;
-  /// Of all of the net.
+  /// Contains the normals over all of the square.
   std::optional<NormalPyramid> normals() const;
 
-  /// Those over the two halves of the square, in parameters of their own.
+  /// The nets over the two halves of the square, in parameters of their own.
   std::array<CurvatureNets, 2> halves(Direction direction) const;
 
  private:

@@ -49,7 +49,7 @@ class GaussMap {
   /// The nodes of a part. The roots come first, one for each patch of a face.
   std::span<const GaussNode> nodes(int part) const { return maps_[std::size_t(part)].nodes; }
   int root_count(int part) const { return maps_[std::size_t(part)].root_count; }
-  /// Such roots have no children (PatchNets).
+  /// Roots of ruled patches have no children (PatchNets).
   bool ruled(int part, int root) const { return maps_[std::size_t(part)].ruled[std::size_t(root)]; }
 
   /// A leaf and a sign with which it may touch a plane.

@@ -74,7 +74,7 @@ std::optional<NormalPyramid> normal_pyramid(std::span<const dvec3> vectors, doub
     const double y = glm::dot(v, e2) / height;
     double error = coordinate_error;
     if (vector_error > 0) {
-      // |v + e| has coordinates within |e| (1 + |x|) / (height - |e|) of these.
+      // v + e has coordinates within |e| (1 + |x|) / (height - |e|) of those of v.
       if (!(height > skipped)) return std::nullopt;
       error += 2 * vector_error / height;
     }

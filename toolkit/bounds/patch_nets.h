@@ -31,7 +31,7 @@ class PatchNets {
 
   /// The patch's control points over a rectangle of its unit square.
   std::vector<dvec4> points(const Interval& u, const Interval& v) const;
-  /// Its normal vectors there, by subdivision of the patch's.
+  /// The patch's normal vectors over the rectangle, by subdivision of its net.
   std::vector<dvec3> normals(const Interval& u, const Interval& v) const;
   void quarter_points(const std::vector<dvec4>& points, std::array<CellNets, 4>& quarters) const;
   void quarter_normals(const std::vector<dvec3>& normals, std::array<CellNets, 4>& quarters) const;

@@ -47,7 +47,7 @@ class ReachTest::Search {
   }
 
  private:
-  /// The four directions in some frame.
+  /// The directions of the pyramid's four corners, in some frame.
   struct Directions {
     std::array<dvec3, 4> n, abs_n;
 
@@ -79,7 +79,7 @@ class ReachTest::Search {
     return below(d.upper_bounds(center, half) + offset_);
   }
 
-  /// `slab`: none if the tree has none.
+  /// `slab`: null if the tree has no slabs.
   bool box_below(const Directions& d, const dvec3& center, const dvec3& half,
                  const Slab* slab) const {
     const dvec4 bounds = d.upper_bounds(center, half);

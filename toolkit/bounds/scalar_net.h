@@ -22,7 +22,7 @@ struct NetJet {
   double g, gu, gv, guu, guv, gvv;
 };
 
-/// Bounds of its second derivatives over the unit square.
+/// Bounds of such a polynomial's second derivatives over the unit square.
 struct NetCurvature {
   double uu_min, uu_max;  ///< of d^2/du^2
   double vv_min, vv_max;
@@ -205,7 +205,7 @@ template <class Visit>
 auto with_scalar_net(NetShape shape, Visit visit) {
   if (shape.p == 3 && shape.q == 3) return visit(ScalarNet<3, 3>(shape));
   if (shape.p == 2 && shape.q == 2) return visit(ScalarNet<2, 2>(shape));
-  // Next to the creases of cages.
+  // Patches next to the creases of cages.
   if (shape.p == 3 && shape.q == 6) return visit(ScalarNet<3, 6>(shape));
   if (shape.p == 6 && shape.q == 3) return visit(ScalarNet<6, 3>(shape));
   return visit(ScalarNet<-1, -1>(shape));

@@ -195,8 +195,8 @@ Slab slab_of(const BezierPatch& patch, const Box& box) {
   return slab;
 }
 
-/// Of fewer cells slabs rule out hardly any that boxes do not: those near a contact are all of
-/// them.
+/// Of fewer cells slabs rule out hardly any that boxes do not: all of the cells are near a
+/// contact.
 constexpr std::size_t least_slabs = 1024;
 
 /// Cells at which searches start, with the boxes and slabs of their control points.
@@ -206,7 +206,7 @@ struct StartCells {
   std::vector<Slab> slabs;
 };
 
-/// Those of an element's CBVH.
+/// Adds an element's start cells, from a cell of its CBVH down.
 void add_cells(const SceneElement& element, int index, const BezierPatch& patch,
                const CoonsCell& cell, StartCells& to) {
   const bool flat = element.bvh.deviation(cell) <= cell_deviation;
@@ -350,7 +350,8 @@ double value_rounding(const SceneElement& e) {
   return 2 * (16 + 40.0 * (e.shape.p + e.shape.q)) * rounding_unit * e.reach;
 }
 
-/// The same over points in the box, about its centre: three products and sums.
+/// Bound of the rounding of x . n over points in the box, about its centre: three products and
+/// sums.
 double value_rounding(const Box& box) {
   const dvec3 half = box.upper - box.center();
   return 16 * rounding_unit * (half.x + half.y + half.z);

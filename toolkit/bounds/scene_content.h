@@ -16,9 +16,10 @@ struct Slab {
   dvec3 normal = dvec3(0.0);  ///< unit; zero: there are no planes
   double lower = 0;
   double upper = 0;
-  /// Upper bound of x . n over what of a box lies between the planes, up to rounding. That of a box
-  /// about a piece of surface errs by its size where the piece is oblique to the axes; this one, if
-  /// the planes are along the piece, by its size times their angle with n's, and their distance.
+  /// Upper bound of x . n over what of a box lies between the planes, up to rounding. A box's
+  /// bound, about a piece of surface, errs by the box's size where the piece is oblique to the
+  /// axes; this one, if the planes are along the piece, by that size times the planes' angle with
+  /// n's, and the planes' distance.
   double upper_bound(const dvec3& center, const dvec3& half, const dvec3& n) const {
     const double share = glm::dot(normal, n);
     const dvec3 rest = n - share * normal;
@@ -124,8 +125,8 @@ struct SeamSide {
   bool reversed = false;
 };
 
-/// A part in the scene's units, about a centre of its own; nothing but that of one that repeats
-/// another, which no instance refers to.
+/// A part in the scene's units, about a centre of its own; nothing but the centre where the part
+/// repeats another: no instance refers to it then.
 struct ScenePart {
   dvec3 center;
   bool repeats = false;  ///< an earlier part is equal
@@ -153,7 +154,7 @@ struct SceneContent {
   std::vector<ScenePart> parts;
   std::vector<SceneInstance> instances;
   std::vector<int> distinct_instances;
-  BoxTree tree;  ///< over these
+  BoxTree tree;  ///< over the distinct instances
   Box box;
   double diagonal = 0;
   double rounding = 0;  ///< of a support value x . n, in the scene's frame

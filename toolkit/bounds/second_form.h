@@ -30,7 +30,7 @@ struct SecondForm {
 ///
 /// `touching`: control points of a rectangle (often the same one) that holds every point at which a
 /// plane with a normal from the pyramid touches. At such a point x the second derivatives of
-/// w (S - x) . n are those wanted. For polynomial patches it does not matter.
+/// w (S - x) . n are those wanted. For polynomial patches `touching` does not matter.
 /// @pre `corners` are a parallelogram's, in order; `rounding` bounds the error of a control point
 SecondForm second_form(NetShape shape, bool rational, std::span<const dvec4> points,
                        std::span<const dvec4> touching, const std::array<dvec3, 4>& corners,

@@ -100,7 +100,7 @@ std::optional<Contact> end_of_ruling(const SceneContent& scene, const Contact& c
   std::array<std::vector<PatchPoint>, 2> paths;
   for (const std::size_t k : {0u, 1u}) {
     paths[k] = ruling_path(part, at, k == 0 ? *along : -*along);
-    if (paths[k].empty()) return std::nullopt;  // it is the end
+    if (paths[k].empty()) return std::nullopt;  // the contact is the ruling's end
   }
   for (const std::vector<PatchPoint>& path : paths) {
     const PatchPoint& end = path.back();

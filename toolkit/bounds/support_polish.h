@@ -39,7 +39,7 @@ class SupportPolish {
   PolishedSupport polish(const dvec2& start);
 
   /// Where the value does not change along a parameter line (the ruling of a cylinder, a plane that
-  /// faces the direction), the line's end; else the same parameters. h is the value there.
+  /// faces the direction), the line's end; else uv. h is the value at uv.
   dvec2 end_of_flat(const dvec2& uv, double h) const;
 
  private:

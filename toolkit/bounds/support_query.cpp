@@ -297,8 +297,8 @@ SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int e
 }
 
 /// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
-/// Inside of a straight line on a patch nothing is higher than the higher one of its ends; those of
-/// a plane patch are no parameter lines.
+/// Inside of a straight line on a patch nothing is higher than the higher one of its ends; the
+/// straight lines of a plane patch are no parameter lines.
 void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
   const bool inside_u = is_inside(cell.u, cell.size_u);
   const bool inside_v = is_inside(cell.v, cell.size_v);
@@ -326,7 +326,7 @@ void SupportQuery::Search::improve(const NetCell& cell, double u, double v, doub
   converged_ = false;
 }
 
-/// The parameters at which it stands.
+/// The parameters at which the largest coefficient stands.
 template <class Net>
 dvec2 SupportQuery::Search::largest_coefficient(const Net& net, const SceneElement& e,
                                                 const double* N) {
@@ -538,7 +538,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
         open_node(entry);
     }
   }
-  // The limit may have left some open.
+  // The limit may have left entries open.
   const double proven = std::max(best_h_ + support_slack, stack_.highest());
   assert(best_.instance >= 0);  // the direction is finite
   if (!converged_ || !curved_) finish();

@@ -18,7 +18,7 @@ struct CurvedContact {
 
   /// The support point in a direction nearby, to first order.
   dvec3 point_at(const dvec3& m) const { return point + hessian * (m - n); }
-  /// The support value there, to second order.
+  /// The support value in a direction nearby, to second order.
   double value_at(const dvec3& m) const {
     return glm::dot(point, m) + 0.5 * glm::dot(m - n, hessian * (m - n));
   }

@@ -38,7 +38,7 @@ struct MeshFacet {
   dvec3 n;              ///< unit
   double outer;         ///< no point of the model is higher
   dmat3 weights;        ///< of the corners in x - middle
-  double least_weight;  ///< from which on they are positive in spite of rounding
+  double least_weight;  ///< from which on weights are positive in spite of rounding
 };
 
 }  // namespace

@@ -33,10 +33,11 @@ constexpr double same_start_point = 1e-7;
 /// Nearer to a vertex of the polytope, in the scene's frame, points make nothing but slivers.
 constexpr double sliver = 1e-12;
 
-/// So do those nearer to one than this share of the distance sought, which they change by less.
+/// So do points nearer to a vertex than this share of the distance sought, which they change by
+/// less.
 constexpr double sliver_share = 0.01;
 
-/// Farther outside than that, in the scene's frame, projections are the better search.
+/// Farther outside than this, in the scene's frame, projections are the better search.
 constexpr double next_to_boundary = 1e-6;
 
 /// Newton steps that a distance is polished by.
@@ -171,7 +172,7 @@ NearestInSimplex HullDistance::nearest_atom_simplex() const {
 }
 
 /// Takes a contact that was found in direction n to those that carry the nearest point. After
-/// Newton's step these go with the direction, where that brings them nearer.
+/// Newton's step the carriers go with the direction, where that brings the nearest point nearer.
 NearestInSimplex HullDistance::take(const Atom& found, const dvec3& n,
                                     const NearestInSimplex& nearest, bool newton) {
   std::vector<Atom> carriers;
@@ -386,7 +387,7 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
 }
 
 /// Inside, the best of the directions tried is as good as the bounds asked for; on smooth pieces
-/// Newton's method from the contacts of its facet makes it exact.
+/// Newton's method from the contacts of that direction's facet makes it exact.
 void HullDistance::polish() {
   if (best_contact_.instance < 0) return;
   for (const double regular : {1e-6, 1e-11}) {

@@ -69,7 +69,7 @@ struct ModelContainment::Content {
   std::optional<TriangleRays> rays;
   std::optional<TriangleRays> polygons;  ///< the polygons' triangles alone
   Box box;                               ///< in the scene's frame
-  double on_tolerance;                   ///< likewise
+  double on_tolerance;                   ///< in the scene's frame
   double accuracy;
   double near;  ///< closer to the tessellation floats decide nothing
 
@@ -207,7 +207,7 @@ class ModelContainment::Worker {
     return std::nullopt;
   }
 
-  /// The same of one body, or of all (-1), by rays through the surface itself.
+  /// Whether x is in one body, or in which of all (-1), by rays through the surface itself.
   std::optional<std::vector<char>> parity(const dvec3& x, int body) {
     Directions directions(x);
     for (int k = 0; k < ray_limit; ++k) {

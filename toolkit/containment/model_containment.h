@@ -51,7 +51,7 @@ class ModelContainment {
   /// @name One point, in model coordinates @throws InvalidInput if it is not finite
   /// @{
   Location locate(const dvec3& x) const;
-  /// Inside several bodies it is that to the surface of the one in which the point is deepest, and
+  /// Inside several bodies the distance to the surface of the one in which the point is deepest;
   /// `lower` accounts for what lies beyond.
   SignedDistance distance(const dvec3& x) const;
   /// @}

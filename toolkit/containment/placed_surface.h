@@ -28,7 +28,7 @@ struct PlacedSurface {
   std::vector<PlacedPatch> patches;
   std::vector<PlacedTriangle> triangles;
   int bodies = 0;
-  /// Over the boxes of either.
+  /// Over the boxes of the patches, and over those of the triangles.
   BoxTree patch_tree, triangle_tree;
   /// How far patches that are joined may be apart, and what rounding may do to points.
   double crack = 0;

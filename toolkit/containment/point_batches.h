@@ -13,7 +13,7 @@
 
 namespace taut {
 
-/// A point in the scene's frame. @throws InvalidInput if it is not finite, there or here
+/// A point in the scene's frame. @throws InvalidInput if it is not finite, before or in the frame
 inline dvec3 point_in_frame(const SceneFrame& frame, const dvec3& x) {
   const dvec3 in_frame = frame.to_frame(x);
   const double sum = std::abs(in_frame.x) + std::abs(in_frame.y) + std::abs(in_frame.z);

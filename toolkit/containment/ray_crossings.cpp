@@ -234,7 +234,7 @@ bool RayCrossings::cross(const PlacedTriangle& triangle) {
   if (from == to && from != Sign::zero) return true;
   const bool clear = std::none_of(about.begin(), about.end(), is(Sign::zero)) &&
                      from != Sign::zero && to != Sign::zero;
-  if (!clear) return collinear(a, b, c);  // one of no area is crossed by nothing
+  if (!clear) return collinear(a, b, c);  // nothing crosses a triangle of no area
   odd_[std::size_t(triangle.body)] ^= 1;
   return true;
 }

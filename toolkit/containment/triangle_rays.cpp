@@ -15,15 +15,16 @@ namespace {
 
 constexpr float ray_end = std::numeric_limits<float>::infinity();
 
-/// Floats about one: their rounding unit, and what a distance within a box of size one is off by at
-/// most when it is found in them (measured 3e-6 at ten times the box's size).
+/// What a distance within a box of size one is off by at most when it is found in floats (measured
+/// 3e-6 at ten times the box's size).
 constexpr double float_rounding = 1e-5;
 
 /// Nearer to a side than this share of a triangle, hits are doubtful (with random rays none is
 /// wrong for a thousandth; see the tests).
 constexpr float doubtful_share = 1e-3F;
 
-/// A triangle whose normal is nearer to the ray's plane than this, as a cosine, hits are doubtful.
+/// Hits of a triangle whose normal is nearer to the plane across the ray than this, as a cosine,
+/// are doubtful.
 constexpr float doubtful_cosine = 1e-3F;
 
 template <auto Release>

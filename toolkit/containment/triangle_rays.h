@@ -32,8 +32,8 @@ class TriangleRays {
   /// What all_hits() found.
   struct Hits {
     std::vector<int> triangles;  ///< ascending, none twice
-    /// One was met so near to a side that floats may have missed its neighbour, or the triangle
-    /// stands nearly along the ray.
+    /// A triangle was met so near to a side that floats may have missed its neighbour, or it stands
+    /// nearly along the ray.
     bool doubtful = false;
   };
   /// All triangles that the ray meets, into `hits`. @pre |direction| = 1 within rounding

@@ -17,7 +17,7 @@ constexpr double equator_overlap = 0.25;
 
 /// Ends of chains in the two images, or where a curve is too faint to be followed (its two contacts
 /// nearly merge), are one if they are no farther apart, in pixels, and their contacts no farther
-/// than this share of the distance between the two.
+/// than this share of the distance of the curve's two contacts.
 constexpr double join_reach = 3;
 constexpr double join_share = 0.75;
 
@@ -197,7 +197,7 @@ std::vector<Chain> ImageChains::run() {
     for (std::size_t k = 0; k < crossings_.size(); ++k) {
       Crossing& c = crossings_[k];
       if (c.used || c.outside || (!closed && inner_links(c) == 2)) continue;
-      // An end: what it leads to first is not outside.
+      // An end of a chain: the crossing that it leads to first is not outside.
       const auto is_outside = [&](int next) {
         return next >= 0 && crossings_[std::size_t(next)].outside;
       };

@@ -72,7 +72,7 @@ class ImagePolytope {
   double rise_;       ///< in the scene's frame
   std::vector<Sample> samples_;
   std::vector<dvec3> points_;               ///< per sample, in model coordinates
-  std::vector<dvec3> frame_points_;         ///< the same in the scene's frame
+  std::vector<dvec3> frame_points_;         ///< per sample, in the scene's frame
   std::map<Cell, std::vector<int>> cells_;  ///< samples by cells as wide as rise_
 };
 
@@ -81,7 +81,7 @@ ImagePolytope::Cell ImagePolytope::cell_of(const dvec3& x) const {
   return {index(x.x), index(x.y), index(x.z)};
 }
 
-/// False if there is one as good as this already.
+/// False if there is a sample as good as this one already.
 bool ImagePolytope::add(const Sample& sample) {
   const dvec3 x = content_.geometry.point(sample.contact);
   const Cell own = cell_of(x);
@@ -103,7 +103,7 @@ bool ImagePolytope::add(const Sample& sample) {
   return true;
 }
 
-/// Those that keep a vertex from its tolerance.
+/// The facets that keep a vertex from its tolerance.
 std::vector<int> ImagePolytope::wanted_facets(const SampledPolytope& polytope) const {
   std::vector<int> wanted;
   for (std::size_t f = 0; f < polytope.gaps.size(); ++f) {

@@ -14,7 +14,7 @@ namespace taut {
 /// its distance from the true hull; support queries measure the distance and choose no point. A
 /// scene that is flat has the hull of sampled_hull(). Same bits for any number of threads.
 /// @throws InvalidInput if the tolerance is not valid, HullNotConverged if the images do not show
-/// enough for it (features between pixels), or max_vertices was met, Cancelled
+/// enough for the tolerance (features between pixels), or max_vertices was met, Cancelled
 Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
                    const HullOptions& options = {});
 

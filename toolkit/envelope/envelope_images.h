@@ -50,9 +50,9 @@ class EnvelopeImages {
   }
   /// The pixel nearest to a direction, in the image of its hemisphere.
   EnvelopePixel pixel(const dvec3& n) const;
-  /// The source that is seen there (Model::source).
+  /// The source that is seen at the pixel (Model::source).
   int source(const EnvelopePixel& p) const;
-  /// The contact that is seen there, recomputed in double precision.
+  /// The contact that is seen at the pixel, recomputed in double precision.
   Contact contact(const EnvelopePixel& p) const;
 
   const EnvelopeContent& content() const { return *content_; }

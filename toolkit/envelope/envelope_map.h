@@ -12,7 +12,7 @@ namespace taut {
 struct EnvelopeRegion {
   int source = -1;
   long pixels = 0;
-  /// A pixel of it, one of those that lie deepest inside.
+  /// A pixel of the region, one of those that lie deepest inside.
   EnvelopePixel inside;
   /// How many pixels around that one are of the region too, in all eight directions: a region of
   /// depth d holds a square of 2 d + 1 pixels. Counted up to 3.

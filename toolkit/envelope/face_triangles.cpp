@@ -119,7 +119,7 @@ FaceTriangles::Point& FaceTriangles::at(int i, int j) {
 bool FaceTriangles::is_halfway(const Point& a, const Point& middle, const Point& b) const {
   const dvec3 sum = a.n + b.n;
   if (glm::length(middle.n - unit(sum)) > options_.direction_tolerance) return false;
-  // The same for the opposite normals, but for its sign.
+  // For the opposite normals the value is the same but for its sign.
   const double value = 0.5 * glm::dot(a.x + b.x, middle.n) + glm::dot(a.n - b.n, a.x - b.x) / 8;
   return std::abs(glm::dot(middle.x, middle.n) - value) <= options_.value_tolerance;
 }

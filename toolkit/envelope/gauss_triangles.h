@@ -44,7 +44,7 @@ class ElementNumbers {
 
   int count() const { return first_.back(); }
   int number(const Contact& c) const;
-  /// Of that number, at parameters zero. @pre 0 <= number < count()
+  /// The contact of that number, at parameters zero. @pre 0 <= number < count()
   Contact contact(int number) const;
 
  private:

@@ -85,7 +85,7 @@ class Regions {
     }
   }
 
-  /// How many pixels around are of the region too.
+  /// How many pixels around the pixel are of its region too.
   int depth(const ImageGrid& grid, int p) {
     const int own = sets_.find(global(grid, p));
     for (int d = 1; d <= deepest; ++d) {
@@ -100,7 +100,7 @@ class Regions {
     return deepest;
   }
 
-  /// The number of its region.
+  /// Counts the pixel to its region. The region's number.
   int count_pixel(const ImageGrid& grid, int p, std::vector<EnvelopeRegion>& regions) {
     int& number = number_[std::size_t(sets_.find(global(grid, p)))];
     if (number < 0) {

@@ -8,7 +8,7 @@
 namespace taut {
 
 /// Fills the map's regions, in the order of their first pixels, and its pixels' numbers of them.
-/// @pre its size is that of the images
+/// @pre the map's size is that of the images
 void find_regions(const EnvelopeContent& content, const std::array<ImageGrid, 2>& grids,
                   EnvelopeMap& map);
 

@@ -389,7 +389,7 @@ void OffscreenCanvas::Context::add(std::span<const Vertex> vertices) {
 
 OffscreenCanvas::Layer OffscreenCanvas::Context::draw(bool second) {
   gl_.bind_framebuffer(GL_FRAMEBUFFER, framebuffers_[second ? 1 : 0]);
-  // Not bound while it is drawn to.
+  // No texture is bound while it is drawn to.
   gl_.bind_texture(GL_TEXTURE_2D, second ? names_[0] : 0);
   const auto at = [&](const char* name) { return gl_.get_uniform_location(program_, name); };
   gl_.uniform1f(at("size"), float(size_));

@@ -63,7 +63,7 @@ class OffscreenCanvas {
   void add(std::span<const Vertex> vertices);
   /// Draws all triangles: at each pixel that of the largest value; among equal ones the first.
   Layer draw_first();
-  /// Draws those whose element is another than the one the last draw_first() left there.
+  /// Draws the triangles whose element is another than the last draw_first() left at the pixel.
   Layer draw_second();
 
  private:

@@ -10,9 +10,9 @@ namespace taut {
 namespace {
 
 /// Two contacts are on different branches if climbing from each, in the other's direction, ends
-/// away from the other: together by more than this times their distance. It is two for branches
-/// that do not meet, and at most one where the one goes on into the other, whether climbing gets
-/// across the border between them or stops there.
+/// away from the other: together by more than this times their distance. The share is two for
+/// branches that do not meet, and at most one where the one goes on into the other, whether
+/// climbing gets across the border between them or stops there.
 constexpr double bridging_share = 1.5;
 
 /// Contacts no farther apart, in the scene's frame, are one.

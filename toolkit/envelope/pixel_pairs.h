@@ -12,7 +12,7 @@ namespace taut {
 /// branches of the model: a separating curve runs between them.
 bool is_bridging(const EnvelopeContent& content, const EnvelopePixel& p, const EnvelopePixel& q);
 
-/// Where it does, between the two pixels' centres; contact 0 is that of p.
+/// Where the separating curve runs, between the two pixels' centres; contact 0 is that of p.
 EnvelopeCurvePoint curve_point(const EnvelopeContent& content, const EnvelopePixel& p,
                                const EnvelopePixel& q);
 

@@ -11,7 +11,7 @@ namespace taut {
 namespace {
 
 /// How often the boundary is sought again with support points that the mesh met on no face of it,
-/// unless more spots of it than so many could not be resolved: these are then not what it wants.
+/// unless more spots than so many could not be resolved: such points are then not what it wants.
 constexpr int uncovered_rounds = 2;
 constexpr std::size_t few_unresolved = 16;
 
@@ -22,7 +22,7 @@ bool wants_more(const HullBoundary& boundary) {
 }  // namespace
 
 Hull precise_hull(const Scene& scene, const HullOptions& options) {
-  tolerance_for(options, scene.diagonal());  // what is wrong with it is told at once
+  tolerance_for(options, scene.diagonal());  // what is wrong with the tolerance is told at once
   SupportQuery query(scene, options.progress.stop);
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
 
@@ -49,7 +49,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
         statistics += hull.statistics;
         continue;
       }
-      // Of a search that was given up they tell nothing new.
+      // Of a search that was given up the samples tell nothing new.
       if (boundary->exhausted) uncovered_samples.clear();
       for (const Sample& s : uncovered_samples) {
         boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});

@@ -126,7 +126,7 @@ void PlaneFinder::add_pieces() {
   });
 }
 
-/// The piece lies in the plane, on the same side of the model, as far as it tells one itself.
+/// The piece lies in the plane, on the same side of the model, as far as the piece tells a plane.
 bool PlaneFinder::is_in(const Candidate& plane, const Candidate& own, double sense) const {
   const dvec3 n = sense * own.plane.n;
   const bool agrees =
@@ -143,8 +143,8 @@ void PlaneFinder::put_into(Candidate& plane, const Candidate& own) {
   plane.plane = wider;
 }
 
-/// Puts the piece into the plane that it lies in, or makes one of it if that may support. One that
-/// is too short to tell its plane may lie in several.
+/// Puts the piece into the plane that it lies in, or makes a plane of it if that may support. A
+/// piece that is too short to tell its plane may lie in several.
 void PlaneFinder::add(const Candidate& own) {
   if (own.plane.n == dvec3(0.0)) {
     for (Candidate& plane : planes_) {

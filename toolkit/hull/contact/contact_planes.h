@@ -18,7 +18,7 @@ struct ContactPlane {
 
 /// All planes that support the scene and contain plane pieces of edges that are not straight, to
 /// within ContactGeometry::tie(): in their directions the whole curve supports. The samples change
-/// nothing but the time: of planes that are below one of them the query is not asked.
+/// nothing but the time: of planes that are below a sample the query is not asked.
 std::vector<ContactPlane> contact_planes(const ContactGeometry& geometry, SupportQuery& query,
                                          const std::vector<Sample>& samples = {});
 

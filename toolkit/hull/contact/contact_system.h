@@ -86,12 +86,12 @@ class ContactSystem {
 
   /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1) or, where n turns
   /// too little to tell, on as `before` does; none where all rates vanish. Where the system is
-  /// singular it is one of the directions that solve it.
+  /// singular the tangent is one of the directions that solve it.
   std::optional<CurveTangent> tangent(const CommonSupport& s, const CurveTangent* before) const;
 
   /// How far the rounding of coordinates may move two contacts off where their curve has them, in
-  /// (n, x_0, x_1): it over the smallest singular value of the system. Infinite where that is
-  /// singular.
+  /// (n, x_0, x_1): the rounding over the smallest singular value of the system. Infinite where the
+  /// system is singular.
   double uncertainty(const CommonSupport& s) const;
 
   long iterations() const { return iterations_; }

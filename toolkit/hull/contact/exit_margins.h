@@ -14,7 +14,7 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
 /// moves the margin by is a length over it.
 double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
 
-/// Of two contacts that part, i the one of them: where the direction turns into its own region, it
+/// Of two contacts that part: where the direction turns into contact i's own region, the contact
 /// moves over the exit at which it stands. False where its element is flat.
 bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
                   const ContactExit& exit);

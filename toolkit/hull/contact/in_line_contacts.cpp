@@ -12,7 +12,7 @@ namespace {
 
 /// Turn of the direction, in radians, by which contacts beyond others in line show.
 constexpr double line_turn = 1e-6;
-/// The same to a side of the line: contacts that move gain half of its square times their radius of
+/// The turn to a side of the line: contacts that move gain half of its square times their radius of
 /// curvature, or more.
 constexpr double aside_turn = 1e-4;
 /// Gains that are no larger, in units of what heights tie over, are rounding.

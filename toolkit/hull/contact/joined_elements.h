@@ -12,7 +12,7 @@ namespace taut {
 std::vector<Contact> about(const ContactGeometry& geometry, const Contact& c);
 
 /// The point of `c` as a contact of the element of `other`, in whose border it lies, turned to
-/// `other`. None if it does not.
+/// `other`. None if it does not lie there.
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other);
 

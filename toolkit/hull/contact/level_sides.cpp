@@ -13,8 +13,8 @@ namespace {
 /// Beside an edge across which the patch is level, x . n is p s + k s^3 / 6 + m s t + l t^2 / 2, s
 /// the way inwards; k, l < 0. Inside it has a maximum where s >= r = m^2 / (k l); one on the edge
 /// is higher where s < 1.5 r, by |k| r^3 / 6 at most, which is no more than a tie where support
-/// values do not tell. The border beside the one inside is then lower than this by |k| s^3 / 3, no
-/// more than 6.75 ties.
+/// values do not tell. The border beside the maximum inside is then lower than that by |k| s^3 / 3,
+/// no more than 6.75 ties.
 constexpr double level_ties = 8;
 
 /// How far from a border a contact may be that the direction does not tell from the border: where
@@ -24,7 +24,7 @@ constexpr double border_reach = 1e-5;
 /// Roundings of coordinates in a second derivative: those of cubics are some 24 coordinates.
 constexpr double second_roundings = 8;
 
-/// The same in a third derivative.
+/// Roundings of coordinates in a third derivative.
 constexpr double third_roundings = 64;
 /// The first step, along a side, to where the third derivative vanishes, and steps at most.
 constexpr double first_secant = 1e-3;

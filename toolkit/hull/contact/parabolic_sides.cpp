@@ -34,7 +34,7 @@ struct SideForm {
     across = glm::dot(along_v(side) ? j.dxx : j.dyy, n);
     mixed = glm::dot(j.dxy, n);
   }
-  /// In the direction across, moved along the side.
+  /// The form in the direction across, moved along the side by `shear`.
   double level(double shear) const { return across + shear * (2 * mixed + shear * along); }
   double twist(double shear) const { return mixed + shear * along; }
 

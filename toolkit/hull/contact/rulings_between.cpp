@@ -95,8 +95,8 @@ bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
 }
 
 /// Where a surface's parabolic curve touches an edge, the rulings' length falls with the square of
-/// the way to the end: by its derivatives in m, with respect to its share, the longer one is half
-/// as far from the end as it is.
+/// the way to the end: by its derivatives in m, with respect to its share, the longer ruling would
+/// be half as far from the end as it is.
 bool touches(const Ruling& end, const Ruling& longer, const MovingRuling& m) {
   const SourceKind first = longer.contact[0].kind;
   const SourceKind other = longer.contact[1].kind;
@@ -215,7 +215,7 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   }
 }
 
-/// The longer one's length falls towards the end with the square of the way.
+/// The longer ruling's length falls towards the end with the square of the way.
 bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
   m.at = CommonSupport(system_.geometry(), longer);
@@ -242,7 +242,7 @@ double RulingsBetween::at_share(double share) const {
   return straight_[1] ? 1 - std::sqrt(1 - within) : share;
 }
 
-/// Along a chord that is little more than their approach.
+/// The contacts do, along a chord that is little more than their approach.
 bool RulingsBetween::nearly_merge() const {
   const double longer = std::max(glm::distance(from_.point[0], from_.point[1]),
                                  glm::distance(to_.point[0], to_.point[1]));
@@ -257,7 +257,7 @@ void RulingsBetween::fit() {
     MovingRuling m;
     m.at = CommonSupport(system_.geometry(), *end);
     if (straight_[end == &from_ ? 0 : 1]) {
-      // All are smooth in powers of the share, which begins level.
+      // n and the parameters are smooth in powers of the share, which begins level.
       polynomial_.add(s, place(m), State{});
     } else if (!merged(*end) && !stands_[end == &from_ ? 0 : 1] && !is_noise(m.at) &&
                find_speed(m) && !bends(from_, to_, m)) {
@@ -286,14 +286,14 @@ void RulingsBetween::refine() {
   }
 }
 
-/// The slope at this end is.
+/// The slope at this end is noise.
 bool RulingsBetween::is_noise(const CommonSupport& s) const {
   if (nearly_merges_ && !is_distinct(glm::length(s.d()))) return true;
   return lies_flat_ && is_flat(s, system_.geometry());
 }
 
-/// In the share of the longer one's length: from the end, the longer one and some in between, with
-/// slopes.
+/// In the share of the longer ruling's length: from the end, the longer ruling and some in between,
+/// with slopes.
 void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
   m.at = CommonSupport(system_.geometry(), longer);
@@ -332,7 +332,7 @@ bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
   return system_.settle(m.at, equation) && is_near(start, m);
 }
 
-/// The ruling of r times the longer one's length.
+/// The ruling of r times the longer ruling's length.
 bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
   const double length = r * length_;
   const MovingRuling start = m;

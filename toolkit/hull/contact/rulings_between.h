@@ -18,29 +18,29 @@ struct MovingRuling {
 
   void move(const CurveTangent& t, double speed);
   void speed_up(double factor);
-  /// Those of the points and of the unit normal from those of the parameters and of n.
+  /// Derivatives of the points and of the unit normal from those of the parameters and of n.
   void complete();
 };
 
 /// The rulings of a piece of a separating curve between two neighbouring ones, exact to rounding,
 /// as smooth functions of s in [0, 1].
 ///
-/// At s it is the one in the plane, across the chord from the first to the last in the space of
-/// (n, point 0, point 1), that divides the chord in the ratio s. Where the two contacts merge at
+/// At s it is the ruling in the plane, across the chord from the first to the last in the space
+/// of (n, point 0, point 1), that divides the chord in the ratio s. Where the two contacts merge at
 /// one end (a ruling of length zero) it is the one whose length is s or 1 - s times the longer
 /// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
 /// A3 end, m +- rho e; a B3 end, linear). Where a parabolic curve touches an edge their distance
-/// falls with the square of the way, and it is the chord's share there as well. Where one contact
+/// falls with the square of the way, and s is the chord's share there as well. Where one contact
 /// leaves the end of an edge that does not bend there, as the borders of cages end in corners, or a
 /// side across which its patch is level, n and the other contact move with the square of its way:
 /// there the root of the chord's share is s. Where both do so, n alone moves with the square of
 /// their ways, and s is the share. Newton's method starts from Hermite's interpolation.
 class RulingsBetween {
  public:
-  /// @pre the two have the same elements; all outlive it
+  /// @pre the two rulings have the same elements; all outlive this
   RulingsBetween(const ContactSystem& system, const Ruling& from, const Ruling& to);
 
-  /// The two are the same.
+  /// The two rulings are the same.
   bool empty() const { return square_ == 0; }
   bool merges() const { return free_end_ >= 0; }
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
@@ -50,7 +50,7 @@ class RulingsBetween {
   bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
   /// At one end one contact, not both, leaves where its element is flat.
   bool is_straight() const { return straight_[0] || straight_[1]; }
-  /// At one end both contacts do so: n stands still there.
+  /// At one end both contacts leave where their elements are flat: n stands still there.
   bool stands() const { return stands_[0] || stands_[1]; }
   /// Of the chord.
   double length() const { return std::sqrt(square_); }
@@ -60,8 +60,8 @@ class RulingsBetween {
   /// Newton's method does not converge to one near the interpolated one. Next to a free end the
   /// derivatives are the interpolation's.
   std::optional<MovingRuling> operator()(double s) const;
-  /// What it starts from: next to a free end, where rounding moves the contacts of exact rulings,
-  /// the smoother one.
+  /// What Newton's method starts from: next to a free end, where rounding moves the contacts of
+  /// exact rulings, the smoother ruling.
   MovingRuling interpolated(double s) const;
 
  private:
@@ -117,11 +117,12 @@ class RulingsBetween {
   Polynomial polynomial_;  // in s, or in the length's share
 };
 
-/// A single one of them.
+/// A single ruling of RulingsBetween.
 std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& from,
                                      const Ruling& to, double s);
 
-/// The one that divides the chord in this ratio, or, next to a free end, that ruling_between() has.
+/// The ruling that divides the chord in this ratio, or, next to a free end, that ruling_between()
+/// has.
 std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling& from,
                                       const Ruling& to, double share);
 

@@ -18,7 +18,8 @@ struct SupportingPole {
   double turn = 0;  ///< to within which the normal is known (pole_turn)
 };
 
-/// Of every patch that has one: where several meet, each of them. Repeated patches are left out.
+/// The supporting poles of all patches: where several meet, each of them. Repeated patches are left
+/// out.
 std::vector<SupportingPole> supporting_poles(const ContactGeometry& geometry, SupportQuery& query);
 
 /// A direction that is known to have three contacts or more, some of them at poles.
@@ -27,7 +28,7 @@ struct Landmark {
   FacetContacts facet;
 };
 
-/// Whether it is the direction of one of them.
+/// Whether n is the direction of one of the landmarks.
 bool is_landmark(std::span<const Landmark> landmarks, const dvec3& n);
 
 /// The facet at whose corner the pole lies, with two other contacts or more: Newton's method does

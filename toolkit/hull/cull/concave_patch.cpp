@@ -69,7 +69,7 @@ int ConcavePatch::child(int node, int k) {
   return nodes_[std::size_t(node)].first_child + k;
 }
 
-/// That of the longest row of control points: of their legs, for the ends of a row may coincide.
+/// Direction of the longest row of control points: of their legs, for a row's ends may coincide.
 Direction ConcavePatch::longer_side(int node) {
   const std::vector<dvec3>& net = points(node);
   const int p = bezier_.degree_u;
@@ -140,8 +140,8 @@ bool ConcavePatch::is_concave(int node, const dvec3& m) {
   return sign(node, proof_depth) != 0 && faces(node, m);
 }
 
-/// That of the normals for which the rectangle is concave, as its own nets or those of smaller ones
-/// show, so many halvings below; 0 if they do not.
+/// The sign of the normals for which the rectangle is concave, as its own nets or those of smaller
+/// ones show, so many halvings below; 0 if they do not.
 double ConcavePatch::sign(int node, int depth) {
   look(node);
   if (at(node).sign != 0 || depth <= at(node).depth) return at(node).sign;

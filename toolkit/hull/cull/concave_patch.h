@@ -44,8 +44,8 @@ class ConcavePatch {
   int child(int node, int k);
   /// Control points over the rectangle, without their weights.
   const std::vector<dvec3>& points(int node);
-  /// Certain: there it is curved one way, downwards where m is up, with normals within a right
-  /// angle of m. A stand-in is taken to be curved so.
+  /// Certain: there the surface is curved one way, downwards where m is up, with normals within a
+  /// right angle of m. A stand-in is taken to be curved so.
   bool is_concave(int node, const dvec3& m);
   /// What a walk over the surface, by its number, has found there.
   struct Mark {
@@ -64,7 +64,7 @@ class ConcavePatch {
     std::vector<dvec3> points;  ///< none until they are asked for
     bool known = false;
     double sign = 0;  ///< of the normals for which it is concave; 0: not known to be
-    int depth = 0;    ///< of the tree below it that did not show it to be
+    int depth = 0;    ///< of the tree below it that did not show it concave
     std::optional<NormalPyramid> pyramid;  ///< where the sign is known
     std::unique_ptr<CurvatureNets> nets;   ///< where it may be asked for
     Mark mark;

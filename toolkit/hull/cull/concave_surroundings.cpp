@@ -42,8 +42,8 @@ struct ConcaveSurroundings::Subject {
   const NormalPyramid& pyramid;
   double sign;
   std::array<dvec3, 4> corners;  ///< of the outward normals' pyramid, in the scene's frame
-  std::vector<dvec3> points;     ///< its control points, in the part's frame
-  dvec3 middle;                  ///< of it
+  std::vector<dvec3> points;     ///< the cell's control points, in the part's frame
+  dvec3 middle;                  ///< of the cell
 
   double radius(const OsculatingParaboloid& map) const {
     double result = 0;
@@ -62,7 +62,7 @@ void ConcaveSurroundings::begin_anew() {
   pieces_ = 0;
 }
 
-/// Lest memory grow with the model: it is only sooner asked again.
+/// Lest memory grow with the model: what is forgotten is only found out again.
 void ConcaveSurroundings::forget_some() {
   if (++cells_ % cells_between_counts == 0 && surfaces_.node_count() > node_limit) {
     surfaces_.forget();

@@ -28,7 +28,7 @@ class ConcaveSurroundings {
   explicit ConcaveSurroundings(const Scene& scene, std::stop_token stop = {});
 
   /// True is certain. `pyramid`: of the cell's normals Su x Sv, `sign` times which are outward.
-  /// Whether it is found depends on the cells before it.
+  /// Whether the proof is found depends on the cells before.
   bool surely_on(int instance, int patch, const PatchCell& cell, const NormalPyramid& pyramid,
                  double sign);
 

@@ -12,12 +12,12 @@
 namespace taut {
 namespace {
 
-/// Shares of the disc's radius. Within this one, what is curved one way is divided until it is
+/// Shares of the disc's radius. Within this share, what is curved one way is divided until it is
 /// inside of the disc,
 constexpr double inner = 0.8;
-/// but for what is so narrow;
+/// but for what is narrower than this;
 constexpr double coarse = 0.5;
-/// and nothing so narrow is divided to find it curved one way.
+/// and nothing narrower than this is divided to find it curved one way.
 constexpr double fine = 1.0 / 32;
 /// Pieces of the surface after which a disc is given up.
 constexpr std::size_t piece_limit = 512;
@@ -75,7 +75,7 @@ double farthest(const std::vector<dvec2>& points) {
   return result;
 }
 
-/// Bound of the distance of any two of them.
+/// Bound of the distance of any two of the points.
 double width(const std::vector<dvec2>& points) {
   dvec2 least = points.front();
   dvec2 most = least;
@@ -101,7 +101,7 @@ struct Gate {
         upwards ? across.lower <= at && at < across.upper : across.lower < at && at <= across.upper;
     return reaches && other.lower < along.upper && along.lower < other.upper;
   }
-  /// It is the border of the patch, seen from within.
+  /// The line is a border of the patch, seen from within.
   bool leaves_patch() const { return at == (upwards ? 1 : 0); }
 };
 
@@ -237,7 +237,7 @@ class Walk {
     return size > fine * radius_ ? halves : failed;
   }
 
-  /// All of the cell itself: where it fails, it does so soon.
+  /// Looks at all of the cell itself: where the walk fails, it fails soon.
   bool begin(int patch, ConcavePatch& surface, int node, const ParameterRectangle& cell) {
     if (!surface.cell(node).overlaps(cell)) return true;
     const int found = look(patch, surface, node);

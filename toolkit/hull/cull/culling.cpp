@@ -395,7 +395,7 @@ class PatchCulling {
     result_.frame_points.push_back(content_.frame_point(middle));
   }
 
-  /// The finest are tried with others later, those that no curve crosses.
+  /// Cells of the finest level are tried with others later, those that no curve crosses.
   bool surely_on(const NormalBounds& bounds, const std::vector<dvec4>& points,
                  const PatchCell& cell, double sign) {
     const NormalPyramid& pyramid = *bounds.pyramid;
@@ -431,7 +431,7 @@ class PatchCulling {
            tools_.surroundings.surely_on(instance_, element_.index, cell, pyramid, sign);
   }
 
-  /// Otherwise there is no need to look further.
+  /// The middle supports its normal; otherwise there is no need to look further.
   bool supports_in_middle(const PatchCell& cell, double sign) {
     const Contact middle{instance_, SourceKind::face, element_.index, cell.u().at(0.5),
                          cell.v().at(0.5)};

@@ -54,7 +54,7 @@ struct CullingLevel {
   long ruled = 0;
   long kept = 0;             ///< mixed: refined, or at the finest level
   double removed_share = 0;  ///< of all patches' parameter area, off at this level or above
-  double decided_share = 0;  ///< the same with on and ruled
+  double decided_share = 0;  ///< of the same area, off, on or ruled
 };
 
 struct Culling {

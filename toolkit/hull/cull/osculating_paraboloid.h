@@ -9,10 +9,11 @@ namespace taut {
 
 /// The paraboloid that osculates a surface at a point, by coordinates about that point in the plane
 /// normal to an axis: the surface falls below its tangent plane by half the square of the distance
-/// in them, to second order.
+/// in these coordinates, to second order.
 class OsculatingParaboloid {
  public:
-  /// None if it does not fall to all sides, away from the axis. Of a stand-in, distances count.
+  /// None if the surface does not fall to all sides, away from the axis. Of a stand-in, distances
+  /// count.
   static std::optional<OsculatingParaboloid> about(const ConcavePatch& patch, const dvec2& p,
                                                    const dvec3& axis);
 

@@ -31,7 +31,7 @@ using Sums = Integrals<quantities>;
 
 /// Relative accuracy of every single rule: what contacts solved to 1e-13 can give.
 constexpr double rule_accuracy = 1e-13;
-/// Roundings of a second derivative, in the scene's frame, which curvature is of whatever a patch's
+/// Roundings of a second derivative, in the scene's frame, which curvature has whatever a patch's
 /// size.
 constexpr double curvature_rounding = 16 * rounding_unit;
 
@@ -170,8 +170,8 @@ void Summation::add_to_line(const GreenRegion& region, const dvec2& p, double at
   add_patch(geometry_.jet(c), origin_, region.region->sign, sample);
 }
 
-/// Whether few nodes are accurate on the line to the stretch's middle. On the others they will then
-/// be so too, or halve them.
+/// Whether few nodes are accurate on the line to the stretch's middle. On the stretch's other
+/// lines few nodes will then be accurate too, or halve the lines.
 bool Summation::is_plain(const GreenRegion& region, const TrimStretch& stretch) const {
   const dvec2 p = on_side(stretch.side, 0.5 * (stretch.from + stretch.to));
   int samples = 0;
@@ -324,7 +324,7 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
   }
 }
 
-/// The polygon of its contacts and what lies between this one's sides and the curved ones.
+/// The polygon of the facet's contacts and what lies between its sides and the curved ones.
 void Summation::add_facet(const HullFace& face) {
   add_polygon(face);
   for (std::size_t k = 0; k < face.sides.size(); ++k) {

@@ -25,7 +25,7 @@ class EvenDivision {
   /// Adds the next interval; `sagitta_root` is the square root of its sagitta.
   void add(double sagitta_root) { sums_.push_back(sums_.back() + sagitta_root); }
 
-  /// As many are needed, before they are rounded.
+  /// How many parts are needed, before rounding.
   double parts(double sagitta) const { return sums_.back() / std::sqrt(sagitta); }
 
   std::vector<Place> places(double sagitta, int least_parts) const {
@@ -47,7 +47,7 @@ class EvenDivision {
   }
 
  private:
-  /// Sagittas are then a billionth of the length, whatever is asked for.
+  /// With so many parts sagittas are a billionth of the length, whatever is asked for.
   static constexpr double most_parts = 1e4;
   /// Nearer than this share of a part to a place that is there, that one serves as well.
   static constexpr double snap_share = 0.1;
@@ -106,7 +106,7 @@ std::vector<double> form_lengths(const std::vector<Ruling>& rulings, std::size_t
   return lengths;
 }
 
-/// Of a space, before the first of evenly spaced places.
+/// Share of a space that is before the first of evenly spaced places.
 constexpr double first_visit = 0.5;
 
 /// Calls visit with evenly spaced places on intervals of these lengths, the first after half a
@@ -128,7 +128,7 @@ void visit_evenly(const std::vector<double>& lengths, double space, Visit visit)
 constexpr double sagitta_share = 0.6;
 constexpr double gap_share = 0.8;
 
-/// The same for what a rim's sagitta means for the distance that is certified: next to a sharp
+/// Share for what a rim's sagitta means for the distance that is certified: next to a sharp
 /// rim, between normals n and m, up to sagitta * (n x m) is gap, which counts by the depth
 /// |n + m| / 2 of their cone (certificate.h). So the sagitta counts |n - m| times.
 constexpr double rim_share = 0.9;
@@ -142,7 +142,7 @@ constexpr double largest_step = 0.5;
 
 /// A Bezier border bends smoothly, its sagitta more so.
 constexpr int border_intervals = 32;
-/// As many tell whether a border is worth the others,
+/// So few intervals tell whether a border is worth the others,
 constexpr int coarse_intervals = 4;
 /// where they find more than this share of what it takes to divide it.
 constexpr double worth_dividing = 0.9;
@@ -190,10 +190,10 @@ class BoundarySampler {
   SupportQuery& query_;
   double sagitta_;  // in the scene's frame
   double rim_;      // of rims: the sagitta times the difference of normals
-  double side_;     // of triangles inside patches: the root of its second fundamental form
+  double side_;     // of triangles inside patches, in the root of the second fundamental form
   double width_;
   BoundarySamples all_;
-  std::vector<double> clear_;  // per sample: none before may be as near; in model units
+  std::vector<double> clear_;  // per sample: no sample before may be as near; in model units
 };
 
 void BoundarySampler::add(const dvec3& n, const Contact& contact, TouchedFaces touched) {
@@ -311,7 +311,7 @@ Ruling BoundarySampler::border_place(const PatchRegion& region, Side side, doubl
   return {n, {c, c}, {x, x}};
 }
 
-/// Enough to tell how a stretch bends.
+/// Enough places to tell how a stretch bends.
 std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
                                                    const TrimStretch& stretch) const {
   std::vector<Ruling> places;
@@ -322,7 +322,7 @@ std::vector<Ruling> BoundarySampler::border_places(const PatchRegion& region,
   return places;
 }
 
-/// Few, without their contacts, and but for a shift of the whole.
+/// Few places, without their contacts, and but for a shift of the whole.
 std::vector<Ruling> BoundarySampler::coarse_places(const PatchRegion& region,
                                                    const TrimStretch& stretch) const {
   const Part& part = geometry_.part({region.instance, SourceKind::face, region.patch, 0, 0});
@@ -339,7 +339,7 @@ std::vector<Ruling> BoundarySampler::coarse_places(const PatchRegion& region,
   return places;
 }
 
-/// What it may be where the patch meets facets: without this the rim's chords would be halved.
+/// The sagitta allowed where the patch meets facets: without this the rim's chords would be halved.
 double BoundarySampler::border_sagitta(const std::vector<Ruling>& places,
                                        const HullCurve& curve) const {
   double turn = 0;

@@ -21,8 +21,8 @@ void ConstrainedEdges::add(const CurveChord& chord) {
   chords_.emplace(std::minmax(chord.a, chord.b), chord);
 }
 
-/// Across pieces, where one of them ends, unless that is one of the chord's ends already. None if
-/// no exact ruling is found there.
+/// Of a chord across pieces, where one of these ends, unless that is one of the chord's ends
+/// already. None if no exact ruling is found there.
 std::optional<ArcPlace> ConstrainedEdges::middle_of(const CurveChord& chord) const {
   const ArcPlace& from = chord.from;
   const ArcPlace& to = chord.to;

@@ -33,7 +33,7 @@ class ContactFaces {
     return trims_[std::size_t(arc)][std::size_t(piece)][std::size_t(contact)];
   }
 
-  /// Both, for a point on the curve of that contact.
+  /// The scroll and that face, for a point on the curve of that contact.
   TouchedFaces beside(int arc, int piece, int contact) const;
 
   /// The faces that a point of the hull touches as far as its contact tells: inside a patch the

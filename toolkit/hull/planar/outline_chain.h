@@ -46,7 +46,7 @@ class OutlineChain {
   std::size_t previous(std::size_t k) const { return (k + chain_.size() - 1) % chain_.size(); }
   void connect(std::size_t k);
   bool join(Stretch& a, Stretch& b) const;
-  /// A part of the stretch's curve.
+  /// A part of the stretch's curve stays above the height in direction n.
   bool stays_above(const Stretch& s, double from, double to, const dvec2& n, double height) const;
   bool join_at(Stretch& a, Stretch& b, double ta, double tb) const;
   void polish(Stretch& a, Stretch& b) const;

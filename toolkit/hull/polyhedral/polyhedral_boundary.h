@@ -5,8 +5,8 @@
 
 namespace taut {
 
-/// The exact boundary of a polyhedral model's solid hull, of which this is the mesh with sources
-/// and hull faces: facets with vertices as contacts, and rulings between them.
+/// The exact boundary of a polyhedral model's solid hull, of which `mesh` is the mesh with
+/// sources and hull faces: facets with vertices as contacts, and rulings between them.
 ///
 /// The separating curves are the great arcs across the edges, from the normal of the facet to the
 /// left of an edge's contacts 0 and 1 to that of the one to the right. As arcs they would hold

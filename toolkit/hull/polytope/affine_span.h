@@ -20,9 +20,8 @@ struct AffineSpan {
   dvec3 normal = dvec3(0.0);
 };
 
-/// The span of points, to within rounding. Those of the result's lower-dimensional parts deviate
-/// from the line or plane through the witnesses by less than the width, to within rounding of
-/// their distances.
+/// The span of points, to within rounding. Where it is less than space, the points deviate from the
+/// witnesses' point, line or plane by less than the width, to within rounding of their distances.
 /// @pre there are points; their differences' squares neither over- nor underflow
 AffineSpan affine_span(std::span<const dvec3> points, double width);
 

@@ -26,7 +26,7 @@ double coarsening_work(const PointHull& hull);
 
 /// The hull of some vertices that leave none higher than the width above any facet, to within
 /// rounding: hardly more than the corners that the original would have had without noise of that
-/// width. `spanning` are four of its points that span space by more than the width.
+/// width. `spanning` are four of the original's points that span space by more than the width.
 /// @pre hull.dimension() == 3 @throws Cancelled
 CoarseHull coarse_hull(const PointHull& hull, const std::array<int, 4>& spanning, double width,
                        const Progress& progress);

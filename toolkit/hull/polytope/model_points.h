@@ -17,7 +17,7 @@ class ModelPoints {
   /// A power of two that the points were multiplied by: one for all usual sizes, and where some are
   /// so much smaller than others that they would be rounded.
   double scale() const { return scale_; }
-  /// By what they must be multiplied yet, rounding some, before products are taken; else one.
+  /// By what the points must be multiplied yet, rounding some, before products are taken; else one.
   double product_scale() const { return product_scale_; }
   /// Of the points' box, and the sum of their largest coordinates' sizes; scaled as they are.
   double diagonal() const { return diagonal_; }

@@ -58,7 +58,8 @@ class PointHull {
   int facet_count() const { return alive_; }
   /// The facets that the last insert() made, around the new point.
   const std::vector<int>& created() const { return created_; }
-  /// The facets that it took away, unless visible() was called since; their places are free.
+  /// The facets that the last insert() took away, unless visible() was called since; their places
+  /// are free.
   const std::vector<int>& replaced() const { return visible_; }
 
   /// The boundary with coplanar facets joined to convex polygons and with extreme points only, by

@@ -32,7 +32,7 @@ struct ArcPiece {
 struct SeparatingArc {
   std::vector<ArcPiece> pieces;
   bool closed = false;
-  /// The facet (number of its face in HullBoundary) in which it begins and ends; -1: the two
+  /// The facet (number of its face in HullBoundary) in which the curve begins and ends; -1: the two
   /// contacts merge there in a free end, at which the last ruling has length zero.
   std::array<int, 2> facet = {-1, -1};
 };

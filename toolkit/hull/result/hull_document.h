@@ -33,7 +33,7 @@ struct HullDocument {
     SourceKind kind = SourceKind::face;
     std::string file;  ///< empty if not known
     std::string name;
-    /// In the order of the model's; none of a polygon.
+    /// In the order of the model's patches; none of a polygon.
     std::vector<Patch> patches;
   };
   /// A place on a source.

@@ -19,7 +19,7 @@ struct HullOptions {
 };
 
 /// The tolerance that the options ask for, in model units; positive where the diagonal is.
-/// @throws InvalidInput if the tolerance is negative or no number, or counts and the relative one
+/// @throws InvalidInput if the tolerance is negative or no number, or the relative one counts and
 /// is not positive and finite, or leaves the range of doubles
 double tolerance_for(const HullOptions& options, double diagonal);
 

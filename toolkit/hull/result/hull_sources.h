@@ -20,7 +20,7 @@ class HullSources {
     if (id >= 0) ids_.insert(id);
   }
   void finish() { order_.assign(ids_.begin(), ids_.end()); }
-  /// Its place; -1 of none.
+  /// The place of the source with this id; -1 of none.
   int place(int id) const {
     if (id < 0) return -1;
     return int(std::lower_bound(order_.begin(), order_.end(), id) - order_.begin());
@@ -30,7 +30,7 @@ class HullSources {
     for (const int id : order_) sources.push_back(source(id));
     return sources;
   }
-  /// The model's source with this id. @pre it has one
+  /// The model's source with this id. @pre the model has one
   HullDocument::Source source(int id) const;
 
  private:

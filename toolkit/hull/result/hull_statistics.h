@@ -18,7 +18,7 @@ struct HullStatistics {
   double seconds_stitch = 0;
   double seconds_mesh = 0;
 
-  /// Adds all counts and times; cells are those of either.
+  /// Adds all counts and times; of cells the larger numbers stay.
   HullStatistics& operator+=(const HullStatistics& other);
 };
 

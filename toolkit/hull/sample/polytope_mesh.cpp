@@ -219,7 +219,7 @@ void number_hull_faces(HullMesh& mesh, int count) {
   }
 }
 
-/// With the origins.
+/// The mesh of a polytope with the origins of its vertices and faces.
 HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
                        const KnownLabels& known, const Progress& progress) {
   const PointHull::Polygons polygons = polytope.hull.merged_polygons(progress);

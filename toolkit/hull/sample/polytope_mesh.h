@@ -28,7 +28,7 @@ struct FaceLabel {
 struct KnownLabels {
   /// The label of the face with these corners, points of the hull by number, if known.
   std::function<std::optional<FaceLabel>(std::span<const int> corners)> label;
-  /// Numbers of hull faces that it gives are below.
+  /// Numbers of hull faces that `label` gives are below this.
   int count = 0;
 };
 

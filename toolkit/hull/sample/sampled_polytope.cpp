@@ -45,7 +45,7 @@ class Sampler {
     const dvec3 margin(1e-3 * scale * scene.diagonal());
     return {scale * scene.box().lower - margin, scale * scene.box().upper + margin};
   }
-  /// What the point hull is told.
+  /// The point as the point hull has it.
   dvec3 scaled(const dvec3& point) const { return scene_.frame().scale * point; }
 
   void begin(std::vector<Sample> samples, const std::vector<dvec3>& points);
@@ -80,7 +80,7 @@ class Sampler {
   std::vector<dvec3> frame_points_;    // per vertex
   std::vector<double> vertex_gaps_;    // per vertex: the largest gap of its facets
   std::vector<double> vertex_depths_;  // per vertex: cone_depth() of its facets' normals
-  bool slivers_count_ = false;         // their own directions do, since nothing else helped
+  bool slivers_count_ = false;         // slivers' own directions do, since nothing else helped
   std::vector<Plane> planes_;          // per facet
   double tolerance_;                   // in the scene's frame
   double bound_ = 0;

@@ -15,8 +15,8 @@ namespace taut {
 struct SampledStart {
   std::vector<Sample> samples;
   std::vector<dvec3> points;        ///< per sample, in model coordinates
-  std::vector<dvec3> frame_points;  ///< the same in the scene's frame
-  /// What the scene spans, by these; what is thinner than tolerances.h tells is flat.
+  std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
+  /// What the scene spans, by the samples; what is thinner than tolerances.h tells is flat.
   AffineSpan span;
 };
 

@@ -73,7 +73,7 @@ void EdgeIncidence::add_arc(const ContactGeometry& geometry, const SeparatingArc
         }
         double to = rulings[next].contact[i].u;
         if (next + 1 < rulings.size()) {
-          // It turns between the middles of the two chords about `next`.
+          // The parameter turns between the middles of the two chords about `next`.
           const bool before = side(rulings[next]) * here <= 0;
           const Ruling& a = before ? rulings[next - 1] : rulings[next];
           const Ruling& b = before ? rulings[next] : rulings[next + 1];

@@ -47,8 +47,8 @@ void label_facets(const ContactGeometry& geometry, HullBoundary& boundary) {
   }
 }
 
-/// The face of whose rulings those that begin in the contact make up the whole of the segment, from
-/// one patch to the next, in its plane. -1: it is not one face, or none.
+/// The face whose rulings from the contact on, from one patch to the next, make up the whole of the
+/// segment, in the ruling's supporting plane. -1: it is not one face, or none.
 int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling& r,
                  std::size_t end) {
   const dvec3 normal = unit_normal(geometry, c);
@@ -69,7 +69,7 @@ int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling
   return one ? source : -1;
 }
 
-/// That of a face that ends where the segment begins.
+/// The face, of those that end where the segment begins, whose rulings make up the segment.
 int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t end) {
   const Contact& c = r.contact[end];
   if (c.kind != SourceKind::edge) return -1;

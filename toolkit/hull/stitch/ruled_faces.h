@@ -5,7 +5,7 @@
 
 namespace taut {
 
-/// Labels the scrolls and facets that lie on ruled faces of the model with these
+/// Labels the scrolls and facets that lie on ruled faces of the model with those faces
 /// (HullFace::source): a facet with the first plane face in its plane, a scroll if the middle
 /// rulings of all its pieces are rulings of one face, from end to end.
 void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary);

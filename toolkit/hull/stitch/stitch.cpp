@@ -457,7 +457,7 @@ void Stitcher::make_loops() {
   }
 }
 
-/// As take_regions() puts it there.
+/// The place of a stretch as take_regions() puts it there.
 StretchPlace Stitcher::place_in_face(int stretch) const {
   const TrimStretches::Place& at = stretches_.place(stretch);
   const TrimRegion& region = stretches_.regions()[std::size_t(at.region)];
