@@ -261,29 +261,19 @@ Natural bolt(Random& random) {
 
 /// @name Swept parts
 /// @{
-/// Tubes of bicubic patches through circles about a curve.
+/// A tube of bicubic patches through rings about a curve.
 Shape tube(int count, double radius, const std::function<dvec3(double)>& center) {
-  std::vector<std::vector<dvec3>> rows;
+  std::vector<NurbsCurve> rings;
   for (int k = 0; k <= count; ++k) {
     const double t = double(k) / count;
-    const dvec3 along = taut::unit(center(t + 1e-4) - center(t - 1e-4));
-    const auto [a, b] = taut::tangent_frame(along);
-    std::vector<dvec3> row;
+    const auto [a, b] = taut::tangent_frame(taut::unit(center(t + 1e-4) - center(t - 1e-4)));
+    std::vector<dvec3> points;
     for (int j = 0; j < 8; ++j) {
-      row.push_back(center(t) + radius * (std::cos(pi / 4 * j) * a + std::sin(pi / 4 * j) * b));
+      points.push_back(center(t) + radius * (std::cos(pi / 4 * j) * a + std::sin(pi / 4 * j) * b));
     }
-    rows.push_back(row);
+    rings.push_back(closed_spline(points));
   }
-  std::vector<NurbsCurve> circles;
-  for (const auto& row : rows) circles.push_back(closed_spline(row));
-  NurbsSurface surface = spline(rows);
-  surface.degree_v = 3;
-  surface.knots_v = circles[0].knots;
-  surface.points.clear();
-  for (const NurbsCurve& c : circles) {
-    surface.points.insert(surface.points.end(), c.points.begin(), c.points.end());
-  }
-  return of({surface});
+  return of({lofted(rings)});
 }
 
 Natural spring(Random& random) {
@@ -341,21 +331,20 @@ Natural duct(Random& random) {
 Natural wing(Random& random) {
   const double span = uniform(random, 60, 100), taper = uniform(random, 0.4, 0.8);
   const double sweep = uniform(random, 0, 20), thick = uniform(random, 0.1, 0.15);
-  const auto section = [&](double chord, const dvec3& at, bool upper) {
+  const auto section = [&](double chord, const dvec3& at, double side) {
     std::vector<dvec3> points;
-    for (const double x : {1.0, 0.75, 0.5, 0.25, 0.08, 0.0, 0.0}) {
-      const bool nose = x == 0.0 && !points.empty() && points.back().x != at.x;
-      const double y = thick * 2.5 * std::sqrt(x) * (1 - x);
-      points.push_back(at + chord * dvec3(x, 0, (upper ? 1 : -0.6) * (nose ? 0.02 : y)));
+    for (const double x : {1.0, 0.75, 0.5, 0.25, 0.08}) {
+      points.push_back(at + chord * dvec3(x, 0, side * thick * 2.5 * std::sqrt(x) * (1 - x)));
     }
-    points.back() = at;
+    points.push_back(at + chord * dvec3(0, 0, 0.02 * side));
+    points.push_back(at);
     return spline(points);
   };
   Shape shape;
   const double chord = uniform(random, 20, 30);
-  for (const bool upper : {true, false}) {
+  for (const double side : {1.0, -0.6}) {
     shape.surfaces.push_back(
-        ruled(section(chord, dvec3(0.0), upper), section(taper * chord, {sweep, span, 4}, upper)));
+        ruled(section(chord, dvec3(0.0), side), section(taper * chord, {sweep, span, 4}, side)));
   }
   return {shape};
 }

@@ -75,6 +75,15 @@ NurbsSurface spline(const std::vector<std::vector<dvec3>>& rows, int degree_u, i
   return surface;
 }
 
+NurbsSurface lofted(const std::vector<NurbsCurve>& curves) {
+  const NurbsCurve& first = curves.front();
+  NurbsSurface surface{3, first.degree, clamped_knots(int(curves.size()), 3), first.knots, {}};
+  for (const NurbsCurve& c : curves) {
+    surface.points.insert(surface.points.end(), c.points.begin(), c.points.end());
+  }
+  return surface;
+}
+
 NurbsSurface ruled(const NurbsCurve& a, const NurbsCurve& b) {
   NurbsSurface surface{a.degree, 1, a.knots, {0, 0, 1, 1}, {}};
   for (std::size_t k = 0; k < a.points.size(); ++k) {

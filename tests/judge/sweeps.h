@@ -29,6 +29,8 @@ NurbsCurve closed_spline(std::vector<dvec3> points);
 NurbsSurface spline(const std::vector<std::vector<dvec3>>& rows, int degree_u = 3,
                     int degree_v = 3);
 
+/// Cubic, clamped and uniform across curves of one degree, with equal knots.
+NurbsSurface lofted(const std::vector<NurbsCurve>& curves);
 /// Segments from each point of the one to that of the other. @pre of one degree, with equal knots
 NurbsSurface ruled(const NurbsCurve& a, const NurbsCurve& b);
 /// Segments to a point.
