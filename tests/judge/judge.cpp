@@ -167,7 +167,6 @@ Verdict judged(const Natural& natural, Variant variant, Random& random) {
     hull = *stop.best;
   }
   verdict.seconds = watch.seconds();
-  verdict.solid = hull.kind == HullKind::solid;
   verdict.bound = hull.distance_bound / scene.diagonal();
   const bool compared = !stored.cage;
   const SupportReference reference(stored.shape);

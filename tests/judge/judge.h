@@ -11,7 +11,6 @@ namespace taut_test {
 
 /// What the judge found of one model's hull.
 struct Verdict {
-  bool solid = false;
   bool closed = false;    ///< there is a boundary, and nothing of it is unresolved
   bool verified = false;  ///< verify() finds nothing wrong at 1e-9 of the diagonal
   /// Why what the hull says is wrong, by the reference or a closed form; empty if it is not.
@@ -27,6 +26,8 @@ struct Verdict {
 std::string wrong_places(const taut::HullBoundary& boundary, const SupportReference& reference,
                          Random& random);
 
+/// Judges the hull of a natural model in this variant. Models from cages are judged by verify()
+/// alone. @throws what hulls throw, but for a tolerance that is not reached
 Verdict judged(const Natural& natural, Variant variant, Random& random);
 
 }  // namespace taut_test

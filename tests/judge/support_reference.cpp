@@ -13,6 +13,8 @@ constexpr int sampled_degrees = 3;
 constexpr int least_samples = 4;
 /// Samples, far from each other, from which searches begin, and the best that they are taken from.
 constexpr std::size_t starts = 6;
+/// Samples from which the places of a point are sought: many elements may pass by it.
+constexpr std::size_t places = 24;
 constexpr std::size_t most_looked = 200;
 /// Shares of the distance between samples: of the first step of a way that is to leave no valley
 /// out, and of the last one.
@@ -130,7 +132,7 @@ SupportReference::Place SupportReference::climbed(
 }
 
 std::vector<const SupportReference::Place*> SupportReference::highest(
-    const std::function<double(const dvec3&)>& height) const {
+    std::size_t count, const std::function<double(const dvec3&)>& height) const {
   std::vector<std::pair<double, const Place*>> order;
   order.reserve(samples_.size());
   for (const Place& place : samples_) order.emplace_back(height(place.x), &place);
@@ -138,7 +140,7 @@ std::vector<const SupportReference::Place*> SupportReference::highest(
   std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(looked), order.end(),
                     [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<const Place*> result;
-  for (std::size_t k = 0; k < looked && result.size() < starts; ++k) {
+  for (std::size_t k = 0; k < looked && result.size() < count; ++k) {
     const Place& place = *order[k].second;
     const bool beside = std::any_of(result.begin(), result.end(), [&](const Place* other) {
       const dvec2 off = glm::abs(other->at - place.at);
@@ -153,7 +155,7 @@ std::vector<const SupportReference::Place*> SupportReference::highest(
 SupportReference::Top SupportReference::operator()(const dvec3& n) const {
   const auto height = [&](const dvec3& x) { return glm::dot(x, n); };
   Top top{dvec3(0.0), -taut::infinity};
-  for (const Place* from : highest(height)) {
+  for (const Place* from : highest(starts, height)) {
     const Place there = climbed(*from, 1, height);
     if (height(there.x) > top.h) top = {there.x, height(there.x)};
   }
@@ -167,7 +169,7 @@ double SupportReference::climbed_from(const dvec3& x, const dvec3& n, double wit
     const dvec3 from = top.x;
     const double before = top.h;
     const auto nearness = [&](const dvec3& y) { return -glm::distance(from, y); };
-    for (const Place* near : highest(nearness)) {
+    for (const Place* near : highest(places, nearness)) {
       const Place start = climbed(*near, 1, nearness);
       if (-nearness(start.x) > within) continue;
       const Place there = climbed(start, first_share, height);

@@ -28,8 +28,8 @@ class SupportReference {
   };
   Top operator()(const dvec3& n) const;
   /// The highest value to which a way leads up, from where elements pass through the point, to
-  /// within this distance of it; minus infinity where none does. Ways end at their element's
-  /// border.
+  /// within this distance of it, and over to others that it comes as near to; minus infinity where
+  /// none is found.
   double climbed_from(const dvec3& x, const dvec3& n, double within) const;
   /// Of the box of the samples.
   double diagonal() const { return diagonal_; }
@@ -52,8 +52,9 @@ class SupportReference {
 
   void add(Element element);
   static dvec3 evaluate(const Element& element, const dvec2& at);
-  /// The places at which samples are highest, far from each other, in order.
-  std::vector<const Place*> highest(const std::function<double(const dvec3&)>& height) const;
+  /// So many places at which samples are highest, none beside another, in order.
+  std::vector<const Place*> highest(std::size_t count,
+                                    const std::function<double(const dvec3&)>& height) const;
   /// Uphill from the place, in steps of a share of its own at first, which are doubled and halved.
   Place climbed(Place place, double share, const std::function<double(const dvec3&)>& height) const;
 

@@ -211,7 +211,7 @@ class Climb {
     return step;
   }
 
-  /// Takes the step, half of the patch at most, up to the border. What is left of it.
+  /// Takes the step, half of the patch at most and up to the border. The step that was taken.
   dvec2 taken(dvec2 step) {
     const double longest = std::max(std::abs(step.x), std::abs(step.y));
     if (longest > 0.5) step *= 0.5 / longest;

@@ -35,7 +35,8 @@ class Search {
              const std::array<double, 4>& weight, int size) {
     const double norm = glm::length(point);
     const double ahead = size > best_.size ? -rounding_ : size < best_.size ? rounding_ : 0;
-    if (best_.size > 0 && !(norm + ahead < norm_)) return;
+    // Nothing is nearer than the origin itself.
+    if (best_.size > 0 && (norm_ == 0 || !(norm + ahead < norm_))) return;
     norm_ = norm;
     best_ = {point, direction, carrier, weight, size, false};
   }

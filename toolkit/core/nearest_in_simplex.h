@@ -12,8 +12,9 @@ struct NearestInSimplex {
   /// The sum of the carrying points times their weights, so that it lies in the convex hull but for
   /// four rounding units of the farthest point's distance.
   dvec3 point = dvec3(0.0);
-  /// Unit, towards it; across the triangle where it lies in one, also if the point is the origin.
-  /// Across the nearest side where the origin is inside.
+  /// Unit, towards it; across the triangle where it lies in one, also if the point is the origin,
+  /// and across the nearest triangle where the origin is inside. Zero where the point is the origin
+  /// and lies in no triangle.
   dvec3 direction = dvec3(0.0);
   /// The points that carry it, by number, with their positive weights of sum one.
   std::array<int, 4> carrier = {-1, -1, -1, -1};
@@ -24,7 +25,8 @@ struct NearestInSimplex {
 };
 
 /// Looks at all vertices, sides and faces; those of no area, up to underflow, are passed over. Of
-/// faces that are equally near but for rounding the larger carries: its normal tells the direction.
+/// those that are equally near but for rounding the one of more points carries, since its normal
+/// tells the direction, unless one of fewer meets the origin exactly.
 /// @pre 1 <= points.size() <= 4
 NearestInSimplex nearest_in_simplex(std::span<const dvec3> points);
 
