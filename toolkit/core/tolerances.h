@@ -70,6 +70,31 @@ inline constexpr double least_crest_share = 1e-9;
 /// same: more than what moving and rounding does to a copy, less than any gap that is meant.
 inline constexpr double repeated_patch_distance = 1e-12;
 
+/// @name Resolution
+/// What is nearer than the resolution of a model may be taken for one (surface/resolution.h).
+/// @{
+/// Its floor where there are curves or surfaces, as a fraction of the diagonal: a tenth of
+/// join_distance, at which borders were put together before, and ten times finer than float32. The
+/// work on a hull grows with its logarithm.
+inline constexpr double resolution_floor = 1e-8;
+
+/// The coarsest that a model may ask for by itself, as a fraction of the diagonal: what a designer
+/// means is larger.
+inline constexpr double coarsest_resolution = 1e-5;
+
+/// In half steps of the grid that coordinates were rounded to. A coordinate is off by one of them,
+/// a point by sqrt(3), two points that were one, or a point and the plane of others that it lay in,
+/// by 2 sqrt(3) = 3.47.
+inline constexpr double grid_resolution = 4;
+
+/// In what joined borders miss each other by. A contact may lie on either border, and so may the
+/// contact at the other end of a ruling: 2; of two rulings that were one, twice that.
+inline constexpr double join_resolution = 4;
+
+/// Largest share of the resolution within which elements touch. Eight ties in a row are within it.
+inline constexpr double tie_share = 1.0 / 8;
+/// @}
+
 /// Largest share of the diagonal that is ever put down to rounding (2^-33, about 1.2e-10): points
 /// that are nearly as close as their rounding mean what they say.
 inline constexpr double spurious_share = 1048576 * rounding_unit;

@@ -89,6 +89,7 @@ class Connector {
   }
 
   int seam_vertex_count() const { return seam_vertex_count_; }
+  double join_gap();
 
  private:
   dvec3 point_at(int number) const;
@@ -176,6 +177,15 @@ void Connector::identify_points() {
     const std::array<int, 2> ends = side_points(side);
     if (sides_[to_size(side)].collapsed) points_.unite(ends[0], ends[1]);
   }
+}
+
+/// Of sides, and of corners from the one in whose place a vertex would stand.
+double Connector::join_gap() {
+  double gap = largest_gap(sides_, joins_);
+  for (int i = 0; i < to_int(4 * patches_.size()) + 2 * free_piece_count_; ++i) {
+    gap = std::max(gap, glm::distance(point_at(i), point_at(points_.find(i))));
+  }
+  return gap;
 }
 
 void Connector::add_arc(int join, const BezierCurve& curve, std::array<int, 2> points) {
@@ -430,6 +440,7 @@ void Part::connect(double smooth_angle, const Progress& progress) {
   Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
+  join_gap_ = connector.join_gap();
   connected_ = true;
 }
 

@@ -100,6 +100,7 @@ void Part::add_surface(const NurbsSurface& surface, std::string face_name,
     patch.face = face;
     patches_.push_back(std::move(patch));
   }
+  stored_coordinates_.add(surface.points);
   box_ = box;
 }
 
@@ -132,6 +133,7 @@ void Part::add_cage(CageOfPart cage, int first_face) {
   for (std::size_t f = to_size(first_face); f < faces_.size(); ++f) {
     faces_[f].cage = to_int(cages_.size());
   }
+  stored_coordinates_.add(cage.cage->points);
   cages_.push_back(std::move(cage));
 }
 
@@ -153,6 +155,7 @@ void Part::add_curve(const NurbsCurve& curve, std::string edge_name) {
     edge_piece.edge = edge;
     pieces_.push_back(std::move(edge_piece));
   }
+  stored_coordinates_.add(curve.points);
   box_ = box;
 }
 
@@ -178,6 +181,7 @@ void Part::add_points(std::span<const dvec3> points) {
   }
   if (!points.empty()) validate_extent(box, name_of(0));
   vertices_.insert(vertices_.end(), points.begin(), points.end());
+  stored_coordinates_.add(points);
   box_ = box;
 }
 

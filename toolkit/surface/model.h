@@ -8,6 +8,7 @@
 
 #include "taut/core/progress.h"
 #include "taut/surface/control_cage.h"
+#include "taut/surface/coordinate_grid.h"
 #include "taut/surface/nurbs.h"
 #include "taut/surface/polygon_mesh.h"
 
@@ -205,6 +206,14 @@ class Part {
   /// Box of the control points, which contains the geometry.
   const Box& control_box() const { return box_; }
 
+  /// The grid on which the numbers lie that the part was made of: the points of surfaces, curves,
+  /// polygons and control cages as they were added. Those of add_patches() do not count: such
+  /// patches are computed.
+  CoordinateGrid coordinate_grid() const { return stored_coordinates_.grid(); }
+  /// How far apart that is, at worst, which connect() took for one: sides that meet (at the
+  /// parameters at which they are compared), the points of a side that collapses, and corners.
+  double join_gap() const { return join_gap_; }
+
   /// Where surfaces stand for something that they meet only within a tolerance: a proven bound of
   /// the difference that this makes to the support function of the part, the largest that was told.
   double deviation_bound() const { return deviation_bound_; }
@@ -226,7 +235,9 @@ class Part {
   std::vector<Patch> patches_;
   std::vector<EdgePiece> pieces_;
   Box box_;
+  StoredCoordinates stored_coordinates_;
   bool connected_ = false;
+  double join_gap_ = 0;
   double deviation_bound_ = 0;
   std::vector<CageOfPart> cages_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "taut/core/integers.h"
@@ -13,25 +14,31 @@
 namespace taut {
 namespace {
 
-/// Curve b, run backwards if `reversed`, is curve a.
+/// How far curve b, run backwards if `reversed`, is from curve a at worst; none if that is more
+/// than the tolerance.
 ///
 /// They are compared as points at equal parameters rather than by control points, since that is the
 /// distance which the tolerance means, for any weights and degrees. Two rational curves of degrees
 /// p and q that agree at p + q + 1 parameters are the same.
-bool agree(const BezierCurve& a, const BezierCurve& b, bool reversed, double tolerance) {
-  const auto same = [&](const dvec4& p, const dvec4& q) {
-    return same_point(euclidean(p), euclidean(q), tolerance);
+std::optional<double> gap_between(const BezierCurve& a, const BezierCurve& b, bool reversed,
+                                  double tolerance) {
+  double gap = 0;
+  const auto same = [&](const dvec3& p, const dvec3& q) {
+    gap = std::max(gap, glm::distance(p, q));
+    return same_point(p, q, tolerance);
   };
-  if (!same(a.points.front(), reversed ? b.points.back() : b.points.front()) ||
-      !same(a.points.back(), reversed ? b.points.front() : b.points.back())) {
-    return false;
+  const dvec4& start = reversed ? b.points.back() : b.points.front();
+  const dvec4& end = reversed ? b.points.front() : b.points.back();
+  if (!same(euclidean(a.points.front()), euclidean(start)) ||
+      !same(euclidean(a.points.back()), euclidean(end))) {
+    return {};
   }
   const int m = a.degree() + b.degree();
   for (int k = 1; k < m; ++k) {
     const double t = sample_parameter(k, m);
-    if (!same_point(point(a, t), point(b, reversed ? 1 - t : t), tolerance)) return false;
+    if (!same(point(a, t), point(b, reversed ? 1 - t : t))) return {};
   }
-  return true;
+  return gap;
 }
 
 /// A point that curves have in common if they agree, in either direction, within twice the
@@ -78,15 +85,17 @@ std::vector<Join> match_sides(const std::vector<Patch>& patches,
     const SideCurve& s = sides[to_size(side)];
     if (s.collapsed || patches[to_size(side / 4)].repeats >= 0) continue;
     const dvec3 place = place_of(s.curve);
-    Use use{side, false};
+    Use use{side, false, 0};
     int found = to_int(joins.size());
     places.visit_near(place, [&](int join) {
       if (join > found) return;
       const BezierCurve& first = sides[to_size(joins[to_size(join)].front().side)].curve;
       for (const bool reversed : {false, true}) {
-        if (!agree(first, s.curve, reversed, tolerance)) continue;
+        const std::optional<double> gap = gap_between(first, s.curve, reversed, tolerance);
+        if (!gap) continue;
         found = join;
         use.reversed = reversed;
+        use.gap = *gap;
         return;
       }
     });
@@ -97,6 +106,20 @@ std::vector<Join> match_sides(const std::vector<Patch>& patches,
     joins[to_size(found)].push_back(use);
   }
   return joins;
+}
+
+double largest_gap(const std::vector<SideCurve>& sides, const std::vector<Join>& joins) {
+  double gap = 0;
+  for (const Join& join : joins) {
+    for (const Use& use : join) gap = std::max(gap, use.gap);
+  }
+  for (const SideCurve& side : sides) {
+    if (!side.collapsed) continue;
+    const dvec3 start = euclidean(side.curve.points.front());
+    for (const dvec4& p : side.curve.points)
+      gap = std::max(gap, glm::distance(euclidean(p), start));
+  }
+  return gap;
 }
 
 }  // namespace taut

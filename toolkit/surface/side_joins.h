@@ -19,6 +19,7 @@ struct SideCurve {
 struct Use {
   int side = 0;
   bool reversed = false;  ///< relative to the first use
+  double gap = 0;         ///< from the first use's curve, at worst
 };
 
 /// A curve in which sides meet, or a single one ends; uses are in ascending order of the sides.
@@ -36,6 +37,9 @@ std::vector<SideCurve> side_curves(const std::vector<Patch>& patches, double tol
 std::vector<Join> match_sides(const std::vector<Patch>& patches,
                               const std::vector<SideCurve>& sides, const Box& box,
                               double tolerance);
+
+/// How far joined sides are apart at worst, and how large sides are that collapse.
+double largest_gap(const std::vector<SideCurve>& sides, const std::vector<Join>& joins);
 
 /// Chebyshev parameter k of 0 .. m on [0, 1]: a polynomial of degree m is at most O(log m) times as
 /// large between them as at them.
