@@ -123,6 +123,8 @@ TEST_F(Cli, HullReportHasTheNamesOfTheContract) {
                           "/input/box/1/2",
                           "/method",
                           "/dimension",
+                          "/hull/resolution",
+                          "/hull/resolution_source",
                           "/hull/gap_bound",
                           "/mesh/vertices",
                           "/mesh/edges",
@@ -254,6 +256,10 @@ TEST_F(Cli, WrongUsageIsRefusedBeforeAnyWork) {
   expect_failure(hull + "-o a.ply --tolerance -1", 2, "--tolerance");
   expect_failure(hull + "-o a.ply --tolerance nan", 2, "--tolerance");
   expect_failure(hull + "-o a.ply --tolerance inf", 2, "--tolerance");
+  expect_failure(hull + "-o a.ply --resolution -1e-9", 2, "--resolution");
+  expect_failure(hull + "-o a.ply --resolution 1.5", 2, "--resolution");
+  expect_failure(hull + "-o a.ply --resolution nan", 2, "--resolution");
+  expect_failure("info nowhere.bpt --resolution fine", 2, "--resolution");
   expect_failure(hull + "-o a.ply -o a.hull.json --method sampled", 2, "a.hull.json: ");
   expect_failure(hull + "-o - --format hull.cbor --method sampled", 2, "holds the exact hull");
   expect_failure(hull + "-o a.mlp -o a-hull.ply", 2, "a-hull.ply: is named twice");
@@ -355,6 +361,52 @@ TEST_F(Cli, InfoCounts) {
   EXPECT_EQ(info["files"][0]["rational"], false);
   EXPECT_EQ(info["input"]["faces"], 64);
   EXPECT_EQ(info["input"]["box"], info["files"][0]["box"]);
+}
+
+/// A bilinear patch of this size whose coordinates have six decimals.
+std::string rounded_patch(double size) {
+  const auto corner = [&](double x, double y, double z) {
+    std::array<char, 80> line;
+    std::snprintf(line.data(), line.size(), "%.6f %.6f %.6f\n", size * x, size * y, size * z);
+    return std::string(line.data());
+  };
+  return "1\n1 1\n" + corner(0.1234567, 0.7654321, 0.3) + corner(1.1928374, 0.8172635, 0.4192837) +
+         corner(0.2718281, 1.8182845, 0.5904523) + corner(1.3141592, 1.9535897, 0.6932384);
+}
+
+TEST_F(Cli, InfoTellsTheResolution) {
+  const Result clean = run("info " + teapot_);
+  EXPECT_NE(clean.out.find("1e-08 of the diagonal"), std::string::npos) << clean.out;
+  EXPECT_NE(clean.out.find("worst join  "), std::string::npos) << clean.out;
+  const std::string patch = plant("patch.bpt", rounded_patch(1));
+  const Result text = run("info " + patch);
+  EXPECT_EQ(text.err, "");
+  EXPECT_NE(text.out.find("resolution  2e-06: coordinates have 6 decimals"), std::string::npos)
+      << text.out;
+  const Json file = Json::parse(run("info --json " + patch).out)["files"][0];
+  EXPECT_DOUBLE_EQ(file["resolution"].get<double>(), 2e-6);
+  EXPECT_EQ(file["resolution_source"], "coordinates");
+  EXPECT_EQ(file["worst_join"], 0);
+  EXPECT_EQ(file["grid"], Json::parse(R"({"kind": "decimals", "decimals": 6, "step": 1e-6})"));
+  const Json asked = Json::parse(run("info --json --resolution 1e-3 " + patch).out)["files"][0];
+  EXPECT_DOUBLE_EQ(asked["resolution"].get<double>(), 1e-3 * asked["diagonal"].get<double>());
+  EXPECT_EQ(asked["resolution_source"], "option");
+}
+
+TEST_F(Cli, CoarseResolutionIsCappedWithAWarning) {
+  const std::string patch = plant("patch.bpt", rounded_patch(0.01));
+  const Result result = run("hull " + patch + " --json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  EXPECT_DOUBLE_EQ(report["hull"]["resolution"].get<double>(),
+                   1e-5 * report["input"]["diagonal"].get<double>());
+  ASSERT_EQ(report["warnings"].size(), 1U);
+  EXPECT_EQ(report["warnings"][0]["code"], "coarse-resolution");
+  EXPECT_NE(result.err.find("--resolution"), std::string::npos) << result.err;
+  const Json fine = Json::parse(run("hull " + patch + " --json --resolution 0").out);
+  EXPECT_EQ(fine["hull"]["resolution_source"], "option");
+  EXPECT_LT(fine["hull"]["resolution"].get<double>(), 1e-15);
+  EXPECT_EQ(fine["warnings"].size(), 0U);
 }
 
 TEST_F(Cli, SupportAnswersEachDirection) {

@@ -23,6 +23,9 @@ taut::Report full_report() {
   report.input.box.include(taut::dvec3(1, 2, 3));
   report.method = "precise";
   report.hull.counts = {10, 11, 12, 13, 1};
+  taut::Resolution& resolution = report.hull.resolution.emplace();
+  resolution.rho = 2e-7;
+  resolution.source = taut::ResolutionSource::stand_ins;
   taut::Measures& measures = report.hull.measures.emplace();
   measures.volume = 0.3;
   measures.area = 1.0 / 7;
@@ -62,8 +65,9 @@ TEST(Report, KeysOfTheContractInOrder) {
   EXPECT_EQ(keys(json["input"]),
             (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
   EXPECT_EQ(keys(json["hull"]),
-            (Keys{"patches", "scrolls", "facets", "curves", "unresolved", "volume", "area",
-                  "centroid", "inertia", "mean_width", "measures_accuracy", "gap_bound"}));
+            (Keys{"patches", "scrolls", "facets", "curves", "unresolved", "resolution",
+                  "resolution_source", "volume", "area", "centroid", "inertia", "mean_width",
+                  "measures_accuracy", "gap_bound"}));
   EXPECT_EQ(keys(json["mesh"]), (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance",
                                       "distance_bound", "files"}));
   for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
@@ -92,6 +96,8 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["hull"]["facets"], 12);
   EXPECT_EQ(json["hull"]["curves"], 13);
   EXPECT_EQ(json["hull"]["unresolved"], 1);
+  EXPECT_EQ(json["hull"]["resolution"].get<double>(), 2e-7);
+  EXPECT_EQ(json["hull"]["resolution_source"], "stand-ins");
   EXPECT_EQ(json["hull"]["volume"].get<double>(), 0.3);
   EXPECT_EQ(json["hull"]["area"].get<double>(), 1.0 / 7);
   EXPECT_EQ(json["hull"]["centroid"], Json({1.0, 2.0, 0.7}));

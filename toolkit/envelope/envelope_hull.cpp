@@ -188,8 +188,10 @@ Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
                    const HullOptions& options) {
   const Scene& scene = images.scene();
   const double tolerance = tolerance_for(options, scene.diagonal());
+  const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
   SupportQuery query(scene, options.progress.stop);
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
+  warn_if_capped(resolution, options.progress);
   return polytope_hull(scene, options, ImagePolytope(images, map, options, tolerance).run());
 }
 

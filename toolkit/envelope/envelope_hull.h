@@ -13,8 +13,9 @@ namespace taut {
 /// The mesh is one as of sampled_hull(), closed and exactly convex, with the same certificate of
 /// its distance from the true hull; support queries measure the distance and choose no point. A
 /// scene that is flat has the hull of sampled_hull(). Same bits for any number of threads.
-/// @throws InvalidInput if the tolerance is not valid, HullNotConverged if the images do not show
-/// enough for the tolerance (features between pixels), or max_vertices was met, Cancelled
+/// @throws InvalidInput if the tolerance or the resolution is not valid, HullNotConverged if the
+/// images do not show enough for the tolerance (features between pixels), or max_vertices was met,
+/// Cancelled
 Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
                    const HullOptions& options = {});
 

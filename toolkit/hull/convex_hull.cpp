@@ -8,6 +8,7 @@ namespace taut {
 Hull convex_hull(const Model& model, const HullOptions& options) {
   if (model.empty()) {
     tolerance_for(options, 0);
+    resolution_for(options, model, 0);
     return {};
   }
   if (model.polyhedral()) return polyhedral_hull(model, options);

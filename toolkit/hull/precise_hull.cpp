@@ -22,9 +22,12 @@ bool wants_more(const HullBoundary& boundary) {
 }  // namespace
 
 Hull precise_hull(const Scene& scene, const HullOptions& options) {
-  tolerance_for(options, scene.diagonal());  // what is wrong with the tolerance is told at once
+  // What is wrong with the options is told at once.
+  tolerance_for(options, scene.diagonal());
+  const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
   SupportQuery query(scene, options.progress.stop);
   if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
+  warn_if_capped(resolution, options.progress);
 
   HullStatistics statistics;
   statistics.support_queries = query.queries();

@@ -47,6 +47,24 @@ CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optio
       description);
 }
 
+CLI::Option* add_resolution(CLI::App& command, std::optional<double>& value) {
+  const std::string name = "--resolution";
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            const auto parsed = parse_number(text);
+            if (!parsed || !(*parsed >= 0 && *parsed <= 1)) {
+              throw CLI::ValidationError(name, text + " is no number from 0 to 1");
+            }
+            value = parsed;
+          },
+          "What is nearer than this fraction of the diagonal may be taken for\none; 0: nothing but "
+          "what rounding to doubles does. Default: from the\nmodel, by its size, the digits of its "
+          "coordinates and its joins")
+      ->type_name("R");
+}
+
 CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
                          int highest, const std::string& description) {
   return command

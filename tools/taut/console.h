@@ -30,6 +30,9 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optional<double>& value,
                           const std::string& description);
 
+/// Adds the option --resolution, a fraction of the diagonal.
+CLI::Option* add_resolution(CLI::App& command, std::optional<double>& value);
+
 /// Adds an option whose value must be an integer in [lowest, highest].
 CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
                          int highest, const std::string& description);

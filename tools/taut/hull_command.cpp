@@ -44,6 +44,7 @@ struct HullArguments {
   std::string method = "precise";
   std::optional<double> relative;
   std::optional<double> tolerance;
+  std::optional<double> resolution;
   int max_vertices = HullOptions().max_vertices;
   int size = EnvelopeOptions().size;
 };
@@ -257,6 +258,7 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   report.dimension = hull.dimension();
   const Stopwatch measuring;
   report.hull = exact_hull(input, hull, arguments.method, console);
+  report.hull.resolution = hull.resolution;
   report.mesh.vertices = long(hull.mesh.n_vertices());
   report.mesh.edges = long(hull.mesh.n_edges());
   report.mesh.faces = long(hull.mesh.n_faces());
@@ -303,6 +305,9 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
     if (counts->unresolved > 0) hull += ", " + number(long(counts->unresolved)) + " unresolved";
   }
   text += line("hull", hull);
+  if (const auto& resolution = report.hull.resolution) {
+    text += line("resolution", " " + number(resolution->rho, 3) + ": " + reason_of(*resolution));
+  }
   text += line("mesh", counted(report.mesh.faces, "face", "faces") + ", " +
                            counted(report.mesh.vertices, "vertex", "vertices") + " (" +
                            report.method + ")");
@@ -408,6 +413,7 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   const double wanted = tolerance(arguments, input.diagonal());
   const double deviation = input.model().deviation_bound();
   options.tolerance = mesh_tolerance(wanted, deviation);
+  options.resolution = arguments.resolution;
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
@@ -481,6 +487,7 @@ Command add_hull(CLI::App& parent) {
                "The same in model units; not with --relative")
       ->type_name("T")
       ->excludes(relative);
+  add_resolution(app, arguments->resolution);
   add_integer(app, "--max-vertices", arguments->max_vertices, 4, std::numeric_limits<int>::max(),
               "Vertices after which to give up on the tolerance, default " +
                   number(long(arguments->max_vertices)));

@@ -1,4 +1,5 @@
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "output.h"
 #include "taut/io/document/write_document.h"
 #include "taut/io/text/formats.h"
+#include "taut/surface/resolution.h"
 #include "text.h"
 
 namespace taut::tool {
@@ -28,14 +30,20 @@ struct Contents {
   long irregular_faces = 0;
   long refined_faces = 0;
   double deviation_bound = 0;
+  /// None where the diagonal is not known.
+  std::optional<Resolution> resolution;
   int trimmed = 0;
   long rational = 0;
   std::vector<std::string> face_names;
 };
 
-Contents contents(Input& input) {
+Contents contents(Input& input, std::optional<double> resolution, const Progress& progress) {
   Contents contents;
   contents.summary = input.summary();
+  if (!contents.summary.box.empty()) {
+    contents.resolution = resolution_of(input.model(), input.diagonal(), resolution);
+    warn_if_capped(*contents.resolution, progress);
+  }
   contents.trimmed = trimmed_face_count(input.model());
   for (const Instance& instance : input.model().instances()) {
     const Part& part = input.model().parts()[std::size_t(instance.part)];
@@ -97,6 +105,18 @@ Json degrees_json(const DegreeCounts& counts, const char* noun) {
   return json;
 }
 
+/// Of doubles, null.
+Json grid_json(const CoordinateGrid& grid) {
+  switch (grid.kind) {
+    case CoordinateGrid::Kind::float32:
+      return {{"kind", "float32"}, {"step", grid.step}};
+    case CoordinateGrid::Kind::decimals:
+      return {{"kind", "decimals"}, {"decimals", grid.decimals}, {"step", grid.step}};
+    default:
+      return {};
+  }
+}
+
 Json json_of(const Contents& file) {
   Json json;
   json["file"] = file.summary.files.front();
@@ -117,6 +137,12 @@ Json json_of(const Contents& file) {
   json["rational"] = file.rational > 0;
   json["diagonal"] = counts["diagonal"];
   json["box"] = counts["box"];
+  if (file.resolution) {
+    json["resolution"] = file.resolution->rho;
+    json["resolution_source"] = name_of(file.resolution->source);
+    json["worst_join"] = file.resolution->worst_join;
+    json["grid"] = grid_json(file.resolution->grid);
+  }
   json["names"] = file.face_names;
   return json;
 }
@@ -168,6 +194,13 @@ std::string text_of(const Contents& file, bool names) {
     text += "  trimmed   " + counted(file.trimmed, "face", "faces") +
             ", which cannot be evaluated yet: the box is not known\n";
   }
+  if (file.resolution) {
+    text += "  resolution  " + number(file.resolution->rho, 3) + ": " +
+            reason_of(*file.resolution) + "\n";
+    if (file.summary.patches > 0) {
+      text += "  worst join  " + number(file.resolution->worst_join, 3) + "\n";
+    }
+  }
   text += std::string("  rational  ") +
           (file.rational > 0 ? "yes, " + number(file.rational) + " of the patches and curves"
                              : std::string("no")) +
@@ -210,8 +243,14 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
   check_outputs({}, "", output, inputs);
 }
 
-/// `output`: the model document that all inputs are written to, or empty.
-ExitCode run(const InputArguments& inputs, const std::string& output, Console& console) {
+struct InfoArguments {
+  InputArguments inputs;
+  std::string output;  ///< the model document that all inputs are written to, or empty
+  std::optional<double> resolution;
+};
+
+ExitCode run(const InfoArguments& arguments, Console& console) {
+  const auto& [inputs, output, resolution] = arguments;
   if (!output.empty()) check_output(output, inputs.files);
   std::vector<Contents> files;
   Collection collection;
@@ -221,7 +260,7 @@ ExitCode run(const InputArguments& inputs, const std::string& output, Console& c
     InputArguments one = inputs;
     one.files = {file};
     Input input(one, console);
-    files.push_back(contents(input));
+    files.push_back(contents(input, resolution, console.progress()));
     seconds_read += input.seconds_read();
     seconds_build += input.seconds_build();
     if (!output.empty()) collection.add(input.model());
@@ -256,14 +295,14 @@ Command add_info(CLI::App& parent) {
                                 "  taut info teapot.bpt\n"
                                 "  taut info a.bpt b.obj --json\n"
                                 "  taut info a.bpt b.obj -o both.taut.json");
-  const auto inputs = std::make_shared<InputArguments>();
-  const auto output = std::make_shared<std::string>();
-  add_inputs(*command.app, *inputs);
+  const auto arguments = std::make_shared<InfoArguments>();
+  add_inputs(*command.app, arguments->inputs);
+  add_resolution(*command.app, arguments->resolution);
   command.app
-      ->add_option("-o,--output", *output,
+      ->add_option("-o,--output", arguments->output,
                    "Model document that all inputs are written to: .taut.json, .taut.cbor")
       ->option_text("FILE");
-  command.run = [inputs, output](Console& console) { return run(*inputs, *output, console); };
+  command.run = [arguments](Console& console) { return run(*arguments, console); };
   return command;
 }
 

@@ -345,8 +345,12 @@ void PolyhedralHull::label_faces() {
 
 Hull polyhedral_hull(const Model& model, const HullOptions& options) {
   tolerance_for(options, 0);
+  const Resolution resolution = resolution_for(options, model, diagonal(model.control_box()));
   if (model.empty()) return {};
-  return PolyhedralHull(model, options).run();
+  warn_if_capped(resolution, options.progress);
+  Hull hull = PolyhedralHull(model, options).run();
+  hull.resolution = resolution;
+  return hull;
 }
 
 }  // namespace taut

@@ -20,7 +20,8 @@ namespace taut {
 /// Duplicates, points within and empty parts change nothing. Same bits for any number of threads.
 /// Faces carry as source the first polygon that lies in them and touches a corner of their hull
 /// face.
-/// @pre model.polyhedral() @throws InvalidInput if the tolerance is not valid, Cancelled
+/// @pre model.polyhedral() @throws InvalidInput if the tolerance or the resolution is not valid,
+/// Cancelled
 Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 
 }  // namespace taut

@@ -8,6 +8,7 @@
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/result/hull_mesh.h"
 #include "taut/hull/result/hull_statistics.h"
+#include "taut/surface/resolution.h"
 
 namespace taut {
 
@@ -22,6 +23,8 @@ struct Hull {
   /// model as it stands, in model units, rounding included. What patches that stand for other
   /// surfaces miss (Model::deviation_bound, of control cages) comes on top.
   double distance_bound = 0;
+  /// What is nearer than this may be taken for one: as the options ask, or as the model tells.
+  Resolution resolution;
   /// The exact boundary, where the method finds it.
   std::shared_ptr<const HullBoundary> boundary;
   HullStatistics statistics;

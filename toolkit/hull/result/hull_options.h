@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "taut/core/progress.h"
+#include "taut/surface/resolution.h"
 
 namespace taut {
 
@@ -10,6 +13,9 @@ struct HullOptions {
   double tolerance = 0;
   /// That distance as a fraction of the diagonal of the model's box.
   double relative = 1e-4;
+  /// What is nearer than this fraction of that diagonal may be taken for one; 0: nothing but what
+  /// rounding to doubles does. None: the model tells (Resolution).
+  std::optional<double> resolution = std::nullopt;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;
   /// Vertices, some thirty to begin with apart, after which refinement gives up (HullNotConverged
@@ -22,5 +28,11 @@ struct HullOptions {
 /// @throws InvalidInput if the tolerance is negative or no number, or the relative one counts and
 /// is not positive and finite, or leaves the range of doubles
 double tolerance_for(const HullOptions& options, double diagonal);
+
+/// The resolution that the options ask for, or the model's. @throws InvalidInput if it is asked for
+/// and not in [0, 1]
+inline Resolution resolution_for(const HullOptions& options, const Model& model, double diagonal) {
+  return resolution_of(model, diagonal, options.resolution);
+}
 
 }  // namespace taut

@@ -146,6 +146,7 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
   for (const auto f : hull.mesh.faces()) hull.mesh.data(f).hull_face = f.idx();
   for (const auto e : hull.mesh.edges()) hull.mesh.data(e).feature = true;
   hull.distance_bound = bound_in_model(bound_);
+  hull.resolution = resolution_for(options_, scene_.model(), scene_.diagonal());
   return hull;
 }
 

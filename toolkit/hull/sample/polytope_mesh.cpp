@@ -274,6 +274,7 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   hull.kind = HullKind::solid;
   hull.mesh = labelled_mesh(scene, polytope, known, options.progress);
   hull.distance_bound = polytope.distance_bound;
+  hull.resolution = resolution_for(options, scene.model(), scene.diagonal());
   hull.statistics = polytope.statistics;
   hull.statistics.seconds_mesh = time.seconds();
   if (polytope.failure != nullptr) throw HullNotConverged(polytope.failure, std::move(hull));

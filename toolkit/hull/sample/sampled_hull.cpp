@@ -8,6 +8,7 @@ namespace taut {
 
 Hull sampled_hull(const Scene& scene, const HullOptions& options) {
   const double tolerance = tolerance_for(options, scene.diagonal());
+  warn_if_capped(resolution_for(options, scene.model(), scene.diagonal()), options.progress);
   const Stopwatch start_time;
   SupportQuery query(scene, options.progress.stop);
   SampledStart start = sampled_start(scene, query);

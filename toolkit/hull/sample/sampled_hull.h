@@ -18,9 +18,9 @@ namespace taut {
 /// segment or a point; its corners are support points too, and a planar outline is convex as seen
 /// along the axis that foreshortens it least.
 ///
-/// @throws InvalidInput if the tolerance is not valid, HullNotConverged if it is below what double
-/// precision can certify for this scene (about 1e-12 of its size) or max_vertices was met,
-/// Cancelled
+/// @throws InvalidInput if the tolerance or the resolution is not valid, HullNotConverged if it is
+/// below what double precision can certify for this scene (about 1e-12 of its size) or max_vertices
+/// was met, Cancelled
 Hull sampled_hull(const Scene& scene, const HullOptions& options = {});
 
 }  // namespace taut

@@ -26,6 +26,10 @@ ReportJson to_json(const Report::ExactHull& hull) {
     json["curves"] = hull.counts->curves;
     json["unresolved"] = hull.counts->unresolved;
   }
+  if (hull.resolution) {
+    json["resolution"] = hull.resolution->rho;
+    json["resolution_source"] = name_of(hull.resolution->source);
+  }
   if (hull.measures) {
     const dmat3& inertia = hull.measures->inertia;  // symmetric: columns are rows
     json["volume"] = hull.measures->volume;

@@ -6,6 +6,7 @@
 
 #include "taut/core/geometry.h"
 #include "taut/hull/result/measures.h"
+#include "taut/surface/resolution.h"
 
 namespace taut {
 
@@ -30,6 +31,7 @@ struct Report {
       int patches = 0, scrolls = 0, facets = 0, curves = 0, unresolved = 0;
     };
     std::optional<Counts> counts;
+    std::optional<Resolution> resolution;
     std::optional<Measures> measures;
     std::optional<double> mean_width;
     /// Estimated relative accuracy of volume, area and mean width (BoundaryMeasures).
