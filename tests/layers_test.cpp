@@ -43,6 +43,7 @@ const std::map<std::string, Rooms> rooms_of = {
          {"planar", {"polytope"}},
          {"contact", {"planar"}},
          {"cull", {"contact"}},
+         {"decide", {"result"}},
          {"trace", {"cull"}},
          {"stitch", {"trace"}},
          {"sample", {"polytope"}},

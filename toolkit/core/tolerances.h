@@ -93,6 +93,11 @@ inline constexpr double join_resolution = 4;
 
 /// Largest share of the resolution within which elements touch. Eight ties in a row are within it.
 inline constexpr double tie_share = 1.0 / 8;
+
+/// Share of the resolution within which an element is told to lie in the convex hull of others. Its
+/// points and theirs may each be off by sqrt(3) half steps of a grid, of which grid_resolution is
+/// the resolution: together by 0.866 of it.
+inline constexpr double cover_share = 7.0 / 8;
 /// @}
 
 /// Largest share of the diagonal that is ever put down to rounding (2^-33, about 1.2e-10): points

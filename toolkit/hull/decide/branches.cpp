@@ -1,0 +1,231 @@
+#include "taut/hull/decide/branches.h"
+
+#include <algorithm>
+
+#include "taut/core/disjoint_sets.h"
+
+namespace taut {
+namespace {
+
+/// Passes over the glue after which charts are as they are: each carries a change one chart on.
+constexpr int evening_limit = 4;
+
+bool touches(const Interval& a, const Interval& b) {
+  return a.lower <= b.upper && b.lower <= a.upper;
+}
+
+bool include(Interval& range, const Interval& other) {
+  const bool grows = other.lower < range.lower || other.upper > range.upper;
+  range.lower = std::min(range.lower, other.lower);
+  range.upper = std::max(range.upper, other.upper);
+  return grows;
+}
+
+Interval turned(const Interval& t, bool reversed) {
+  return reversed ? Interval{1 - t.upper, 1 - t.lower} : t;
+}
+
+Interval& along(Chart& chart, Side side) { return along_v(side) ? chart.v : chart.u; }
+
+/// The strip of no width along a side.
+std::array<Interval, 2> strip(Side side, const Interval& t) {
+  const double fixed = at_upper_end(side) ? 1 : 0;
+  const Interval across{fixed, fixed};
+  return along_v(side) ? std::array{across, t} : std::array{t, across};
+}
+
+}  // namespace
+
+const Interval& along(const Chart& chart, Side side) { return along_v(side) ? chart.v : chart.u; }
+
+bool is_at(const Chart& chart, Side side) {
+  const Interval& across = along_v(side) ? chart.u : chart.v;
+  return at_upper_end(side) ? across.upper == 1 : across.lower == 0;
+}
+
+void Branches::clear() {
+  charts_.clear();
+  branches_.clear();
+  glues_.clear();
+}
+
+void Branches::find(const CellView& view) {
+  clear();
+  make_charts(view);
+  for (int k = 0; k < int(charts_.size()); ++k) {
+    if (charts_[std::size_t(k)].kind == SourceKind::face) glue_face(view.pieces(), k);
+    if (charts_[std::size_t(k)].kind == SourceKind::edge) glue_edge(view.pieces(), k);
+  }
+  even_out();
+  sort_into_branches(view);
+}
+
+void Branches::make_charts(const CellView& view) {
+  const std::vector<SeenPiece>& seen = view.seen();
+  const MapPieces& pieces = view.pieces();
+  std::vector<bool> known(seen.size(), false);
+  const auto piece = [&](int k) -> const MapPiece& {
+    return pieces.piece(seen[std::size_t(k)].piece);
+  };
+  for (std::size_t first = 0; first < seen.size(); ++first) {
+    if (known[first]) continue;
+    known[first] = true;
+    const MapPiece& own = piece(int(first));
+    Chart chart{own.element, pieces.element(own.element).contact.kind, own.u, own.v,
+                {int(first)}, -1, seen[first].low, seen[first].top};
+    for (std::size_t next = 0; next < chart.pieces.size(); ++next) {
+      const MapPiece& from = piece(chart.pieces[next]);
+      for (std::size_t k = first + 1; k < seen.size(); ++k) {
+        const MapPiece& other = piece(int(k));
+        if (known[k] || other.element != from.element || !touches(from.u, other.u) ||
+            !touches(from.v, other.v)) {
+          continue;
+        }
+        known[k] = true;
+        chart.pieces.push_back(int(k));
+        include(chart.u, other.u);
+        include(chart.v, other.v);
+        for (std::size_t c = 0; c < 4; ++c) {
+          chart.low[c] = std::min(chart.low[c], seen[k].low[c]);
+          chart.top[c] = std::max(chart.top[c], seen[k].top[c]);
+        }
+      }
+    }
+    charts_.push_back(std::move(chart));
+  }
+}
+
+int Branches::chart_touching(int element, const Interval& u, const Interval& v) const {
+  if (element < 0) return -1;
+  for (int k = 0; k < int(charts_.size()); ++k) {
+    const Chart& chart = charts_[std::size_t(k)];
+    if (chart.element == element && touches(chart.u, u) && touches(chart.v, v)) return k;
+  }
+  return -1;
+}
+
+int Branches::holder(const MapPieces& pieces, const Contact& c) const {
+  const int k = chart_touching(pieces.find(c), {c.u, c.u}, {c.v, c.v});
+  return k < 0 ? -1 : charts_[std::size_t(k)].branch;
+}
+
+/// What two charts tell of each other counts once.
+void Branches::add(const Glue& glue) {
+  const bool known = std::any_of(glues_.begin(), glues_.end(), [&](const Glue& g) {
+    return g.kind == glue.kind && g.a == glue.b && g.b == glue.a && g.at_a == glue.at_b &&
+           g.at_b == glue.at_a;
+  });
+  if (!known) glues_.push_back(glue);
+}
+
+void Branches::glue_face(const MapPieces& pieces, int index) {
+  const ContactGeometry& geometry = pieces.geometry();
+  const Chart& chart = charts_[std::size_t(index)];
+  const Contact& c = pieces.element(chart.element).contact;
+  const Patch& patch = geometry.patch(c);
+  const auto at_vertex = [&](int vertex, int place) {
+    if (vertex < 0) return;
+    const int element = pieces.find_first({c.instance, SourceKind::vertex, vertex, 0, 0});
+    const int other = chart_touching(element, {0, 0}, {0, 0});
+    if (other >= 0) add({Glue::Kind::face_vertex, index, other, place, 0, false});
+  };
+  for (const Side side : all_sides) {
+    if (!is_at(chart, side)) continue;
+    const Border& border = patch.borders[std::size_t(side)];
+    if (border.kind == BorderKind::smooth) {
+      const int element = pieces.find({c.instance, SourceKind::face, border.neighbor, 0, 0});
+      const auto there = strip(border.neighbor_side, turned(along(chart, side), border.reversed));
+      const int other = chart_touching(element, there[0], there[1]);
+      if (other >= 0) {
+        add({Glue::Kind::faces, index, other, int(side), int(border.neighbor_side),
+             border.reversed});
+      }
+    } else if (border.kind == BorderKind::collapsed) {
+      at_vertex(border.vertex, int(side));
+    } else if (border.piece >= 0) {
+      const Contact piece{c.instance, SourceKind::edge, border.piece, 0, 0};
+      const bool reversed = border.piece_reversed != pieces.runs_against_first(piece);
+      const int other = chart_touching(pieces.find_first(piece),
+                                       turned(along(chart, side), reversed), {0, 0});
+      if (other >= 0) add({Glue::Kind::face_edge, index, other, int(side), 0, reversed});
+    }
+  }
+  for (int corner = 0; corner < 4; ++corner) {
+    if (is_at(chart, corner < 2 ? Side::u0 : Side::u1) &&
+        is_at(chart, corner % 2 == 0 ? Side::v0 : Side::v1)) {
+      at_vertex(patch.corner_vertex[std::size_t(corner)], 4 + corner);
+    }
+  }
+}
+
+void Branches::glue_edge(const MapPieces& pieces, int index) {
+  const ContactGeometry& geometry = pieces.geometry();
+  const Chart& chart = charts_[std::size_t(index)];
+  const Contact& c = pieces.element(chart.element).contact;
+  const EdgePiece& piece = geometry.piece(c);
+  for (const int end : {0, 1}) {
+    if (end == 0 ? chart.u.lower > 0 : chart.u.upper < 1) continue;
+    const int vertex = piece.end_vertex[std::size_t(end)];
+    if (vertex >= 0) {
+      const int element = pieces.find_first({c.instance, SourceKind::vertex, vertex, 0, 0});
+      const int other = chart_touching(element, {0, 0}, {0, 0});
+      if (other >= 0) add({Glue::Kind::edge_vertex, index, other, end, 0, false});
+    }
+    const int next = piece.end_neighbor[std::size_t(end)];
+    if (next < 0) continue;
+    const Contact beyond{c.instance, SourceKind::edge, next, 0, 0};
+    const bool turned_round = pieces.runs_against_first(beyond);
+    for (const int far : {0, 1}) {
+      if (geometry.piece(beyond).end_neighbor[std::size_t(far)] != c.element) continue;
+      if (next == c.element && far == end) continue;
+      const double t = turned_round ? 1 - far : far;
+      const int other = chart_touching(pieces.find_first(beyond), {t, t}, {0, 0});
+      if (other >= 0) add({Glue::Kind::edges, index, other, end, int(t), false});
+    }
+  }
+}
+
+void Branches::even_out() {
+  for (int pass = 0; pass < evening_limit; ++pass) {
+    bool changed = false;
+    for (const Glue& glue : glues_) {
+      if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::face_edge) continue;
+      Interval& a = along(charts_[std::size_t(glue.a)], Side(glue.at_a));
+      Chart& other = charts_[std::size_t(glue.b)];
+      Interval& b = glue.kind == Glue::Kind::faces ? along(other, Side(glue.at_b)) : other.u;
+      changed = include(a, turned(b, glue.reversed)) || changed;
+      changed = include(b, turned(a, glue.reversed)) || changed;
+    }
+    if (!changed) return;
+  }
+}
+
+void Branches::sort_into_branches(const CellView& view) {
+  DisjointSets sets(charts_.size());
+  for (const Glue& glue : glues_) sets.unite(glue.a, glue.b);
+  std::vector<int> branch_of(charts_.size(), -1);
+  for (std::size_t k = 0; k < charts_.size(); ++k) {
+    int& branch = branch_of[std::size_t(sets.find(int(k)))];
+    if (branch < 0) {
+      branch = int(branches_.size());
+      branches_.emplace_back();
+    }
+    charts_[k].branch = branch;
+    Branch& own = branches_[std::size_t(branch)];
+    own.charts.push_back(int(k));
+    for (const int index : charts_[k].pieces) {
+      const MapPiece& piece = view.pieces().piece(view.seen()[std::size_t(index)].piece);
+      const dvec4* p = view.pieces().points(piece.net);
+      for (int i = 0; i < piece.net.shape.size(); ++i) {
+        const dvec3 x = dvec3(p[i]) / p[i].w;
+        own.lower = glm::min(own.lower, x);
+        own.upper = glm::max(own.upper, x);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < glues_.size(); ++k) {
+    branches_[std::size_t(charts_[std::size_t(glues_[k].a)].branch)].glues.push_back(int(k));
+  }
+}
+
+}  // namespace taut

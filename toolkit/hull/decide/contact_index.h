@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/curved_regions.h"
+
+namespace taut {
+
+/// Proves that a branch has one contact for each direction of a cell, by the index of the gradient
+/// of the heights (Poincare and Hopf; Milnor 1965, section 6).
+///
+/// Let the charts of the branch, rounded by a ball as small as one likes where edges and vertices
+/// are, be a surface with a border. Where the surface is curved one way, each point at which a plane
+/// across d touches counts one. Where the heights x . d grow from all of the border inwards, the
+/// counts sum to the surface's Euler characteristic; if that is one, so is the number of such points.
+/// All near-maxima hang together with it: a piece of the surface above some height that does not
+/// hold it would have a maximum of its own.
+///
+/// Nothing of this depends on how charts are parametrised: it holds about poles and over joins.
+class ContactIndex {
+ public:
+  /// `resolution`: kinks of joins that amount to less over a branch are none.
+  ContactIndex(const MapPieces& pieces, double resolution)
+      : pieces_(pieces), regions_(pieces), rho_(resolution) {}
+
+  /// True is certain.
+  bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
+  /// The charts hang together to a surface of Euler characteristic one, with a border.
+  bool is_disc(const Branches& branches, const Branch& branch);
+
+ private:
+  bool is_curved(const CellView& view, const Chart& chart);
+  bool face_border_rises(const CellView& view, int chart);
+  bool edge_border_rises(const CellView& view, int chart);
+  bool vertex_border_rises(const CellView& view, int chart);
+  bool is_beside(int chart, int element) const;
+  int closed_points(const Branch& branch);
+  bool meet(const Branch& branch, int a, int b) const;
+
+  const MapPieces& pieces_;
+  CurvedRegions regions_;
+  double rho_;
+  /// By chart, and by its sides or ends: the glue there, or -1.
+  std::vector<std::array<int, 4>> glued_;
+  /// An edge or vertex, and a chart of the branch that ends there.
+  std::vector<std::pair<int, int>> beside_;
+  /// Charts and their sides at poles around which there are charts everywhere.
+  std::vector<std::pair<int, Side>> poles_;
+  const Branches* view_branches_ = nullptr;
+  std::vector<dvec4> net_;  // scratch
+};
+
+}  // namespace taut

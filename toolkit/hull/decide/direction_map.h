@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "taut/bounds/contact_geometry.h"
+#include "taut/core/progress.h"
+
+namespace taut {
+
+/// What is decided of the supporting planes with normals in a cell.
+enum class MapCellKind {
+  region,     ///< one contact for each of them
+  arc,        ///< one of two, which exchange along a curve that is the graph of a function, or not
+  node,       ///< one of three, which all touch one plane at most
+  facet,      ///< all lie within the resolution of one plane, whose normal is in the cell
+  flat,       ///< all lie within the resolution of all the planes
+  undecided,  ///< none of these is proven
+};
+inline constexpr std::size_t map_cell_kinds = 6;
+
+/// A cell of a quadtree over a face of the cube of directions: [i, i + 1] x [j, j + 1] in units of
+/// 2^(1 - level) from -1.
+struct MapCell {
+  int face = 0;
+  int level = 0;
+  std::uint32_t i = 0, j = 0;
+  MapCellKind kind = MapCellKind::undecided;
+  /// Boxes of what may touch, in the scene's frame, one for each contact that is told apart; none
+  /// where there was too much to look at.
+  std::vector<Box> contacts;
+  /// kind facet: normal of the plane, outwards.
+  dvec3 normal = dvec3(0.0);
+};
+
+struct DirectionMapStatistics {
+  long cells = 0;       ///< decided or split
+  long candidates = 0;  ///< pieces of the model that were looked at
+  long queries = 0;     ///< support queries
+  std::array<long, map_cell_kinds> of_kind = {};
+  int deepest = 0;  ///< level of a cell
+};
+
+/// The upper envelope of support functions over the sphere of directions, cell by cell: which parts
+/// of a model touch the supporting planes with normals there.
+struct DirectionMap {
+  /// The cells that are not split, which cover the sphere; by face, and along a Z-shaped curve.
+  std::vector<MapCell> cells;
+  DirectionMapStatistics statistics;
+
+  /// Directions of the corners of a cell in the order (0, 0), (0, 1), (1, 0), (1, 1) of its axes, on
+  /// a cube that is turned so that what models are symmetric in is nothing to it.
+  static std::array<dvec3, 4> corners(const MapCell& cell);
+  /// A point of a face of the cube, with coordinates in [-1, 1].
+  static dvec3 direction(int face, double s, double t);
+};
+
+struct DirectionMapOptions {
+  /// In the scene's frame: what is nearer than this may be taken for one. > 0
+  double resolution = 0;
+  int level_limit = 20;  ///< of cells
+  std::stop_token stop;
+};
+
+/// Splits cells until each is decided, or at the limit of levels.
+///
+/// A cell keeps the pieces of the model that may touch a plane with a normal in it: of patches
+/// those where the heights x . d grow in no one direction for all d of the cell, of edges those
+/// from which no surface rises, and none that a sampled point surpasses in all of it. Pieces that
+/// hang together are a branch; a branch has one contact for each direction by the index of the
+/// gradient of the heights, or where they are concave but for the resolution (ContactIndex,
+/// NearConcavity). All bounds are of Bernstein coefficients, for all directions of the cell at once,
+/// rounding included.
+///
+/// Ruled patches and straight edges have no contacts but at their ends.
+/// @throws Cancelled
+DirectionMap direction_map(const ContactGeometry& geometry, const DirectionMapOptions& options);
+
+}  // namespace taut

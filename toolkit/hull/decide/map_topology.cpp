@@ -1,0 +1,261 @@
+#include "taut/hull/decide/map_topology.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "taut/bounds/support_query.h"
+#include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/cell_tree.h"
+
+namespace taut {
+namespace {
+
+/// Normals of facets that differ by less, in radians, are one: of more extent than rounding's, and
+/// less than cells'.
+constexpr double same_normal = 1e-6;
+
+double distance(const Box& box, const dvec3& x) {
+  return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
+}
+
+class Assembly {
+ public:
+  Assembly(const ContactGeometry& geometry, const DirectionMap& map, const std::stop_token& stop)
+      : map_(map),
+        tree_(map.cells),
+        query_(geometry.scene(), stop),
+        first_(first_contacts(map.cells)),
+        regions_(std::size_t(first_.back())),
+        clusters_(map.cells.size()),
+        arcs_(map.cells.size()),
+        supports_(std::size_t(first_.back()), false),
+        has_arc_(map.cells.size(), false) {}
+
+  MapTopology run() {
+    std::vector<CellTree::CellSide> sides;
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      for (int number = 0; number < 4; ++number) {
+        CellTree::CellSide side;
+        if (tree_.side(k, number, side)) sides.push_back(side);
+      }
+    }
+    merges_.assign(map_.cells.size(), false);
+    for (const CellTree::CellSide& side : sides) find_merges(side);
+    for (const CellTree::CellSide& side : sides) join(side);
+    join_facets();
+    collect();
+    return std::move(result_);
+  }
+
+ private:
+  /// Contacts of all cells are numbered through.
+  static std::vector<int> first_contacts(const std::vector<MapCell>& cells) {
+    std::vector<int> first = {0};
+    for (const MapCell& c : cells) {
+      first.push_back(first.back() + std::max(1, int(c.contacts.size())));
+    }
+    return first;
+  }
+
+  const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
+  /// Of those one cannot tell from their border what is inside.
+  bool is_open(int k) const {
+    return merges_[std::size_t(k)] ||
+           (cell(k).kind != MapCellKind::region && cell(k).kind != MapCellKind::arc);
+  }
+
+  /// The cell tells its contacts apart.
+  bool is_known(int k) const {
+    return cell(k).kind != MapCellKind::undecided && !cell(k).contacts.empty();
+  }
+
+  /// Two contacts that one cell tells apart are one to that beside it, within the resolution.
+  void find_merges(const CellTree::CellSide& side) {
+    for (const auto& [k, other] : {std::pair(side.finer, side.other), {side.other, side.finer}}) {
+      if (cell(k).kind != MapCellKind::arc || cell(other).kind == MapCellKind::undecided) continue;
+      if (winner(k, side.from) == winner(k, side.to)) continue;
+      if (winner(other, side.from) != winner(other, side.to)) continue;
+      if (cell(other).kind == MapCellKind::region || cell(other).kind == MapCellKind::arc) {
+        merges_[std::size_t(other)] = true;
+      }
+    }
+  }
+
+  /// Number of the contact of a cell that supports in a direction on its border.
+  int winner(int k, const dvec3& d) {
+    const std::vector<Box>& contacts = cell(k).contacts;
+    const int first = first_[std::size_t(k)];
+    if (contacts.size() < 2 || cell(k).kind == MapCellKind::region) return first;
+    const dvec3 x = point(d);
+    const auto best = std::min_element(
+        contacts.begin(), contacts.end(),
+        [&](const Box& a, const Box& b) { return distance(a, x) < distance(b, x); });
+    return first + int(best - contacts.begin());
+  }
+
+  /// The point that supports in a direction, which is asked for from several cells.
+  dvec3 point(const dvec3& d) {
+    const dvec3 n = unit(d);
+    const auto rounded = [](double x) { return std::llround(x * 1e12); };
+    const auto [known, is_new] =
+        points_.try_emplace({rounded(n.x), rounded(n.y), rounded(n.z)}, dvec3(0.0));
+    if (is_new) {
+      const Support s = query_(n, hint_);
+      hint_ = s.contact;
+      known->second = s.point;
+    }
+    return known->second;
+  }
+
+  void join(const CellTree::CellSide& side) {
+    const int a = side.finer;
+    const int b = side.other;
+    const std::array<int, 2> own = {winner(a, side.from), winner(a, side.to)};
+    const std::array<int, 2> others = {winner(b, side.from), winner(b, side.to)};
+    for (const std::size_t end : {0u, 1u}) {
+      if (is_known(a)) supports_[std::size_t(own[end])] = true;
+      if (is_known(b)) supports_[std::size_t(others[end])] = true;
+      if (is_known(a) && is_known(b)) regions_.unite(own[end], others[end]);
+    }
+    const bool crosses_a = own[0] != own[1];
+    const bool crosses_b = others[0] != others[1];
+    if (is_open(a) && is_open(b)) {
+      clusters_.unite(a, b);
+    } else if (is_open(a) || is_open(b)) {
+      const int closed = is_open(a) ? b : a;
+      if (closed == a ? !crosses_a : !crosses_b) return;
+      has_arc_[std::size_t(closed)] = true;
+      const auto& [from, to] = closed == a ? others : own;
+      ends_.push_back({closed, is_open(a) ? a : b, {std::min(from, to), std::max(from, to)}});
+    } else if (crosses_a && crosses_b) {
+      has_arc_[std::size_t(a)] = has_arc_[std::size_t(b)] = true;
+      arcs_.unite(a, b);
+    } else if (crosses_a || crosses_b) {
+      ++result_.contradictions;
+    }
+  }
+
+  /// Cells of one facet may touch in a corner only, or have others between them.
+  void join_facets() {
+    std::vector<int> facets;
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (cell(k).kind == MapCellKind::facet) facets.push_back(k);
+    }
+    for (std::size_t i = 0; i < facets.size(); ++i) {
+      for (std::size_t j = i + 1; j < facets.size(); ++j) {
+        const dvec3& a = cell(facets[i]).normal;
+        const dvec3& b = cell(facets[j]).normal;
+        if (glm::dot(a, b) > 0 && glm::length(glm::cross(a, b)) <= same_normal) {
+          clusters_.unite(facets[i], facets[j]);
+        }
+      }
+    }
+  }
+
+  void collect() {
+    pass_through_clusters();
+    std::map<int, int> nodes, arcs;
+    const auto number = [](std::map<int, int>& numbers, int key, auto& list) -> auto& {
+      const auto [found, is_new] = numbers.try_emplace(key, int(list.size()));
+      if (is_new) list.emplace_back();
+      return list[std::size_t(found->second)];
+    };
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (is_open(k)) {
+        MapNode& node = number(nodes, clusters_.find(k), result_.nodes);
+        node.cells.push_back(k);
+        node.is_facet = node.is_facet || cell(k).kind == MapCellKind::facet;
+      }
+      if (has_arc_[std::size_t(k)]) {
+        number(arcs, arcs_.find(k), result_.arcs).cells.push_back(k);
+      }
+    }
+    for (const End& end : ends_) {
+      if (end.passes) continue;
+      const int node = nodes.at(clusters_.find(end.at));
+      result_.arcs[std::size_t(arcs.at(arcs_.find(end.arc)))].nodes.push_back(node);
+      ++result_.nodes[std::size_t(node)].arcs;
+    }
+    drop_arcs_within_facets();
+    std::set<int> regions;
+    for (int k = 0; k < first_.back(); ++k) {
+      if (supports_[std::size_t(k)]) regions.insert(regions_.find(k));
+    }
+    result_.regions = int(regions.size());
+  }
+
+  /// Arcs between cells of one facet that are no longer than these.
+  void drop_arcs_within_facets() {
+    std::erase_if(result_.arcs, [&](const MapArc& arc) {
+      if (arc.nodes.size() != 2 || arc.nodes[0] != arc.nodes[1]) return false;
+      MapNode& node = result_.nodes[std::size_t(arc.nodes[0])];
+      if (!node.is_facet) return false;
+      double reach = 0;
+      for (const int k : node.cells) reach = std::max(reach, std::ldexp(2.0, 1 - cell(k).level));
+      const bool within = std::all_of(arc.cells.begin(), arc.cells.end(), [&](int k) {
+        const auto d = DirectionMap::corners(cell(k));
+        return std::any_of(node.cells.begin(), node.cells.end(), [&](int own) {
+          return glm::distance(cell(own).normal, unit(d[0] + d[3])) <= reach;
+        });
+      });
+      if (within) node.arcs -= 2;
+      return within;
+    });
+  }
+
+  /// Open cells without a facet in which arcs do not end: two between the same contacts are one
+  /// that passes. (Of three contacts whose support functions have independent gradients, each two
+  /// exchange along one curve, and these meet in three or pass each other.)
+  void pass_through_clusters() {
+    std::map<int, std::vector<End*>> ends_at;
+    for (End& end : ends_) ends_at[clusters_.find(end.at)].push_back(&end);
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (is_open(k) && cell(k).kind == MapCellKind::facet) ends_at[clusters_.find(k)].clear();
+    }
+    for (auto& [cluster, ends] : ends_at) {
+      std::sort(ends.begin(), ends.end(),
+                [](const End* a, const End* b) { return a->contacts < b->contacts; });
+      bool in_pairs = ends.size() % 2 == 0;
+      for (std::size_t k = 0; k + 1 < ends.size() && ends.size() > 2; k += 2) {
+        in_pairs = in_pairs && ends[k]->contacts == ends[k + 1]->contacts;
+      }
+      if (!in_pairs) continue;
+      for (std::size_t k = 0; k + 1 < ends.size(); k += 2) {
+        ends[k]->passes = ends[k + 1]->passes = true;
+        arcs_.unite(ends[k]->arc, ends[k + 1]->arc);
+      }
+    }
+  }
+
+  /// A cell with an arc, and the open one beside it, with the numbers of the latter's contacts.
+  struct End {
+    int arc, at;
+    std::pair<int, int> contacts;
+    bool passes = false;
+  };
+
+  const DirectionMap& map_;
+  CellTree tree_;
+  SupportQuery query_;
+  std::vector<int> first_;  // contact of each cell
+  DisjointSets regions_, clusters_, arcs_;
+  std::vector<bool> supports_;  // by contact
+  std::vector<bool> has_arc_;
+  std::vector<bool> merges_;              // by cell: where an arc ends for want of resolution
+  std::vector<End> ends_;
+  std::map<std::array<long long, 3>, dvec3> points_;
+  Contact hint_;
+  MapTopology result_;
+};
+
+}  // namespace
+
+MapTopology map_topology(const ContactGeometry& geometry, const DirectionMap& map,
+                         const std::stop_token& stop) {
+  return Assembly(geometry, map, stop).run();
+}
+
+}  // namespace taut

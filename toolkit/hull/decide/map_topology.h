@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/hull/decide/direction_map.h"
+
+namespace taut {
+
+/// A curve of directions in which two contacts support at once.
+struct MapArc {
+  std::vector<int> cells;  ///< that it passes through
+  /// The nodes in which it ends; none if it is closed.
+  std::vector<int> nodes;
+};
+
+/// Directions that are not told apart, with what leaves them.
+struct MapNode {
+  std::vector<int> cells;
+  int arcs = 0;           ///< that end there
+  bool is_facet = false;  ///< one of its cells holds the normal of a plane with all that touches
+};
+
+/// Regions, arcs and nodes of a direction map.
+struct MapTopology {
+  int regions = 0;
+  std::vector<MapArc> arcs;
+  std::vector<MapNode> nodes;
+  /// Cells that contradict each other: a side over which one sees two contacts and the other one.
+  int contradictions = 0;
+};
+
+/// @pre the map is of the geometry @throws Cancelled
+MapTopology map_topology(const ContactGeometry& geometry, const DirectionMap& map,
+                         const std::stop_token& stop = {});
+
+}  // namespace taut

@@ -1,0 +1,152 @@
+#include "taut/hull/decide/near_concavity.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/core/disjoint_sets.h"
+
+namespace taut {
+namespace {
+
+/// A net of degree n in a parameter, stored as one of the shape, becomes one of degree n + 1.
+void elevate_u(std::vector<dvec4>& net, int n, NetShape shape) {
+  const int row = shape.q + 1;
+  for (int j = 0; j < row; ++j) {
+    for (int i = n + 1; i >= 0; --i) {
+      const double t = double(i) / (n + 1);
+      const dvec4 lower = i > 0 ? net[std::size_t((i - 1) * row + j)] : dvec4(0.0);
+      const dvec4 upper = i <= n ? net[std::size_t(i * row + j)] : dvec4(0.0);
+      net[std::size_t(i * row + j)] = t * lower + (1 - t) * upper;
+    }
+  }
+}
+
+void elevate_v(std::vector<dvec4>& net, int n, NetShape shape) {
+  const int row = shape.q + 1;
+  for (int i = 0; i <= shape.p; ++i) {
+    dvec4* line = net.data() + i * row;
+    for (int j = n + 1; j >= 0; --j) {
+      const double t = double(j) / (n + 1);
+      const dvec4 lower = j > 0 ? line[j - 1] : dvec4(0.0);
+      const dvec4 upper = j <= n ? line[j] : dvec4(0.0);
+      line[j] = t * lower + (1 - t) * upper;
+    }
+  }
+}
+
+/// The largest of a s^2 + 2 b s t + c t^2 over -1 <= s, t <= 1.
+double largest(double a, double b, double c) {
+  if (a <= 0 && c <= 0 && b * b <= a * c) return 0;
+  const auto at_one = [](double x, double y, double z) {  // s = 1
+    const double t = z < 0 ? std::clamp(-y / z, 0.0, 1.0) : 1;
+    return std::max(x, x + 2 * y * t + z * t * t);
+  };
+  return std::max(at_one(a, std::abs(b), c), at_one(c, std::abs(b), a));
+}
+
+}  // namespace
+
+/// Along any chord of the rectangle second derivatives are at most 8 rho over its length's square:
+/// then the middle of two near-maxima falls short of them by rho at most.
+bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) {
+  if (chart.kind == SourceKind::vertex) return true;
+  const MapElement& element = pieces_.element(chart.element);
+  pieces_.restricted(chart.element, chart.u, chart.v, net_);
+  const NetShape shape = pieces_.piece(element.root).exact.shape;
+  if (element.rational) even_weights(shape, net_);
+  double least = infinity;
+  for (dvec4& p : net_) {
+    least = std::min(least, p.w);
+    p = dvec4(dvec3(p) - p.w * view.q(), p.w);
+  }
+  const int row = shape.q + 1;
+  const auto at = [&](int i, int j) -> const dvec4& { return net_[std::size_t(i * row + j)]; };
+  const double p = shape.p;
+  const double q = shape.q;
+  uu_.assign(net_.size(), dvec4(0.0));
+  uv_.assign(net_.size(), dvec4(0.0));
+  vv_.assign(net_.size(), dvec4(0.0));
+  for (int i = 0; i <= shape.p; ++i) {
+    for (int j = 0; j <= shape.q; ++j) {
+      const auto k = std::size_t(i * row + j);
+      if (i + 2 <= shape.p) uu_[k] = p * (p - 1) * (at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j));
+      if (j + 2 <= shape.q) vv_[k] = q * (q - 1) * (at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2));
+      if (i < shape.p && j < shape.q) {
+        uv_[k] = p * q * (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j));
+      }
+    }
+  }
+  for (int n = std::max(0, shape.p - 2); shape.p >= 2 && n < shape.p; ++n) elevate_u(uu_, n, shape);
+  for (int n = std::max(0, shape.q - 2); shape.q >= 2 && n < shape.q; ++n) elevate_v(vv_, n, shape);
+  if (shape.p > 0 && shape.q > 0) {
+    elevate_u(uv_, shape.p - 1, shape);
+    elevate_v(uv_, shape.q - 1, shape);
+  }
+  const double limit = 8 * rho_ * least;
+  for (std::size_t k = 0; k < net_.size(); ++k) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const dvec3& d = view.corners()[c];
+      const double a = glm::dot(dvec3(uu_[k]), d);
+      const double b = glm::dot(dvec3(uv_[k]), d);
+      const double e = glm::dot(dvec3(vv_[k]), d);
+      for (const double h : {chart.low[c], chart.top[c]}) {
+        if (largest(a - h * uu_[k].w, b - h * uv_[k].w, e - h * vv_[k].w) > limit) return false;
+        if (!element.rational) break;
+      }
+    }
+  }
+  return true;
+}
+
+/// At neither end of what they share do the heights along it grow outwards: its highest point is
+/// inside, where the gradient across is that of both sides, and so the highest of one of them.
+bool NearConcavity::meet_once(const CellView& view, const Branches& branches,
+                              const Glue& glue) const {
+  if (glue.kind == Glue::Kind::edges) return true;  // they share a point
+  const Side side = Side(glue.at_a);
+  const Chart& chart = branches.chart(glue.a);
+  const Contact& c = pieces_.element(chart.element).contact;
+  const Interval& common = along(chart, side);
+  for (const bool upper : {false, true}) {
+    const dvec2 uv = on_side(side, upper ? common.upper : common.lower);
+    const ContactJet j = pieces_.geometry().jet({c.instance, c.kind, c.element, uv.x, uv.y});
+    const dvec3 outwards = (upper ? 1.0 : -1.0) * (along_v(side) ? j.dx[1] : j.dx[0]);
+    for (const dvec3& d : view.corners()) {
+      if (glm::dot(outwards, d) > 0) return false;
+    }
+  }
+  return true;
+}
+
+bool NearConcavity::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
+  DisjointSets sets(branches.charts().size());
+  std::vector<int> holders(branches.charts().size(), 0);
+  const double size = glm::distance(branch.lower, branch.upper);
+  for (const int g : branch.glues) {
+    const Glue& glue = branches.glue(g);
+    const bool smooth = glue.kind == Glue::Kind::faces || glue.kind == Glue::Kind::edges;
+    if (!smooth) {
+      // An edge lies in a patch; a vertex in a patch, or else in an edge.
+      if (glue.kind != Glue::Kind::edge_vertex || holders[std::size_t(glue.b)] == 0) {
+        ++holders[std::size_t(glue.b)];
+      }
+      sets.unite(glue.a, glue.b);
+      continue;
+    }
+    const MapElement& element = pieces_.element(branches.chart(glue.a).element);
+    if (glue.kind == Glue::Kind::faces &&
+        !(element.kink[std::size_t(glue.at_a)] * size <= rho_)) {
+      continue;
+    }
+    if (meet_once(view, branches, glue)) sets.unite(glue.a, glue.b);
+  }
+  for (const int k : branch.charts) {
+    if (sets.find(k) != sets.find(branch.charts.front())) return false;
+    if (holders[std::size_t(k)] > 1) return false;
+  }
+  return std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
+    return is_nearly_concave(view, branches.chart(k));
+  });
+}
+
+}  // namespace taut

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/hull/decide/branches.h"
+
+namespace taut {
+
+/// Proves that the contacts of a branch are one to within the resolution, for each direction of a
+/// cell: on each chart the heights are all but concave, and where two meet, the highest point of
+/// what they share is the highest of one of them.
+class NearConcavity {
+ public:
+  NearConcavity(const MapPieces& pieces, double resolution) : pieces_(pieces), rho_(resolution) {}
+
+  /// True is certain.
+  bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
+
+ private:
+  bool is_nearly_concave(const CellView& view, const Chart& chart);
+  bool meet_once(const CellView& view, const Branches& branches, const Glue& glue) const;
+
+  const MapPieces& pieces_;
+  double rho_;
+  std::vector<dvec4> net_, uu_, uv_, vv_;  // scratch
+};
+
+}  // namespace taut

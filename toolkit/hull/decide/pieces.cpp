@@ -1,0 +1,270 @@
+#include "taut/hull/decide/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/poles.h"
+#include "taut/bounds/scene_content.h"
+#include "taut/bounds/vector_net.h"
+#include "taut/hull/decide/translates.h"
+
+namespace taut {
+namespace {
+
+/// Places along a smooth join at which its kink is measured.
+constexpr int kink_samples = 5;
+
+/// The derivative across a side, into the patch, as a net along the side.
+std::vector<dvec4> inward_net(NetShape shape, const std::vector<dvec4>& points, Side side,
+                              bool reversed) {
+  const int row = shape.q + 1;
+  const auto at = [&](int i, int j) { return points[std::size_t(i * row + j)]; };
+  std::vector<dvec4> result;
+  const int count = along_v(side) ? shape.q : shape.p;
+  const int last = along_v(side) ? shape.p : shape.q;
+  const int own = at_upper_end(side) ? last : 0;
+  const int next = at_upper_end(side) ? last - 1 : 1;
+  for (int k = 0; k <= count; ++k) {
+    result.push_back(along_v(side) ? at(next, k) - at(own, k) : at(k, next) - at(k, own));
+  }
+  if (reversed) std::reverse(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace
+
+void even_weights(NetShape shape, std::vector<dvec4>& net) {
+  const int p = shape.p;
+  const int q = shape.q;
+  const auto w = [&](int i, int j) { return net[std::size_t(i * (q + 1) + j)].w; };
+  const double along_u =
+      p > 0 ? std::pow(w(0, 0) * w(0, q) / (w(p, 0) * w(p, q)), 0.5 / p) : 1;
+  const double along_v =
+      q > 0 ? std::pow(w(0, 0) * w(p, 0) / (w(0, q) * w(p, q)), 0.5 / q) : 1;
+  double fu = 1 / std::sqrt(w(0, 0) * w(p, q));
+  for (int i = 0; i <= p; ++i, fu *= along_u) {
+    double f = fu;
+    for (int j = 0; j <= q; ++j, f *= along_v) net[std::size_t(i * (q + 1) + j)] *= f;
+  }
+}
+
+MapPieces::MapPieces(const ContactGeometry& geometry, double resolution) : geometry_(geometry) {
+  const Scene& scene = geometry.scene();
+  const Model& model = scene.model();
+  first_.resize(model.instances().size(), {-1, -1, -1});
+  for (const int i : scene.distinct_instances()) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    const std::array<std::size_t, 3> counts = {part.patches().size(), part.pieces().size(),
+                                               part.vertices().size()};
+    for (const SourceKind kind : {SourceKind::face, SourceKind::edge, SourceKind::vertex}) {
+      first_[std::size_t(i)][std::size_t(kind)] = int(index_.size());
+      index_.resize(index_.size() + counts[std::size_t(kind)], -1);
+      for (int k = 0; k < int(counts[std::size_t(kind)]); ++k) {
+        const Contact c{i, kind, k, 0, 0};
+        if (geometry.is_repeated(c)) continue;
+        const std::size_t before = elements_.size();
+        if (kind == SourceKind::face) {
+          if (part.patches()[std::size_t(k)].repeats < 0 && !geometry.is_ruled(c)) add_face(c);
+        } else if (kind == SourceKind::edge) {
+          add_edge(c);
+        } else {
+          add_vertex(c);
+        }
+        if (elements_.size() > before) {
+          index_[std::size_t(first_[std::size_t(i)][std::size_t(kind)] + k)] = int(before);
+        }
+      }
+    }
+  }
+  find_beside();
+  const std::vector<bool> covered = covered_translates(*this, cover_share * resolution);
+  for (std::size_t k = 0; k < covered.size(); ++k) elements_[k].covered = covered[k];
+}
+
+void MapPieces::find_beside() {
+  for (MapElement& element : elements_) {
+    const Contact& c = element.contact;
+    if (c.kind == SourceKind::edge) {
+      for (const auto* list : {&geometry_.sides(c), &geometry_.ruled_sides(c)}) {
+        for (const ContactGeometry::PieceSide& side : *list) {
+          const int instance = side.instance < 0 ? c.instance : side.instance;
+          element.beside.push_back(find({instance, SourceKind::face, side.patch, 0, 0}));
+        }
+      }
+    } else if (c.kind == SourceKind::vertex) {
+      for (const ContactGeometry::PieceEnd& end : geometry_.ends(c)) {
+        const int instance = end.instance < 0 ? c.instance : end.instance;
+        element.beside.push_back(find_first({instance, SourceKind::edge, end.piece, 0, 0}));
+      }
+    }
+  }
+}
+
+int MapPieces::find(const Contact& c) const {
+  const int first = first_[std::size_t(c.instance)][std::size_t(c.kind)];
+  return first < 0 ? -1 : index_[std::size_t(first + c.element)];
+}
+
+int MapPieces::find_first(const Contact& c) const {
+  const Contact first = geometry_.first(c);
+  return first.kind == c.kind ? find(first) : -1;
+}
+
+bool MapPieces::runs_against_first(const Contact& c) const {
+  return geometry_.first({c.instance, c.kind, c.element, 0, 0}).u > 0.5;
+}
+
+int MapPieces::add(MapPiece piece, bool rational) {
+  piece.exact = piece.net;
+  if (rational) {
+    const auto first = points_.begin() + std::ptrdiff_t(piece.net.first);
+    std::vector<dvec4> net(first, first + piece.net.shape.size());
+    even_weights(piece.net.shape, net);
+    piece.net = store(piece.net.shape, net);
+  }
+  pieces_.push_back(std::move(piece));
+  return int(pieces_.size()) - 1;
+}
+
+StoredNet MapPieces::store(NetShape shape, const std::vector<dvec4>& points) {
+  const StoredNet net{shape, points_.size()};
+  points_.insert(points_.end(), points.begin(), points.end());
+  return net;
+}
+
+std::vector<dvec4> MapPieces::placed(const Contact& c, const std::vector<dvec4>& points) const {
+  const SceneInstance& instance = geometry_.scene().content().instances[std::size_t(c.instance)];
+  std::vector<dvec4> result;
+  result.reserve(points.size());
+  for (const dvec4& p : points) {
+    const dvec3 x = instance.rotated ? instance.rotation * dvec3(p) : dvec3(p);
+    result.emplace_back(x + p.w * instance.translation, p.w);
+  }
+  return result;
+}
+
+std::vector<dvec4> MapPieces::placed_patch(const Contact& c, NetShape& shape) const {
+  const SceneContent& content = geometry_.scene().content();
+  const SceneElement& e =
+      content.part_of(c.instance).elements[std::size_t(content.element(c))];
+  shape = e.shape;
+  std::vector<dvec4> points;
+  for (std::size_t k = 0; k < e.net.x.size(); ++k) {
+    points.emplace_back(e.net.x[k], e.net.y[k], e.net.z[k], e.net.w[k]);
+  }
+  return placed(c, points);
+}
+
+double MapPieces::kink(const Contact& c, Side side) const {
+  const Border& border = geometry_.patch(c).borders[std::size_t(side)];
+  if (border.kind != BorderKind::smooth) return 0;
+  double largest = 0;
+  for (int k = 0; k < kink_samples; ++k) {
+    const double t = (k + 0.5) / kink_samples;
+    const dvec3 own = unit_normal(geometry_, on_side(c.instance, c.element, side, t));
+    const dvec3 other =
+        unit_normal(geometry_, on_side(c.instance, border.neighbor, border.neighbor_side,
+                                       border.reversed ? 1 - t : t));
+    largest = std::max(largest, glm::length(glm::cross(own, other)));
+  }
+  return largest;
+}
+
+void MapPieces::add_face(const Contact& c) {
+  NetShape shape;
+  const std::vector<dvec4> points = placed_patch(c, shape);
+  MapElement element{c, !is_polynomial(points), -1, {}, {}, {}, false};
+  for (const Side side : all_sides) {
+    element.kink[std::size_t(side)] = kink(c, side);
+    element.collapsed[std::size_t(side)] =
+        geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
+  }
+  element.root = add({int(elements_.size()), {0, 1}, {0, 1}, store(shape, points), {}, {}, {-1, -1},
+                      {-1, -1}}, element.rational);
+  elements_.push_back(element);
+}
+
+void MapPieces::add_edge(const Contact& c) {
+  if (geometry_.is_straight(c)) return;
+  const auto& sides = geometry_.sides(c);
+  const auto& ruled = geometry_.ruled_sides(c);
+  // The contacts of a seam are those of the surface beside it, unless it has none.
+  if (geometry_.piece(c).edge < 0 && !sides.empty()) return;
+  const BezierCurve curve = geometry_.curve(c);
+  MapElement element{c, !is_polynomial(curve.points), -1, {}, {}, {}, false};
+  MapPiece root{int(elements_.size()), {0, 1}, {0, 0}, store({curve.degree(), 0}, curve.points), {},
+                {}, {-1, -1}, {-1, -1}};
+  for (const auto* list : {&sides, &ruled}) {
+    for (const ContactGeometry::PieceSide& side : *list) {
+      NetShape shape;
+      const int instance = side.instance < 0 ? c.instance : side.instance;
+      const std::vector<dvec4> points =
+          placed_patch({instance, SourceKind::face, side.patch, 0, 0}, shape);
+      const std::vector<dvec4> inward = inward_net(shape, points, side.side, side.reversed);
+      root.inward.push_back(store({int(inward.size()) - 1, 0}, inward));
+    }
+  }
+  element.root = add(std::move(root), element.rational);
+  elements_.push_back(element);
+}
+
+void MapPieces::add_vertex(const Contact& c) {
+  const Part& part = geometry_.part(c);
+  const bool is_corner = c.element >= part.point_count();
+  MapPiece root{int(elements_.size()), {0, 0}, {0, 0}, {}, {}, {}, {-1, -1}, {-1, -1}};
+  root.net = store({0, 0}, {homogeneous(geometry_.point(c))});
+  for (const ContactGeometry::PieceEnd& end : geometry_.ends(c)) {
+    root.inward.push_back(store({0, 0}, {dvec4(tangent_from(geometry_, c, end), 0)}));
+  }
+  // A vertex at which only seams end lies on smooth surfaces, or on rulings.
+  (void)is_corner;
+  elements_.push_back({c, false, add(std::move(root), false), {}, {}, {}, false});
+}
+
+std::array<int, 2> MapPieces::halves(int index, Direction across) {
+  const bool along_u = across == Direction::u;
+  {
+    const MapPiece& known = pieces_[std::size_t(index)];
+    const auto& made = along_u ? known.halves_u : known.halves_v;
+    if (made[0] >= 0) return made;
+  }
+  const MapPiece whole = pieces_[std::size_t(index)];
+  std::array<MapPiece, 2> half = {whole, whole};
+  for (MapPiece& h : half) {
+    h.halves_u = h.halves_v = {-1, -1};
+    h.inward.clear();
+  }
+  const auto split = [&](const StoredNet& net) {
+    const auto first = points_.begin() + std::ptrdiff_t(net.first);
+    std::vector<dvec4> upper(first, first + net.shape.size());
+    std::vector<dvec4> lower(upper.size());
+    along_u ? halve_u(net.shape, upper.data(), lower.data())
+            : halve_v(net.shape, upper.data(), lower.data());
+    return std::array<StoredNet, 2>{store(net.shape, lower), store(net.shape, upper)};
+  };
+  const auto nets = split(whole.exact);
+  const bool rational = elements_[std::size_t(whole.element)].rational;
+  for (std::size_t k : {0u, 1u}) half[k].net = nets[k];
+  for (const StoredNet& net : whole.inward) {
+    const auto parts = split(net);
+    for (std::size_t k : {0u, 1u}) half[k].inward.push_back(parts[k]);
+  }
+  const Interval range = along_u ? whole.u : whole.v;
+  const double middle = 0.5 * (range.lower + range.upper);
+  (along_u ? half[0].u : half[0].v).upper = middle;
+  (along_u ? half[1].u : half[1].v).lower = middle;
+  const std::array<int, 2> made = {add(std::move(half[0]), rational), add(std::move(half[1]), rational)};
+  (along_u ? pieces_[std::size_t(index)].halves_u : pieces_[std::size_t(index)].halves_v) = made;
+  return made;
+}
+
+void MapPieces::restricted(int element, const Interval& u, const Interval& v,
+                           std::vector<dvec4>& points) const {
+  const StoredNet& net = piece(elements_[std::size_t(element)].root).exact;
+  const auto first = points_.begin() + std::ptrdiff_t(net.first);
+  points.assign(first, first + net.shape.size());
+  restrict_net(net.shape, points.data(), u, net.shape.q > 0 ? v : Interval{0, 1});
+}
+
+}  // namespace taut
