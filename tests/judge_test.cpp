@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "cages.h"
 #include "judge/families.h"
 #include "judge/support_reference.h"
+#include "limit_support.h"
 #include "taut/bounds/model_support.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/convex_hull.h"
@@ -111,6 +113,26 @@ TEST(Judge, FindsExactModelsRight) {
       EXPECT_TRUE(verdict.closed) << name << " " << name_of(variant);
       EXPECT_TRUE(verdict.verified) << name << " " << name_of(variant);
       EXPECT_EQ(verdict.wrong, "") << name << " " << name_of(variant);
+    }
+  }
+}
+
+/// The vertices have two faces, and Loop's triangles have edges between the same vertices.
+TEST(LimitSupport, OfFacesBackToBack) {
+  ControlCage quads;
+  quads.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  quads.faces = {{0, 1, 2, 3}, {3, 2, 1, 0}};
+  ControlCage triangles;
+  triangles.scheme = CageScheme::loop;
+  triangles.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangles.faces = {{0, 1, 2}, {2, 1, 0}};
+  Random random(3);
+  for (const ControlCage& cage : {quads, triangles}) {
+    const LimitSupport coarse(cage, 2), fine(cage, 6);
+    for (int k = 0; k < 20; ++k) {
+      const dvec3 n = random_direction(random);
+      EXPECT_LE(coarse(n, 1e-9).lower, fine(n, 1e-9).upper + 1e-12);
+      EXPECT_LE(fine(n, 1e-9).lower, coarse(n, 1e-9).upper + 1e-12);
     }
   }
 }

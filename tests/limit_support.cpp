@@ -32,7 +32,7 @@ LimitSupport::Level::Level(RefinedCage refined) : cage(std::move(refined)) {
 }
 
 LimitSupport::LimitSupport(const ControlCage& cage, int levels)
-    : start_(RefinedCage(cage, levels)) {}
+    : start_(RefinedCage(cage, levels)), simple_(start_.cage.has_simple_edges()) {}
 
 double LimitSupport::highest_limit(const Level& level, const dvec3& n) {
   double most = -infinity;
@@ -81,7 +81,7 @@ SupportRange LimitSupport::operator()(const dvec3& n, double accuracy) const {
       higher.push_back(level->cage.faces()[i]);
       upper = std::max(upper, reach[i]);
     }
-    if (upper - lower <= accuracy || k == most_levels || higher.size() > most_faces) {
+    if (!simple_ || upper - lower <= accuracy || k == most_levels || higher.size() > most_faces) {
       return {lower, upper};
     }
     local = Level(level->cage.refined(higher));

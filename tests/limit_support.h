@@ -20,7 +20,8 @@ class LimitSupport {
   /// combinations. In double precision: rounded by some 1e-15 of the cage's size.
   ///
   /// They are as close as `accuracy`, but for contact along whole curves, whose faces become more
-  /// from level to level.
+  /// from level to level, and but for cages with edges between the same vertices in all levels, as
+  /// Loop's with vertices of two faces have: they have the bounds of the first one.
   SupportRange operator()(const dvec3& n, double accuracy) const;
 
   /// Of the level to which all is refined, where masks hold.
@@ -36,6 +37,7 @@ class LimitSupport {
   static std::vector<double> reaches(const Level& level, const dvec3& n);
 
   Level start_;
+  bool simple_;  // its edges
 };
 
 }  // namespace taut_test

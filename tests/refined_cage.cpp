@@ -4,6 +4,7 @@
 #include <opensubdiv/far/topologyDescriptor.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -109,6 +110,16 @@ RefinedCage::RefinedCage(const ControlCage& cage, int levels)
   faces_ = solid_faces(level());
 }
 
+bool RefinedCage::has_simple_edges() const {
+  const Far::TopologyLevel topology = level();
+  std::set<std::pair<int, int>> known;
+  for (int e = 0; e < topology.GetNumEdges(); ++e) {
+    const auto ends = topology.GetEdgeVertices(e);
+    if (!known.insert(std::minmax({int(ends[0]), int(ends[1])})).second) return false;
+  }
+  return true;
+}
+
 bool RefinedCage::has_limit(int vertex) const {
   const Far::TopologyLevel topology = level();
   if (topology.IsVertexSemiSharp(vertex)) return false;
@@ -118,7 +129,10 @@ bool RefinedCage::has_limit(int vertex) const {
     if (topology.IsEdgeSemiSharp(edges[k])) return false;
     if (topology.IsEdgeInfSharp(edges[k])) ++sharp;
   }
-  return sharp != 1 || topology.IsVertexInfSharp(vertex);
+  if (topology.IsVertexInfSharp(vertex)) return true;
+  const bool between_two_faces = edges.size() == 2 && topology.GetVertexFaces(vertex).size() == 2;
+  const bool wrong_mask = rules_.scheme == CageScheme::catmark && between_two_faces && sharp == 0;
+  return sharp != 1 && !wrong_mask;
 }
 
 std::vector<LimitPoint> RefinedCage::limits() const {

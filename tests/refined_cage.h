@@ -29,8 +29,8 @@ class RefinedCage {
   /// The next level of some faces of the level, which need to be among faces(). Their children have
   /// the limit surface that they have in the whole cage.
   ///
-  /// @pre levels >= 2: two edges between the same vertices, as faces with a vertex twice have in
-  /// their first level, cannot be told apart
+  /// @pre levels >= 2 and has_simple_edges(): two edges between the same vertices, as faces with a
+  /// vertex twice have in their first level, cannot be told apart
   RefinedCage refined(const std::vector<int>& faces) const;
 
   OpenSubdiv::Far::TopologyLevel level() const { return refiner_->GetLevel(level_); }
@@ -38,8 +38,11 @@ class RefinedCage {
   const std::vector<int>& faces() const { return faces_; }
   /// By vertex of the level. Those of vertices of faces() are right.
   const std::vector<dvec3>& points() const { return points_; }
+  /// No two edges of the level have the same ends.
+  bool has_simple_edges() const;
   /// The limit mask holds at a vertex: nothing about it is semi-sharp, nor does a sharp crease end
-  /// there, at which OpenSubdiv has the mask of a smooth vertex.
+  /// there, at which OpenSubdiv has the mask of a smooth vertex, nor is it a smooth one between two
+  /// faces of a Catmull-Clark surface, at which OpenSubdiv has that of a corner.
   bool has_limit(int vertex) const;
   /// By vertex of the level.
   std::vector<LimitPoint> limits() const;
