@@ -4,17 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cages.h"
+#include "judge/cases.h"
+#include "judge/claims.h"
 #include "judge/families.h"
 #include "judge/support_reference.h"
 #include "limit_support.h"
 #include "taut/bounds/model_support.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/convex_hull.h"
+#include "temporary_folder.h"
 
 namespace taut_test {
 namespace {
@@ -70,9 +75,17 @@ TEST(SupportReference, ClimbsFromWhereItIs) {
   EXPECT_EQ(balls.climbed_from({0, 0, 2}, {1, 0, 0}, 1e-9), -taut::infinity);
 }
 
+std::vector<Family> all_families() {
+  std::vector<Family> all;
+  for (const FamilyGroup& group : family_groups()) {
+    all.insert(all.end(), group.families.begin(), group.families.end());
+  }
+  return all;
+}
+
 TEST(Families, AreManyAndOfTheirOwn) {
-  EXPECT_GE(families().size(), 40U);
-  for (const Family& family : families()) {
+  EXPECT_GE(all_families().size(), 40U);
+  for (const Family& family : all_families()) {
     Random first(1), again(1), other(2);
     const Natural one = placed(family.make(first), Variant::decimals, first);
     const Natural same = placed(family.make(again), Variant::decimals, again);
@@ -96,8 +109,8 @@ TEST(Families, AreManyAndOfTheirOwn) {
   }
 }
 
-const Family& family_of(const std::string& name) {
-  for (const Family& family : families()) {
+Family family_of(const std::string& name) {
+  for (const Family& family : all_families()) {
     if (family.name == name) return family;
   }
   throw std::invalid_argument(name);
@@ -113,26 +126,7 @@ TEST(Judge, FindsExactModelsRight) {
       EXPECT_TRUE(verdict.closed) << name << " " << name_of(variant);
       EXPECT_TRUE(verdict.verified) << name << " " << name_of(variant);
       EXPECT_EQ(verdict.wrong, "") << name << " " << name_of(variant);
-    }
-  }
-}
-
-/// The vertices have two faces, and Loop's triangles have edges between the same vertices.
-TEST(LimitSupport, OfFacesBackToBack) {
-  ControlCage quads;
-  quads.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  quads.faces = {{0, 1, 2, 3}, {3, 2, 1, 0}};
-  ControlCage triangles;
-  triangles.scheme = CageScheme::loop;
-  triangles.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  triangles.faces = {{0, 1, 2}, {2, 1, 0}};
-  Random random(3);
-  for (const ControlCage& cage : {quads, triangles}) {
-    const LimitSupport coarse(cage, 2), fine(cage, 6);
-    for (int k = 0; k < 20; ++k) {
-      const dvec3 n = random_direction(random);
-      EXPECT_LE(coarse(n, 1e-9).lower, fine(n, 1e-9).upper + 1e-12);
-      EXPECT_LE(fine(n, 1e-9).lower, coarse(n, 1e-9).upper + 1e-12);
+      EXPECT_EQ(verdict.miscounted, "") << name << " " << name_of(variant);
     }
   }
 }
@@ -171,8 +165,140 @@ TEST_F(Planted, PartThatWasMissed) {
 TEST_F(Planted, VolumeThatIsOff) {
   Random random(1);
   Natural natural = family_of("capsule").make(random);
-  natural.volume *= 1 + 1e-8;
-  EXPECT_EQ(judged(natural, Variant::clean, random).wrong, "volume off by 1e-08");
+  natural.expected.volume *= 1 + 1e-8;
+  const Verdict verdict = judged(natural, Variant::clean, random);
+  EXPECT_EQ(verdict.wrong, "volume off by 1e-08");
+  EXPECT_EQ(verdict.measured, "VW");
+}
+
+TEST_F(Planted, MeanWidthThatIsOff) {
+  Random random(1);
+  Natural natural = family_of("capsule").make(random);
+  natural.expected.mean_width *= 1 + 1e-8;
+  EXPECT_EQ(judged(natural, Variant::clean, random).wrong, "mean width off by 1e-08");
+}
+
+TEST_F(Planted, CountsThatDiffer) {
+  Random random(1);
+  Natural natural = family_of("capsule").make(random);
+  natural.expected.counts = {2, 3, -1, 2};
+  const Verdict verdict = judged(natural, Variant::clean, random);
+  EXPECT_EQ(verdict.miscounted, "2/1/0/2, not 2/3/-/2");
+  EXPECT_EQ(verdict.wrong, "");
+}
+
+ControlCage grown(ControlCage cage, double factor) {
+  for (dvec3& p : cage.points) p *= factor;
+  return cage;
+}
+
+/// What the judge says of a cage's hull if the cage were larger by a factor.
+std::string wrong_if_grown(double factor) {
+  Random random(1);
+  const ControlCage cage = torus_cage(5, 5);
+  return judged({cage_model(cage), {}, {}, grown(cage, factor)}, random).wrong;
+}
+
+TEST(PlantedInCages, MeshThatIsOff) {
+  EXPECT_EQ(wrong_if_grown(1), "");
+  EXPECT_TRUE(wrong_if_grown(1.01).starts_with("the mesh leaves its bound"));
+  EXPECT_TRUE(wrong_if_grown(0.99).starts_with("the mesh lies outside"));
+}
+
+TEST(PlantedInCages, ContactsThatAreOff) {
+  const ControlCage cage = l_profile_cage();
+  const Scene scene(cage_model(cage));
+  const Hull hull = taut::convex_hull(scene);
+  const double size = scene.diagonal(), slack = scene.model().deviation_bound();
+  const auto wrong = [&](double factor) {
+    const LimitSupport limit(grown(cage, factor), 3);
+    Random random(1);
+    return wrong_contacts(
+        *hull.boundary, [&](const dvec3& n) { return limit(n, 1e-9 * size); }, size, slack, random);
+  };
+  EXPECT_EQ(wrong(1), "");
+  EXPECT_TRUE(wrong(1 + 1e-7).starts_with("a place is surpassed"));
+  EXPECT_TRUE(wrong(1 - 1e-7).starts_with("a place lies outside"));
+}
+
+/// The vertices have two faces, and Loop's triangles have edges between the same vertices.
+TEST(LimitSupport, OfFacesBackToBack) {
+  ControlCage quads;
+  quads.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  quads.faces = {{0, 1, 2, 3}, {3, 2, 1, 0}};
+  ControlCage triangles;
+  triangles.scheme = CageScheme::loop;
+  triangles.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangles.faces = {{0, 1, 2}, {2, 1, 0}};
+  Random random(3);
+  for (const ControlCage& cage : {quads, triangles}) {
+    const LimitSupport coarse(cage, 2), fine(cage, 6);
+    for (int k = 0; k < 20; ++k) {
+      const dvec3 n = random_direction(random);
+      EXPECT_LE(coarse(n, 1e-9).lower, fine(n, 1e-9).upper + 1e-12);
+      EXPECT_LE(fine(n, 1e-9).lower, coarse(n, 1e-9).upper + 1e-12);
+    }
+  }
+}
+
+TEST(Counts, DifferWhereTheyAreKnown) {
+  EXPECT_EQ(text(Counts{1, -1, 0, 12}), "1/-/0/12");
+  EXPECT_FALSE(differ({1, 2, 3, 4}, {1, -1, 3, -1}));
+  EXPECT_FALSE(differ({1, 2, 3, 4}, {}));
+  for (const Counts& other : {Counts{2}, Counts{-1, 3}, Counts{-1, -1, 4}, Counts{1, 2, 3, 5}}) {
+    EXPECT_TRUE(differ({1, 2, 3, 4}, other)) << text(other);
+  }
+}
+
+class Cases : public TemporaryFolder {};
+
+/// A document's geometry is what the reader makes of it.
+TEST_F(Cases, AreReadTwice) {
+  file("case.taut.json", R"({"format": "taut-model", "version": 1, "parts": [{"name": "part",
+    "surfaces": [{"id": 0, "name": "s", "degree": [1, 2],
+                  "knots": [[0, 0, 1, 1], [0, 0, 0, 1, 1, 1]],
+                  "points": [[[0, 0, 0, 1], [3, 0, 0, 2], [3, 3, 0, 1]],
+                             [[0, 0, 5, 1], [2, 0, 6, 0.5], [3, 2, 5, 1]]]}],
+    "edges": [{"degree": 2, "knots": [0, 0, 0, 1, 1, 1],
+               "points": [[0, 0, 0, 1], [-3, -5, 0, 0.7], [1, 0, -4, 1]]}],
+    "vertices": [[0, 7, 1]]}]})");
+  const Subject subject = read_case(folder_, {"case.taut.json"});
+  ASSERT_EQ(subject.shape.surfaces.size(), 1U);
+  ASSERT_EQ(subject.shape.curves.size(), 1U);
+  ASSERT_EQ(subject.shape.points.size(), 1U);
+  const SupportReference reference(subject.shape);
+  const Scene scene(subject.model);
+  SupportQuery query(scene);
+  Random random(4);
+  for (int k = 0; k < 50; ++k) {
+    const dvec3 n = random_direction(random);
+    EXPECT_NEAR(reference(n).h, support(query, scene, n).h, 1e-12 * reference.diagonal());
+  }
+}
+
+TEST(CaseGroups, HaveNamesOfTheirOwn) {
+  std::set<std::string> names;
+  for (const CaseGroup& group : case_groups()) {
+    for (const Case& one : group.cases) {
+      EXPECT_TRUE(one.name().starts_with(group.name + "/")) << one.name();
+      EXPECT_TRUE(names.insert(one.name()).second) << one.name();
+    }
+  }
+}
+
+TEST(CaseGroups, AreInTheFolder) {
+  const auto folder = folder_of_cases();
+  if (!folder) GTEST_SKIP() << "TAUT_MODELS names no folder beside one of cases";
+  for (const CaseGroup& group : case_groups()) {
+    for (const Case& one : group.cases) {
+      EXPECT_TRUE(std::filesystem::exists(*folder / one.file)) << one.file;
+    }
+  }
+}
+
+TEST(Judge, WantsSomethingToCompareWith) {
+  Random random(1);
+  EXPECT_THROW(judged({make_model(box(1, 2, 3)), {}, {}, {}}, random), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "plates.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +14,9 @@ using namespace taut;  // NOLINT: what is tested
 
 namespace {
 
+/// Angle between the normals of two triangles of one facet: rounding, far below that of plates.
+constexpr double same_plane = 1e-9;
+
 std::vector<dvec3> both_centers(const Plate& plate) {
   std::vector<dvec3> centers;
   for (const dvec3& c : plate.centers) {
@@ -20,6 +24,18 @@ std::vector<dvec3> both_centers(const Plate& plate) {
     centers.push_back(c + dvec3(0, 0, plate.thickness));
   }
   return centers;
+}
+
+/// Planes of facets that are not horizontal.
+int slopes(const std::vector<dvec3>& area) {
+  std::vector<dvec3> normals;
+  for (const dvec3& A : area) {
+    const dvec3 n = unit(A);
+    const auto is_same = [&](const dvec3& other) { return glm::distance(n, other) < same_plane; };
+    const bool known = std::any_of(normals.begin(), normals.end(), is_same);
+    if (!known && std::abs(n.z) < 1 - same_plane) normals.push_back(n);
+  }
+  return int(normals.size());
 }
 
 }  // namespace
@@ -72,12 +88,16 @@ PlateMeasures measures_of(const Plate& plate) {
   const double r = plate.radius;
   sum.volume += std::numbers::pi * r * r * (highest - lowest);
   for (const dvec3& A : area) sum.volume += r * glm::length(dvec2(A));
+  sum.facets = slopes(area) + 2;
   for (const auto e : mesh.edges()) {
     const auto h = mesh.halfedge_handle(e, 0);
     const dvec3& A = area[std::size_t(mesh.face_handle(h).idx())];
     const dvec3& B = area[std::size_t(mesh.face_handle(mesh.opposite_halfedge_handle(h)).idx())];
     const double angle = std::atan2(glm::length(glm::cross(A, B)), glm::dot(A, B));
     sum.mean_width += mesh.calc_edge_length(e) * angle / (4 * std::numbers::pi);
+    const dvec3 along =
+        position(mesh, mesh.to_vertex_handle(h)) - position(mesh, mesh.from_vertex_handle(h));
+    if (angle > same_plane && along.z != 0) ++sum.scrolls;
   }
   sum.mean_width += std::numbers::pi * r / 2;
   return sum;

@@ -23,9 +23,13 @@ Plate random_plate(unsigned seed);
 struct PlateMeasures {
   double volume = 0;
   double mean_width = 0;
+  /// Faces of the hull's boundary: one for each edge of the centres' hull that is not horizontal,
+  /// one for each of its facets that is not, and two lids.
+  int scrolls = 0;
+  int facets = 0;
 };
 
-/// By Minkowski's formulas for polytope plus disc.
+/// By Minkowski's formulas for polytope plus disc, and its faces.
 PlateMeasures measures_of(const Plate& plate);
 
 }  // namespace taut_test

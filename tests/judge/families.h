@@ -1,11 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "expected.h"
 #include "models.h"
 #include "taut/surface/control_cage.h"
 
@@ -16,13 +16,13 @@ enum class Variant { clean, turned, float32, decimals };
 inline constexpr Variant all_variants[] = {Variant::clean, Variant::turned, Variant::float32,
                                            Variant::decimals};
 const char* name_of(Variant variant);
-
-inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// Its numbers are no longer those of the model drawn.
+bool rounds(Variant variant);
 
 /// A model as people make it.
 struct Natural {
   Shape shape = {};
-  double volume = unknown;  ///< of its hull, by a closed form
+  Expected expected = {};
   std::optional<taut::ControlCage> cage = {};
 };
 
@@ -34,7 +34,27 @@ struct Family {
   std::function<Natural(Random&)> make;
 };
 
+struct FamilyGroup {
+  std::string name;
+  std::vector<Family> families;
+};
+
 /// Natural models, exactly as drawn: sizes at random, about ten to a hundred units.
-const std::vector<Family>& families();
+const std::vector<FamilyGroup>& family_groups();
+
+/// @name The groups' families
+/// @{
+std::vector<Family> prismatic_parts();
+std::vector<Family> turned_parts();
+std::vector<Family> swept_parts();
+std::vector<Family> sheets();
+std::vector<Family> assemblies();
+std::vector<Family> curves_and_points();
+std::vector<Family> cages();
+/// @}
+
+/// Of which others are made too.
+Natural rounded_box(Random& random);
+Natural capsule(Random& random);
 
 }  // namespace taut_test

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
-#include <vector>
 
+#include "expected.h"
 #include "families.h"
-#include "support_reference.h"
-#include "taut/hull/result/hull_boundary.h"
+#include "taut/surface/model.h"
 
 namespace taut_test {
 
@@ -13,21 +13,32 @@ namespace taut_test {
 struct Verdict {
   bool closed = false;    ///< there is a boundary, and nothing of it is unresolved
   bool verified = false;  ///< verify() finds nothing wrong at 1e-9 of the diagonal
-  /// Why what the hull says is wrong, by the reference or a closed form; empty if it is not.
+  /// Why what the hull says is wrong, by a support function of the judge's own or by measures that
+  /// are expected; empty if it is not.
   std::string wrong;
+  /// "found, not expected" if the boundary is closed, yet not made of what is expected; else empty.
+  std::string miscounted;
   int unresolved = 0;
-  int patches = 0, scrolls = 0, facets = 0, curves = 0;
+  Counts found;
+  /// Measures that were compared: V, A and W for volume, area and mean width.
+  std::string measured;
   double bound = 0;  ///< of the mesh, in diagonals
   double seconds = 0;
 };
 
-/// What is wrong with the boundary's rulings and facets by the reference, in their directions and
-/// in some next to them, where what supports is to be reached from their points. Empty if nothing.
-std::string wrong_places(const taut::HullBoundary& boundary, const SupportReference& reference,
-                         Random& random);
+/// A model with what the judge knows of it.
+struct Subject {
+  taut::Model model;
+  Expected expected;
+  /// The model's geometry, or the cage of which it is the limit surface.
+  Shape shape;
+  std::optional<taut::ControlCage> cage;
+};
 
-/// Judges the hull of a natural model in this variant. Models from cages are judged by verify()
-/// alone. @throws what hulls throw, but for a tolerance that is not reached
+/// Judges the hull of the subject's model. @throws what hulls throw, but for a tolerance that is
+/// not reached
+Verdict judged(const Subject& subject, Random& random);
+/// Judges the hull of a natural model in this variant.
 Verdict judged(const Natural& natural, Variant variant, Random& random);
 
 }  // namespace taut_test
