@@ -27,10 +27,15 @@ using taut::Scene;
 /// A model with its map at the resolution that is the model's.
 struct Mapped {
   explicit Mapped(const Shape& shape)
-      : scene(make_model(shape)), geometry(scene), map(direction_map(geometry, {rho()})) {}
+      : scene(make_model(shape)), geometry(scene), map(direction_map(geometry, options())) {}
+  taut::DirectionMapOptions options() const {
+    taut::DirectionMapOptions options;
+    options.resolution = rho();
+    options.cell_limit = 100'000;
+    return options;
+  }
   double rho() const {
-    return scene.frame().length_to_frame(
-        taut::resolution_of(scene.model(), scene.diagonal()).rho);
+    return scene.frame().length_to_frame(taut::resolution_of(scene.model(), scene.diagonal()).rho);
   }
 
   Scene scene;
@@ -82,9 +87,10 @@ std::vector<Known> known_maps() {
       {"sphere_inside", two_spheres(1, 0.5, 0.3), 1, 0, 0},
       {"spheres_in_a_row", in_a_row(sphere(), 4, {2, 1, 0.5}), 2, 1, 0},
       {"spheres_on_a_cube", on_a_cube(mapped(sphere(), skew_rotation())), 8, 12, 6},
-      {"points_on_a_grid", in_a_row(in_a_row({{}, {}, {{0, 0, 0}}}, 4, {1, 0, 0}) +
-                                        in_a_row({{}, {}, {{0, 3, 0}}}, 4, {1, 0, 0}),
-                                    5, {0, 0, 1}),
+      {"points_on_a_grid",
+       in_a_row(in_a_row({{}, {}, {{0, 0, 0}}}, 4, {1, 0, 0}) +
+                    in_a_row({{}, {}, {{0, 3, 0}}}, 4, {1, 0, 0}),
+                5, {0, 0, 1}),
        8, 12, 6},
       {"torus", torus(2, 0.5), 1, 0, 2},
       {"oloid", oloid(), 2, 1, 0},
@@ -162,5 +168,22 @@ TEST(DirectionMap, HoldsWhatSupports) {
   expect_holds(torus(2, 0.5));
   expect_holds(filleted_box(4, 3, 2, 0.5));
 }
+
+class Families : public testing::TestWithParam<FamilyGroup> {};
+
+/// Of all families, as files have them. Cages have no support reference of this kind.
+TEST_P(Families, HoldWhatSupports) {
+  for (const Family& family : GetParam().families) {
+    for (const Variant variant : all_variants) {
+      SCOPED_TRACE(family.name + " " + name_of(variant));
+      taut_test::Random random(1);
+      const Natural natural = placed(family.make(random), variant, random);
+      if (!natural.cage) expect_holds(natural.shape);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Groups, Families, testing::ValuesIn(family_groups()),
+                         [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -71,8 +71,10 @@ void Branches::make_charts(const CellView& view) {
     if (known[first]) continue;
     known[first] = true;
     const MapPiece& own = piece(int(first));
-    Chart chart{own.element, pieces.element(own.element).contact.kind, own.u, own.v,
-                {int(first)}, -1, seen[first].low, seen[first].top};
+    Chart chart{own.element,     pieces.element(own.element).contact.kind,
+                own.u,           own.v,
+                {int(first)},    -1,
+                seen[first].low, seen[first].top};
     for (std::size_t next = 0; next < chart.pieces.size(); ++next) {
       const MapPiece& from = piece(chart.pieces[next]);
       for (std::size_t k = first + 1; k < seen.size(); ++k) {
@@ -145,8 +147,8 @@ void Branches::glue_face(const MapPieces& pieces, int index) {
     } else if (border.piece >= 0) {
       const Contact piece{c.instance, SourceKind::edge, border.piece, 0, 0};
       const bool reversed = border.piece_reversed != pieces.runs_against_first(piece);
-      const int other = chart_touching(pieces.find_first(piece),
-                                       turned(along(chart, side), reversed), {0, 0});
+      const int other =
+          chart_touching(pieces.find_first(piece), turned(along(chart, side), reversed), {0, 0});
       if (other >= 0) add({Glue::Kind::face_edge, index, other, int(side), 0, reversed});
     }
   }

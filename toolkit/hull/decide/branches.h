@@ -21,16 +21,16 @@ struct Chart {
 /// Where two charts meet. Sides of a patch are numbered as Side, the ends of an edge 0 and 1.
 struct Glue {
   enum class Kind {
-    faces,         ///< along a smooth join
-    face_edge,     ///< along a border
-    face_vertex,   ///< at a corner
-    edges,         ///< ends that go on into each other
-    edge_vertex,   ///< at an end
+    faces,        ///< along a smooth join
+    face_edge,    ///< along a border
+    face_vertex,  ///< at a corner
+    edges,        ///< ends that go on into each other
+    edge_vertex,  ///< at an end
   };
   Kind kind = Kind::faces;
-  int a = -1, b = -1;            ///< charts, in the order of the kind's words
-  int at_a = 0, at_b = 0;        ///< side or end
-  bool reversed = false;         ///< parameters along the one side run against those of the other
+  int a = -1, b = -1;      ///< charts, in the order of the kind's words
+  int at_a = 0, at_b = 0;  ///< side or end
+  bool reversed = false;   ///< parameters along the one side run against those of the other
 };
 
 /// What hangs together across joins, edges and vertices.

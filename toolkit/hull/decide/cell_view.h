@@ -5,19 +5,9 @@
 #include <vector>
 
 #include "taut/hull/decide/pieces.h"
+#include "taut/hull/decide/seen_piece.h"
 
 namespace taut {
-
-/// Four numbers, one for each corner of a cell of directions.
-using Corners = std::array<double, 4>;
-
-/// What one piece is to one cell of directions.
-struct SeenPiece {
-  int piece = -1;
-  std::size_t values = 0;  ///< of the control points: first index into CellView::values()
-  Corners top = {};        ///< upper bounds of (x - q) . d over the piece, by corner
-  Corners low = {};        ///< lower bounds
-};
 
 /// The pieces of a model that may touch a supporting plane with a normal in a cell of directions.
 ///
@@ -25,6 +15,7 @@ struct SeenPiece {
 /// model: (x - q) . d. All is linear in d, so that what holds at the corners holds in the cell.
 class CellView {
  public:
+  /// `noise`: what rounding may do to heights and their differences. The pieces must outlive it.
   CellView(MapPieces& pieces, double noise) : pieces_(pieces), noise_(noise) {}
 
   /// Turns to a cell. `beacons`: points of the model, of which q is one.
@@ -32,36 +23,28 @@ class CellView {
   const std::array<dvec3, 4>& corners() const { return d_; }
   const dvec3& q() const { return q_; }
 
-  /// Looks at a piece: keeps it if it may have a contact.
+  /// Looks at a piece: drops it if one of the beacons is above all of it in all directions.
   void look(int piece);
-  /// Upper bounds of the heights of supporting planes, once all pieces have been looked at; drops
-  /// what cannot have a contact below them.
+  /// Once all pieces have been looked at: drops those that no plane can touch.
   void finish();
-  std::vector<SeenPiece>& seen() { return seen_; }
+  /// Those that are left.
   const std::vector<SeenPiece>& seen() const { return seen_; }
+  /// Upper bounds of the heights of supporting planes, by corner.
   const Corners& highest() const { return highest_; }
   /// Heights of the control points, times their weights, by corner.
   const Corners* values(const SeenPiece& seen) const { return values_.data() + seen.values; }
 
-  /// Splits pieces that are curved by more than the cell is wide. True if there were any.
+  /// Splits pieces over which slopes change by more than over the cell. True if there were any.
   bool refine();
 
-  MapPieces& pieces() { return pieces_; }
   const MapPieces& pieces() const { return pieces_; }
   double noise() const { return noise_; }
-
-  long looked = 0;
+  /// Pieces looked at since construction.
+  long looked() const { return looked_; }
 
  private:
   bool is_beaten(const Corners& top) const;
-  bool surely_rises(const MapPiece& piece, const SeenPiece& seen) const;
-  struct Bend {
-    double uu = 0, uv = 0, vv = 0;
-  };
-  Bend bend(const MapPiece& piece, const SeenPiece& seen) const;
-  bool surely_rises_obliquely(const MapPiece& piece, const SeenPiece& seen) const;
-  bool rises_inward(const MapPiece& piece, const SeenPiece& seen) const;
-  int wanted_split(const SeenPiece& seen, double share) const;
+  bool rises_inward(const SeenPiece& seen) const;
 
   MapPieces& pieces_;
   double noise_;
@@ -72,6 +55,13 @@ class CellView {
   std::vector<SeenPiece> before_;  // scratch
   std::vector<Corners> values_;
   Corners highest_ = {};
+  long looked_ = 0;
 };
+
+/// Heights of a homogeneous point or vector over q, times its weight, by corner.
+inline Corners heights(const dvec4& p, const dvec3& q, const std::array<dvec3, 4>& d) {
+  const dvec3 x = dvec3(p) - p.w * q;
+  return {glm::dot(x, d[0]), glm::dot(x, d[1]), glm::dot(x, d[2]), glm::dot(x, d[3])};
+}
 
 }  // namespace taut

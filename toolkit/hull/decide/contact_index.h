@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/corner_rings.h"
 #include "taut/hull/decide/curved_regions.h"
 
 namespace taut {
@@ -13,11 +14,11 @@ namespace taut {
 /// of the heights (Poincare and Hopf; Milnor 1965, section 6).
 ///
 /// Let the charts of the branch, rounded by a ball as small as one likes where edges and vertices
-/// are, be a surface with a border. Where the surface is curved one way, each point at which a plane
-/// across d touches counts one. Where the heights x . d grow from all of the border inwards, the
-/// counts sum to the surface's Euler characteristic; if that is one, so is the number of such points.
-/// All near-maxima hang together with it: a piece of the surface above some height that does not
-/// hold it would have a maximum of its own.
+/// are, be a surface with a border. Where the surface is curved one way, each point at which a
+/// plane across d touches counts one. Where the heights x . d grow from all of the border inwards,
+/// the counts sum to the surface's Euler characteristic; if that is one, so is the number of such
+/// points. All near-maxima hang together with it: a piece of the surface above some height that
+/// does not hold it would have a maximum of its own.
 ///
 /// Nothing of this depends on how charts are parametrised: it holds about poles and over joins.
 class ContactIndex {
@@ -28,27 +29,25 @@ class ContactIndex {
 
   /// True is certain.
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
-  /// The charts hang together to a surface of Euler characteristic one, with a border.
-  bool is_disc(const Branches& branches, const Branch& branch);
 
  private:
+  class Growth;
+  /// The charts hang together to a surface of Euler characteristic one, with a border.
+  bool is_disc(const Branches& branches, const Branch& branch);
   bool is_curved(const CellView& view, const Chart& chart);
   bool face_border_rises(const CellView& view, int chart);
   bool edge_border_rises(const CellView& view, int chart);
   bool vertex_border_rises(const CellView& view, int chart);
   bool is_beside(int chart, int element) const;
-  int closed_points(const Branch& branch);
-  bool meet(const Branch& branch, int a, int b) const;
+  static bool fold_outwards(const Growth& growth, const std::vector<std::vector<dvec4>>& inward);
+  double kink(const Glue& glue);
 
   const MapPieces& pieces_;
   CurvedRegions regions_;
   double rho_;
-  /// By chart, and by its sides or ends: the glue there, or -1.
-  std::vector<std::array<int, 4>> glued_;
+  CornerRings::Glued glued_;
   /// An edge or vertex, and a chart of the branch that ends there.
   std::vector<std::pair<int, int>> beside_;
-  /// Charts and their sides at poles around which there are charts everywhere.
-  std::vector<std::pair<int, Side>> poles_;
   const Branches* view_branches_ = nullptr;
   std::vector<dvec4> net_;  // scratch
 };

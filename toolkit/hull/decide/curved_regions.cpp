@@ -8,9 +8,13 @@ namespace {
 /// Halvings after which a rectangle's curvature is left open.
 constexpr int curvature_level_limit = 12;
 
-bool overlap(const Interval& a, const Interval& b) { return a.lower < b.upper && b.lower < a.upper; }
+bool overlap(const Interval& a, const Interval& b) {
+  return a.lower < b.upper && b.lower < a.upper;
+}
 
-bool contains(const Interval& a, const Interval& b) { return a.lower <= b.lower && b.upper <= a.upper; }
+bool contains(const Interval& a, const Interval& b) {
+  return a.lower <= b.lower && b.upper <= a.upper;
+}
 
 double width(const Interval& t) { return t.upper - t.lower; }
 
@@ -62,8 +66,8 @@ int CurvedRegions::sign(Tree& tree, int index, const Interval& u, const Interval
       node.first_half = first;
       const Node whole{node.u, node.v, node.level + 1, false, 0, -1, nullptr};
       for (std::size_t k : {0u, 1u}) {
-        Node half{whole.u, whole.v, whole.level, false, 0, -1,
-                  std::make_unique<CurvatureNets>(nets[k])};
+        Node half{
+            whole.u, whole.v, whole.level, false, 0, -1, std::make_unique<CurvatureNets>(nets[k])};
         Interval& range = of_u ? half.u : half.v;
         const double middle = 0.5 * (range.lower + range.upper);
         (k == 0 ? range.upper : range.lower) = middle;

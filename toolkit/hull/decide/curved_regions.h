@@ -10,7 +10,8 @@
 namespace taut {
 
 /// Where patches are curved one way, by the second fundamental form: told once, for all directions.
-/// Trees of rectangles that grow as they are asked. One object a thread; the pieces must outlive it.
+/// Trees of rectangles that grow as they are asked. One object a thread; the pieces must outlive
+/// it.
 class CurvedRegions {
  public:
   explicit CurvedRegions(const MapPieces& pieces);

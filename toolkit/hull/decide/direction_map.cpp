@@ -78,10 +78,10 @@ class Decider {
       axes_ = face_axes(face);
       decide({face, 0, 0, 0, MapCellKind::undecided, {}, {}}, all, {}, {});
     }
-    while (split_nodes_beside_others()) {
+    while (map_.statistics.cells < options_.cell_limit && split_nodes_beside_others()) {
     }
     map_.statistics.queries = query_.queries();
-    map_.statistics.candidates = view_.looked;
+    map_.statistics.candidates = view_.looked();
     return std::move(map_);
   }
 
@@ -101,9 +101,8 @@ class Decider {
         if (!tree.side(k, number, side)) continue;
         const auto other = nodes_.find(side.other);
         if (other == nodes_.end()) continue;
-        const bool are_facets = node.normal != dvec3(0.0) && other->second.normal != dvec3(0.0);
-        if (are_facets && glm::length(glm::cross(node.normal, other->second.normal)) <=
-                              std::ldexp(1.0, -options_.level_limit)) {
+        if (glm::length(glm::cross(node.normal, other->second.normal)) <=
+            std::ldexp(1.0, -options_.level_limit)) {
           continue;
         }
         for (const int cell : {k, side.other}) {
@@ -134,8 +133,13 @@ class Decider {
   void split(const MapCell& cell, const std::vector<int>& list, const std::vector<dvec3>& beacons,
              const Contact& hint) {
     for (std::uint32_t k = 0; k < 4; ++k) {
-      decide({cell.face, cell.level + 1, 2 * cell.i + k / 2, 2 * cell.j + k % 2,
-              MapCellKind::undecided, {}, {}},
+      decide({cell.face,
+              cell.level + 1,
+              2 * cell.i + k / 2,
+              2 * cell.j + k % 2,
+              MapCellKind::undecided,
+              {},
+              {}},
              list, beacons, hint);
     }
   }
@@ -163,7 +167,9 @@ class Decider {
     for (int round = 0; round < refinement_limit && !is_settled() && view_.refine(); ++round) {
       kind = decided();
     }
-    if (!kind && cell.level == options_.level_limit) kind = MapCellKind::undecided;
+    const bool goes_on =
+        cell.level < options_.level_limit && map_.statistics.cells < options_.cell_limit;
+    if (!kind && !goes_on) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
     split(cell, pieces_left(), beacons, support.contact);
@@ -196,11 +202,10 @@ class Decider {
   void finish(MapCell& cell, MapCellKind kind, const std::vector<dvec3>& beacons) {
     cell.kind = kind;
     if (kind == MapCellKind::facet) cell.normal = facet_normal_;
+    if (kind == MapCellKind::node) cell.normal = plane_of_three();
     for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
     if (kind == MapCellKind::facet || kind == MapCellKind::node) {
-      nodes_.emplace(int(map_.cells.size()),
-                     Node{kind == MapCellKind::facet ? facet_normal_ : dvec3(0.0), pieces_left(),
-                          beacons});
+      nodes_.emplace(int(map_.cells.size()), Node{cell.normal, pieces_left(), beacons});
     }
     ++map_.statistics.of_kind[std::size_t(kind)];
     map_.statistics.deepest = std::max(map_.statistics.deepest, cell.level);
@@ -243,8 +248,8 @@ class Decider {
     DisjointSets sets(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (std::size_t j = i + 1; j < all.size(); ++j) {
-        const dvec3 gap = glm::max(glm::max(all[i].lower - all[j].upper, all[j].lower - all[i].upper),
-                                   dvec3(0.0));
+        const dvec3 gap = glm::max(
+            glm::max(all[i].lower - all[j].upper, all[j].lower - all[i].upper), dvec3(0.0));
         if (glm::length(gap) <= options_.resolution) sets.unite(int(i), int(j));
       }
     }
@@ -254,14 +259,12 @@ class Decider {
     return true;
   }
 
-  /// A piece of surface without a hole that is near one plane because it is small: some levels below
-  /// it is near all planes.
-  bool is_spot() {
-    const std::vector<Branch>& all = branches_.all();
-    if (all.size() != 1) return false;
-    const double extent = glm::distance(all[0].lower, all[0].upper);
+  /// What is left is near one plane because it is small: a few levels below it is near all planes.
+  bool is_spot() const {
+    Box box;
+    for (const Branch& branch : branches_.all()) box.include({branch.lower, branch.upper});
     const double width = glm::distance(view_.corners()[0], view_.corners()[3]);
-    return extent * width <= spot * options_.resolution && index_.is_disc(branches_, all[0]);
+    return diagonal(box) * width <= spot * options_.resolution;
   }
 
   /// All that is left is within the resolution of one plane, with a normal in the cell.
@@ -274,12 +277,11 @@ class Decider {
     }
     const dvec3 o = view_.q();
     const auto farthest = [&](const auto& measure) {
-      return *std::max_element(
-          points_.begin(), points_.end(),
-          [&](const dvec3& a, const dvec3& b) { return measure(a) < measure(b); });
+      return *std::max_element(points_.begin(), points_.end(), [&](const dvec3& a, const dvec3& b) {
+        return measure(a) < measure(b);
+      });
     };
-    const dvec3 along =
-        unit(farthest([&](const dvec3& x) { return glm::distance(x, o); }) - o);
+    const dvec3 along = unit(farthest([&](const dvec3& x) { return glm::distance(x, o); }) - o);
     const dvec3 beside =
         farthest([&](const dvec3& x) { return glm::length(glm::cross(x - o, along)); }) - o;
     if (glm::length(glm::cross(beside, along)) < least_span * options_.resolution) return false;
@@ -289,7 +291,7 @@ class Decider {
     for (const dvec3& x : points_) {
       lower = std::min(lower, glm::dot(x - o, n));
       upper = std::max(upper, glm::dot(x - o, n));
-      if (upper - lower > options_.resolution) return false;
+      if (upper - lower > 2 * options_.resolution) return false;  // on either side
     }
     // In the cell's coordinates from -1 to 1.
     const auto& d = view_.corners();
@@ -300,6 +302,13 @@ class Decider {
     if (std::abs(glm::dot(off, axes_.second)) > facet_reach) return false;
     facet_normal_ = n;
     return true;
+  }
+
+  /// Outward normal of the plane through the middles of three branches.
+  dvec3 plane_of_three() const {
+    const std::vector<Branch>& all = branches_.all();
+    const auto middle = [&](std::size_t k) { return 0.5 * (all[k].lower + all[k].upper); };
+    return aligned(unit(glm::cross(middle(1) - middle(0), middle(2) - middle(0))), axes_.own);
   }
 
   /// How far the points of one branch are from those of another along the cell's axes: the slopes
@@ -328,8 +337,8 @@ class Decider {
     const std::array<Interval, 2> s = difference(a, b);
     const std::array<Interval, 2> t = difference(a, c);
     const auto product = [](const Interval& x, const Interval& y) {
-      const auto [least, most] = std::minmax(
-          {x.lower * y.lower, x.lower * y.upper, x.upper * y.lower, x.upper * y.upper});
+      const auto [least, most] =
+          std::minmax({x.lower * y.lower, x.lower * y.upper, x.upper * y.lower, x.upper * y.upper});
       return Interval{least, most};
     };
     const Interval p = product(s[0], t[1]);
@@ -339,7 +348,7 @@ class Decider {
 
   /// What a node's cell is split with.
   struct Node {
-    dvec3 normal;  ///< of a facet, else zero
+    dvec3 normal;
     std::vector<int> pieces;
     std::vector<dvec3> beacons;
   };
@@ -369,8 +378,7 @@ std::array<dvec3, 4> DirectionMap::corners(const MapCell& cell) {
   const double size = std::ldexp(2.0, -cell.level);
   std::array<dvec3, 4> result;
   for (std::uint32_t k = 0; k < 4; ++k) {
-    result[k] =
-        direction(cell.face, -1 + size * (cell.i + k / 2), -1 + size * (cell.j + k % 2));
+    result[k] = direction(cell.face, -1 + size * (cell.i + k / 2), -1 + size * (cell.j + k % 2));
   }
   return result;
 }

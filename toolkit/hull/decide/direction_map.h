@@ -30,7 +30,7 @@ struct MapCell {
   /// Boxes of what may touch, in the scene's frame, one for each contact that is told apart; none
   /// where there was too much to look at.
   std::vector<Box> contacts;
-  /// kind facet: normal of the plane, outwards.
+  /// kinds node and facet: normal of the plane that touches all of them, about, outwards.
   dvec3 normal = dvec3(0.0);
 };
 
@@ -49,8 +49,8 @@ struct DirectionMap {
   std::vector<MapCell> cells;
   DirectionMapStatistics statistics;
 
-  /// Directions of the corners of a cell in the order (0, 0), (0, 1), (1, 0), (1, 1) of its axes, on
-  /// a cube that is turned so that what models are symmetric in is nothing to it.
+  /// Directions of the corners of a cell in the order (0, 0), (0, 1), (1, 0), (1, 1) of its axes,
+  /// on a cube that is turned so that what models are symmetric in is nothing to it.
   static std::array<dvec3, 4> corners(const MapCell& cell);
   /// A point of a face of the cube, with coordinates in [-1, 1].
   static dvec3 direction(int face, double s, double t);
@@ -59,7 +59,9 @@ struct DirectionMap {
 struct DirectionMapOptions {
   /// In the scene's frame: what is nearer than this may be taken for one. > 0
   double resolution = 0;
-  int level_limit = 20;  ///< of cells
+  /// Levels of cells, and cells, after which what is left stays undecided.
+  int level_limit = 20;
+  long cell_limit = 1'000'000;
   std::stop_token stop;
 };
 
@@ -70,8 +72,8 @@ struct DirectionMapOptions {
 /// from which no surface rises, and none that a sampled point surpasses in all of it. Pieces that
 /// hang together are a branch; a branch has one contact for each direction by the index of the
 /// gradient of the heights, or where they are concave but for the resolution (ContactIndex,
-/// NearConcavity). All bounds are of Bernstein coefficients, for all directions of the cell at once,
-/// rounding included.
+/// NearConcavity). All bounds are of Bernstein coefficients, for all directions of the cell at
+/// once, rounding included.
 ///
 /// Ruled patches and straight edges have no contacts but at their ends.
 /// @throws Cancelled

@@ -138,18 +138,22 @@ class Assembly {
     }
   }
 
-  /// Cells of one facet may touch in a corner only, or have others between them.
+  /// Cells of one facet may touch in a corner only, or have others between them. Three of its
+  /// contacts may make a node beside it.
   void join_facets() {
-    std::vector<int> facets;
+    std::vector<int> facets, others;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
       if (cell(k).kind == MapCellKind::facet) facets.push_back(k);
+      if (cell(k).kind == MapCellKind::facet || cell(k).kind == MapCellKind::node) {
+        others.push_back(k);
+      }
     }
-    for (std::size_t i = 0; i < facets.size(); ++i) {
-      for (std::size_t j = i + 1; j < facets.size(); ++j) {
-        const dvec3& a = cell(facets[i]).normal;
-        const dvec3& b = cell(facets[j]).normal;
+    for (const int facet : facets) {
+      for (const int other : others) {
+        const dvec3& a = cell(facet).normal;
+        const dvec3& b = cell(other).normal;
         if (glm::dot(a, b) > 0 && glm::length(glm::cross(a, b)) <= same_normal) {
-          clusters_.unite(facets[i], facets[j]);
+          clusters_.unite(facet, other);
         }
       }
     }
@@ -158,7 +162,7 @@ class Assembly {
   void collect() {
     pass_through_clusters();
     std::map<int, int> nodes, arcs;
-    const auto number = [](std::map<int, int>& numbers, int key, auto& list) -> auto& {
+    const auto number = [](std::map<int, int> & numbers, int key, auto& list) -> auto& {
       const auto [found, is_new] = numbers.try_emplace(key, int(list.size()));
       if (is_new) list.emplace_back();
       return list[std::size_t(found->second)];
@@ -244,7 +248,7 @@ class Assembly {
   DisjointSets regions_, clusters_, arcs_;
   std::vector<bool> supports_;  // by contact
   std::vector<bool> has_arc_;
-  std::vector<bool> merges_;              // by cell: where an arc ends for want of resolution
+  std::vector<bool> merges_;  // by cell: where an arc ends for want of resolution
   std::vector<End> ends_;
   std::map<std::array<long long, 3>, dvec3> points_;
   Contact hint_;

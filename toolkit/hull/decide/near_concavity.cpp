@@ -134,8 +134,7 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
       continue;
     }
     const MapElement& element = pieces_.element(branches.chart(glue.a).element);
-    if (glue.kind == Glue::Kind::faces &&
-        !(element.kink[std::size_t(glue.at_a)] * size <= rho_)) {
+    if (glue.kind == Glue::Kind::faces && !(element.kink[std::size_t(glue.at_a)] * size <= rho_)) {
       continue;
     }
     if (meet_once(view, branches, glue)) sets.unite(glue.a, glue.b);
@@ -144,9 +143,8 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
     if (sets.find(k) != sets.find(branch.charts.front())) return false;
     if (holders[std::size_t(k)] > 1) return false;
   }
-  return std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
-    return is_nearly_concave(view, branches.chart(k));
-  });
+  return std::all_of(branch.charts.begin(), branch.charts.end(),
+                     [&](int k) { return is_nearly_concave(view, branches.chart(k)); });
 }
 
 }  // namespace taut

@@ -38,10 +38,8 @@ void even_weights(NetShape shape, std::vector<dvec4>& net) {
   const int p = shape.p;
   const int q = shape.q;
   const auto w = [&](int i, int j) { return net[std::size_t(i * (q + 1) + j)].w; };
-  const double along_u =
-      p > 0 ? std::pow(w(0, 0) * w(0, q) / (w(p, 0) * w(p, q)), 0.5 / p) : 1;
-  const double along_v =
-      q > 0 ? std::pow(w(0, 0) * w(p, 0) / (w(0, q) * w(p, q)), 0.5 / q) : 1;
+  const double along_u = p > 0 ? std::pow(w(0, 0) * w(0, q) / (w(p, 0) * w(p, q)), 0.5 / p) : 1;
+  const double along_v = q > 0 ? std::pow(w(0, 0) * w(p, 0) / (w(0, q) * w(p, q)), 0.5 / q) : 1;
   double fu = 1 / std::sqrt(w(0, 0) * w(p, q));
   for (int i = 0; i <= p; ++i, fu *= along_u) {
     double f = fu;
@@ -146,8 +144,7 @@ std::vector<dvec4> MapPieces::placed(const Contact& c, const std::vector<dvec4>&
 
 std::vector<dvec4> MapPieces::placed_patch(const Contact& c, NetShape& shape) const {
   const SceneContent& content = geometry_.scene().content();
-  const SceneElement& e =
-      content.part_of(c.instance).elements[std::size_t(content.element(c))];
+  const SceneElement& e = content.part_of(c.instance).elements[std::size_t(content.element(c))];
   shape = e.shape;
   std::vector<dvec4> points;
   for (std::size_t k = 0; k < e.net.x.size(); ++k) {
@@ -163,9 +160,9 @@ double MapPieces::kink(const Contact& c, Side side) const {
   for (int k = 0; k < kink_samples; ++k) {
     const double t = (k + 0.5) / kink_samples;
     const dvec3 own = unit_normal(geometry_, on_side(c.instance, c.element, side, t));
-    const dvec3 other =
-        unit_normal(geometry_, on_side(c.instance, border.neighbor, border.neighbor_side,
-                                       border.reversed ? 1 - t : t));
+    const dvec3 other = unit_normal(
+        geometry_,
+        on_side(c.instance, border.neighbor, border.neighbor_side, border.reversed ? 1 - t : t));
     largest = std::max(largest, glm::length(glm::cross(own, other)));
   }
   return largest;
@@ -180,8 +177,9 @@ void MapPieces::add_face(const Contact& c) {
     element.collapsed[std::size_t(side)] =
         geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
   }
-  element.root = add({int(elements_.size()), {0, 1}, {0, 1}, store(shape, points), {}, {}, {-1, -1},
-                      {-1, -1}}, element.rational);
+  element.root =
+      add({int(elements_.size()), {0, 1}, {0, 1}, store(shape, points), {}, {}, {-1, -1}, {-1, -1}},
+          element.rational);
   elements_.push_back(element);
 }
 
@@ -193,8 +191,14 @@ void MapPieces::add_edge(const Contact& c) {
   if (geometry_.piece(c).edge < 0 && !sides.empty()) return;
   const BezierCurve curve = geometry_.curve(c);
   MapElement element{c, !is_polynomial(curve.points), -1, {}, {}, {}, false};
-  MapPiece root{int(elements_.size()), {0, 1}, {0, 0}, store({curve.degree(), 0}, curve.points), {},
-                {}, {-1, -1}, {-1, -1}};
+  MapPiece root{int(elements_.size()),
+                {0, 1},
+                {0, 0},
+                store({curve.degree(), 0}, curve.points),
+                {},
+                {},
+                {-1, -1},
+                {-1, -1}};
   for (const auto* list : {&sides, &ruled}) {
     for (const ContactGeometry::PieceSide& side : *list) {
       NetShape shape;
@@ -254,7 +258,8 @@ std::array<int, 2> MapPieces::halves(int index, Direction across) {
   const double middle = 0.5 * (range.lower + range.upper);
   (along_u ? half[0].u : half[0].v).upper = middle;
   (along_u ? half[1].u : half[1].v).lower = middle;
-  const std::array<int, 2> made = {add(std::move(half[0]), rational), add(std::move(half[1]), rational)};
+  const std::array<int, 2> made = {add(std::move(half[0]), rational),
+                                   add(std::move(half[1]), rational)};
   (along_u ? pieces_[std::size_t(index)].halves_u : pieces_[std::size_t(index)].halves_v) = made;
   return made;
 }

@@ -94,7 +94,8 @@ std::optional<Mean> mean_near(const std::vector<dvec3>& points, const std::vecto
     if (nearest.contains_origin || glm::length(nearest.point) <= budget) return mean;
     const std::size_t next = lowest(nearest.direction);
     if (glm::dot(points[next] - x, nearest.direction) > budget) return std::nullopt;
-    if (std::count(kept.begin(), kept.end(), int(next)) > 0 || kept.size() == 4) return std::nullopt;
+    if (std::count(kept.begin(), kept.end(), int(next)) > 0 || kept.size() == 4)
+      return std::nullopt;
     carriers = std::move(kept);
     offsets = std::move(kept_offsets);
     carriers.push_back(int(next));

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "taut/hull/decide/branches.h"
+
+namespace taut {
+
+/// Points at which the charts of a branch meet all around: corners of patches, poles, vertices.
+class CornerRings {
+ public:
+  /// By chart, and by its sides or ends: the glue there, or -1.
+  using Glued = std::vector<std::array<int, 4>>;
+
+  /// All must outlive it.
+  CornerRings(const MapPieces& pieces, const Branches& branches, const Branch& branch,
+              const Glued& glued);
+
+  int count() const { return count_; }
+  /// Charts and their sides at poles that are such points.
+  const std::vector<std::pair<int, Side>>& poles() const { return poles_; }
+
+ private:
+  /// A corner of a chart, seen on the way around: the side over which the next step leads, and the
+  /// other one, which is one point at a pole.
+  struct Corner {
+    int chart;
+    Side next, other;
+    bool operator==(const Corner& c) const {
+      return chart == c.chart && next == c.next && other == c.other;
+    }
+  };
+  /// Corners passed from one on, and how the way ends: where it began, at the chart of an edge, or
+  /// nowhere.
+  struct Way {
+    std::vector<Corner> corners;
+    bool closed = false;
+    int edge = -1;
+  };
+
+  void visit(int chart, Side u, Side v);
+  Way walk(const Corner& from) const;
+  std::optional<Corner> step(const Corner& from, int& edge) const;
+  bool is_pole(const Corner& c) const;
+  bool meet(int edge, int other) const;
+
+  const MapPieces& pieces_;
+  const Branches& branches_;
+  const Branch& branch_;
+  const Glued& glued_;
+  int count_ = 0;
+  std::vector<std::pair<int, Side>> poles_;
+  std::set<std::array<int, 3>> passed_;
+};
+
+}  // namespace taut

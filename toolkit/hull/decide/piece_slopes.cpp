@@ -1,0 +1,237 @@
+#include "taut/hull/decide/piece_slopes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+namespace {
+
+/// Directions are as long as sqrt(3), and kinks are measured at some places.
+constexpr double kink_reach = 4;
+
+/// Oblique directions count where they are this much better: rectangles fit them less.
+constexpr double oblique_worth = 4;
+
+/// Values of which a sign is sought.
+struct Range {
+  double lower = infinity;
+  double upper = -infinity;
+  void include(double x) {
+    lower = std::min(lower, x);
+    upper = std::max(upper, x);
+  }
+  bool has_zero(double noise) const { return lower <= noise && upper >= -noise; }
+};
+
+double width(const Corners& c) {
+  return *std::max_element(c.begin(), c.end()) - *std::min_element(c.begin(), c.end());
+}
+
+Corners difference(const Corners& a, const Corners& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+}
+
+double mean(const Corners& c) { return 0.25 * (c[0] + c[1] + c[2] + c[3]); }
+
+}  // namespace
+
+void PieceSlopes::Change::include(double of_u, double of_v) {
+  along_u = std::max(along_u, std::abs(of_u));
+  along_v = std::max(along_v, std::abs(of_v));
+}
+
+/// Height of a control point times its weight, over that of the piece's middle.
+double PieceSlopes::middle(int i, int j) const {
+  const std::size_t k = index(i, j);
+  return mean(values_[k]) - 0.5 * (mean(seen_.low) + mean(seen_.top)) * points_[k].w;
+}
+
+/// By the control points next to one.
+PieceSlopes::Bend PieceSlopes::bend_at(int i, int j) const {
+  Bend bend;
+  if (p() > 1) {
+    const int k = std::clamp(i, 0, p() - 2);
+    const int l = std::clamp(j, 0, q());
+    bend.uu = p() * (p() - 1) * (middle(k, l) - 2 * middle(k + 1, l) + middle(k + 2, l));
+  }
+  if (q() > 1) {
+    const int k = std::clamp(i, 0, p());
+    const int l = std::clamp(j, 0, q() - 2);
+    bend.vv = q() * (q() - 1) * (middle(k, l) - 2 * middle(k, l + 1) + middle(k, l + 2));
+  }
+  if (p() > 0 && q() > 0) {
+    bend.uv =
+        p() * q() * (middle(i + 1, j + 1) - middle(i + 1, j) - middle(i, j + 1) + middle(i, j));
+  }
+  return bend;
+}
+
+bool PieceSlopes::is_at(Side side) const {
+  const Interval& across = along_v(side) ? piece_.u : piece_.v;
+  return at_upper_end(side) ? across.upper == 1 : across.lower == 0;
+}
+
+bool PieceSlopes::surely_rise() const {
+  if (p() > 0 && rise_along(Direction::u)) return true;
+  if (q() > 0 && rise_along(Direction::v)) return true;
+  return p() > 0 && q() > 0 && rise_obliquely();
+}
+
+/// Along a collapsed side slopes vanish. Beside it they are the distance from it, a factor that is
+/// taken out, times a function. Towards a join with a kink, what is beyond may fall though this
+/// side rises.
+bool PieceSlopes::rise_along(Direction direction) const {
+  const bool of_u = direction == Direction::u;
+  const int step = of_u ? q() + 1 : 1;
+  const int across = of_u ? 1 : q() + 1;
+  const int count = of_u ? p() : q();
+  const int degree = of_u ? q() : p();  // across
+  const Side lower_side = of_u ? Side::v0 : Side::u0;
+  const Side upper_side = of_u ? Side::v1 : Side::u1;
+  const bool lower = is_at(lower_side) && element_.collapsed[std::size_t(lower_side)];
+  const bool upper = is_at(upper_side) && element_.collapsed[std::size_t(upper_side)];
+  Range range;
+  double longest = 0;
+  for (int j = lower ? 1 : 0; j <= degree - (upper ? 1 : 0); ++j) {
+    const double factor =
+        (lower ? double(degree) / j : 1) * (upper ? double(degree) / (degree - j) : 1);
+    for (int i = 0; i < count; ++i) {
+      const int k = i * step + j * across;
+      const double dw = element_.rational ? points_[k + step].w - points_[k].w : 0;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double slope = values_[k + step][c] - values_[k][c];
+        range.include(factor * (slope - seen_.low[c] * dw));
+        range.include(factor * (slope - seen_.top[c] * dw));
+      }
+      longest = std::max(longest, glm::length(dvec3(points_[k + step] - points_[k])));
+    }
+    if (range.has_zero(noise_)) return false;
+  }
+  const double margin = noise_ + (lower || upper ? pole_margin(direction, lower, upper) : 0);
+  const auto beyond = [&](Side side) {
+    return is_at(side) ? kink_reach * element_.kink[std::size_t(side)] * longest : 0;
+  };
+  return range.lower > margin + beyond(of_u ? Side::u1 : Side::v1) ||
+         range.upper < -margin - beyond(of_u ? Side::u0 : Side::v0);
+}
+
+/// Along a collapsed side weights may change. A point beside it is lower or higher than the side by
+/// its distance from it times the slope across, and that, times the change, adds to the slope.
+double PieceSlopes::pole_margin(Direction direction, bool lower, bool upper) const {
+  const bool of_u = direction == Direction::u;
+  const int step = of_u ? q() + 1 : 1;
+  const int across = of_u ? 1 : q() + 1;
+  const int count = of_u ? p() : q();
+  const int degree = of_u ? q() : p();
+  double change = 0;
+  for (int i = 0; i < count; ++i) {
+    for (const int j : {lower ? 0 : degree, upper ? degree : 0}) {
+      const int k = i * step + j * across;
+      change = std::max(change, std::abs(points_[k + step].w - points_[k].w));
+    }
+  }
+  double fall = 0;
+  for (int j = 0; j < degree; ++j) {
+    for (int i = 0; i <= count; ++i) {
+      const int k = i * step + j * across;
+      for (std::size_t c = 0; c < 4; ++c) {
+        fall = std::max(fall, std::abs(values_[k + across][c] / points_[k + across].w -
+                                       values_[k][c] / points_[k].w));
+      }
+    }
+  }
+  return change * degree * fall;
+}
+
+/// In a direction oblique to the parameters', in which slopes change but little across it: along
+/// the floor of a valley, or the crest of a ridge.
+bool PieceSlopes::rise_obliquely() const {
+  for (const Side side : all_sides) {
+    const auto k = std::size_t(side);
+    if (is_at(side) && (element_.collapsed[k] || element_.kink[k] > 0)) return false;
+  }
+  const Bend b = bend();
+  if (b.uv == 0) return false;
+  return (b.vv != 0 && are_definite(1, -b.uv / b.vv)) ||
+         (b.uu != 0 && are_definite(-b.uv / b.uu, 1));
+}
+
+/// The slope's coefficients in a direction, as those of the degree of the piece, have one sign.
+bool PieceSlopes::are_definite(double along_u, double along_v) const {
+  const auto row = std::size_t(q() + 1);
+  Range range;
+  for (int i = 0; i <= p(); ++i) {
+    for (int j = 0; j <= q(); ++j) {
+      const std::size_t k = index(i, j);
+      const auto slope = [&](const auto& of) {
+        const double own = of(k);
+        double u = 0;
+        double v = 0;
+        if (i > 0) u += i * (own - of(k - row));
+        if (i < p()) u += (p() - i) * (of(k + row) - own);
+        if (j > 0) v += j * (own - of(k - 1));
+        if (j < q()) v += (q() - j) * (of(k + 1) - own);
+        return along_u * u + along_v * v;
+      };
+      const double dw = element_.rational ? slope([&](std::size_t l) { return points_[l].w; }) : 0;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double dy = slope([&](std::size_t l) { return values_[l][c]; });
+        range.include(dy - seen_.low[c] * dw);
+        range.include(dy - seen_.top[c] * dw);
+      }
+    }
+    if (range.has_zero(noise_)) return false;
+  }
+  return true;
+}
+
+/// How much slopes from end to end differ over the cell: along the sides where they do most, for
+/// others may be points.
+double PieceSlopes::spread(double along_u, double along_v) const {
+  const auto wider = [](const Corners& a, const Corners& b) {
+    return width(a) >= width(b) ? a : b;
+  };
+  const auto at = [&](int i, int j) -> const Corners& { return values_[index(i, j)]; };
+  const Corners u = wider(difference(at(p(), 0), at(0, 0)), difference(at(p(), q()), at(0, q())));
+  const Corners v = wider(difference(at(0, q()), at(0, 0)), difference(at(p(), q()), at(p(), 0)));
+  Corners both;
+  for (std::size_t c = 0; c < 4; ++c) both[c] = along_u * u[c] + along_v * v[c];
+  return std::max(width(both), noise_);
+}
+
+/// Slopes in two directions change over the piece by its second derivatives, and over the cell by
+/// its width; where both directions are oblique to the parameters', often by less.
+std::optional<Direction> PieceSlopes::wanted_split(double share) const {
+  if (p() == 0 && q() == 0) return std::nullopt;
+  const Bend b = bend();
+  const double m = std::abs(b.uv) < std::abs(b.vv) ? -b.uv / b.vv : 0;
+  const double n = std::abs(b.uv) < std::abs(b.uu) ? -b.uv / b.uu : 0;
+  // Of slopes along u and v, and along (1, m) and (n, 1).
+  Change plain_u, plain_v, oblique_u, oblique_v;
+  for (int i = 0; i <= std::max(0, p() - 1); ++i) {
+    for (int j = 0; j <= std::max(0, q() - 1); ++j) {
+      const Bend at = bend_at(i, j);
+      plain_u.include(at.uu, at.uv);
+      plain_v.include(at.uv, at.vv);
+      oblique_u.include(at.uu + m * at.uv, at.uv + m * at.vv);
+      oblique_v.include(at.uv + n * at.uu, at.vv + n * at.uv);
+    }
+  }
+  double along_u = 0;
+  double along_v = 0;
+  const auto add = [&](const Change& plain, double wide, const Change& oblique,
+                       double oblique_wide) {
+    const double best = std::max(oblique.along_u, oblique.along_v) / oblique_wide;
+    const bool is_better = oblique_worth * best < std::max(plain.along_u, plain.along_v) / wide;
+    along_u += is_better ? oblique.along_u / oblique_wide : plain.along_u / wide;
+    along_v += is_better ? oblique.along_v / oblique_wide : plain.along_v / wide;
+  };
+  if (p() > 0) add(plain_u, spread(1, 0), oblique_u, spread(1, m));
+  if (q() > 0) add(plain_v, spread(0, 1), oblique_v, spread(n, 1));
+  if (p() == 0) along_u = 0;
+  if (q() == 0) along_v = 0;
+  if (!(std::max(along_u, along_v) > share)) return std::nullopt;
+  return along_u >= along_v ? Direction::u : Direction::v;
+}
+
+}  // namespace taut

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "taut/hull/decide/pieces.h"
+#include "taut/hull/decide/seen_piece.h"
+
+namespace taut {
+
+/// The slopes of the heights over a piece, in all directions of a cell at once: bounds by Bernstein
+/// coefficients, linear in the direction.
+///
+/// A plane at height h across d touches a rational piece where (P - q w) . d - h w has no slope, P
+/// and w its homogeneous points; h is a height of the piece.
+class PieceSlopes {
+ public:
+  /// `values`: heights of the control points times their weights; `noise`: what rounding may do to
+  /// them. All must outlive it.
+  PieceSlopes(const MapPieces& pieces, const SeenPiece& seen, const Corners* values, double noise)
+      : piece_(pieces.piece(seen.piece)),
+        element_(pieces.element_of(piece_)),
+        points_(pieces.points(piece_.net)),
+        seen_(seen),
+        values_(values),
+        noise_(noise) {}
+
+  /// Certain: in each direction of the cell the heights grow or fall along a line of the
+  /// parameters, the same everywhere, so that no plane touches inside.
+  bool surely_rise() const;
+
+  /// The parameter across which the piece is to be halved so that its slopes change over it by less
+  /// than over the cell, times `share`; none if they do already.
+  std::optional<Direction> wanted_split(double share) const;
+
+ private:
+  /// Second derivatives in the middle of the piece and of the cell, with respect to parameters that
+  /// run from 0 to 1 over the piece.
+  struct Bend {
+    double uu = 0, uv = 0, vv = 0;
+  };
+  /// By how much slopes change over the extents of a piece.
+  struct Change {
+    double along_u = 0, along_v = 0;
+    void include(double of_u, double of_v);
+  };
+
+  int p() const { return piece_.net.shape.p; }
+  int q() const { return piece_.net.shape.q; }
+  std::size_t index(int i, int j) const { return std::size_t(i * (q() + 1) + j); }
+  double middle(int i, int j) const;
+  Bend bend_at(int i, int j) const;
+  Bend bend() const { return bend_at((p() - 1) / 2, (q() - 1) / 2); }
+  bool is_at(Side side) const;
+  bool rise_along(Direction direction) const;
+  double pole_margin(Direction direction, bool lower, bool upper) const;
+  bool rise_obliquely() const;
+  bool are_definite(double along_u, double along_v) const;
+  double spread(double along_u, double along_v) const;
+
+  const MapPiece& piece_;
+  const MapElement& element_;
+  const dvec4* points_;
+  const SeenPiece& seen_;
+  const Corners* values_;
+  double noise_;
+};
+
+}  // namespace taut
