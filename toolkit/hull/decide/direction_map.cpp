@@ -378,7 +378,9 @@ std::array<dvec3, 4> DirectionMap::corners(const MapCell& cell) {
   const double size = std::ldexp(2.0, -cell.level);
   std::array<dvec3, 4> result;
   for (std::uint32_t k = 0; k < 4; ++k) {
-    result[k] = direction(cell.face, -1 + size * (cell.i + k / 2), -1 + size * (cell.j + k % 2));
+    const std::uint32_t i = cell.i + k / 2;
+    const std::uint32_t j = cell.j + k % 2;
+    result[k] = direction(cell.face, -1 + size * i, -1 + size * j);
   }
   return result;
 }
