@@ -29,6 +29,8 @@ struct MapTopology {
   int contradictions = 0;
 };
 
+/// Puts the cells of a map together. What a side between two cells shows is told from its ends: two
+/// arcs that both cross one side, and that no cell tells, are missed.
 /// @pre the map is of the geometry @throws Cancelled
 MapTopology map_topology(const ContactGeometry& geometry, const DirectionMap& map,
                          const std::stop_token& stop = {});

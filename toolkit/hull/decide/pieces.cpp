@@ -189,7 +189,10 @@ void MapPieces::add_edge(const Contact& c) {
   const auto& ruled = geometry_.ruled_sides(c);
   // The contacts of a seam are those of the surface beside it, unless it has none.
   if (geometry_.piece(c).edge < 0 && !sides.empty()) return;
-  const BezierCurve curve = geometry_.curve(c);
+  BezierCurve curve = geometry_.curve(c);
+  if (is_polynomial(curve.points)) {
+    for (dvec4& p : curve.points) p = homogeneous(euclidean(p));
+  }
   MapElement element{c, !is_polynomial(curve.points), -1, {}, {}, {}, false};
   MapPiece root{int(elements_.size()),
                 {0, 1},
@@ -214,16 +217,17 @@ void MapPieces::add_edge(const Contact& c) {
 }
 
 void MapPieces::add_vertex(const Contact& c) {
-  const Part& part = geometry_.part(c);
-  const bool is_corner = c.element >= part.point_count();
-  MapPiece root{int(elements_.size()), {0, 0}, {0, 0}, {}, {}, {}, {-1, -1}, {-1, -1}};
+  MapPiece root;
+  root.element = int(elements_.size());
+  root.u = root.v = {0, 0};
   root.net = store({0, 0}, {homogeneous(geometry_.point(c))});
   for (const ContactGeometry::PieceEnd& end : geometry_.ends(c)) {
     root.inward.push_back(store({0, 0}, {dvec4(tangent_from(geometry_, c, end), 0)}));
   }
-  // A vertex at which only seams end lies on smooth surfaces, or on rulings.
-  (void)is_corner;
-  elements_.push_back({c, false, add(std::move(root), false), {}, {}, {}, false});
+  MapElement element;
+  element.contact = c;
+  element.root = add(std::move(root), false);
+  elements_.push_back(std::move(element));
 }
 
 std::array<int, 2> MapPieces::halves(int index, Direction across) {

@@ -38,8 +38,8 @@ struct MapElement {
   Contact contact;
   bool rational = false;
   int root = -1;
-  /// Indexed by Side, of a patch: the largest angle between the tangent planes of the two sides of
-  /// a smooth join.
+  /// Indexed by Side, of a patch: the largest angle between the tangent planes on the two sides of
+  /// a smooth join, as measured at some places.
   std::array<double, 4> kink = {};
   std::array<bool, 4> collapsed = {};  ///< sides that are one point
   /// Of an edge or vertex: the elements that MapPiece::inward belongs to, -1 for those without
