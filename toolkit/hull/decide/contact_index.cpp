@@ -4,7 +4,6 @@
 
 #include "taut/bounds/vector_net.h"
 #include "taut/core/disjoint_sets.h"
-#include "taut/hull/decide/corner_rings.h"
 
 namespace taut {
 namespace {

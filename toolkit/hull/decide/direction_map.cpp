@@ -101,8 +101,9 @@ class Decider {
         if (!tree.side(k, number, side)) continue;
         const auto other = nodes_.find(side.other);
         if (other == nodes_.end()) continue;
-        if (glm::length(glm::cross(node.normal, other->second.normal)) <=
-            std::ldexp(1.0, -options_.level_limit)) {
+        const dvec3& own = map_.cells[std::size_t(k)].normal;
+        const dvec3& beyond = map_.cells[std::size_t(side.other)].normal;
+        if (glm::length(glm::cross(own, beyond)) <= std::ldexp(1.0, -options_.level_limit)) {
           continue;
         }
         for (const int cell : {k, side.other}) {
@@ -205,7 +206,7 @@ class Decider {
     if (kind == MapCellKind::node) cell.normal = plane_of_three();
     for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
     if (kind == MapCellKind::facet || kind == MapCellKind::node) {
-      nodes_.emplace(int(map_.cells.size()), Node{cell.normal, pieces_left(), beacons});
+      nodes_.emplace(int(map_.cells.size()), Node{pieces_left(), beacons});
     }
     ++map_.statistics.of_kind[std::size_t(kind)];
     map_.statistics.deepest = std::max(map_.statistics.deepest, cell.level);
@@ -348,7 +349,6 @@ class Decider {
 
   /// What a node's cell is split with.
   struct Node {
-    dvec3 normal;
     std::vector<int> pieces;
     std::vector<dvec3> beacons;
   };

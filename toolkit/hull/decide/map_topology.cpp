@@ -133,8 +133,6 @@ class Assembly {
     } else if (crosses_a && crosses_b) {
       has_arc_[std::size_t(a)] = has_arc_[std::size_t(b)] = true;
       arcs_.unite(a, b);
-    } else if (crosses_a || crosses_b) {
-      ++result_.contradictions;
     }
   }
 

@@ -25,12 +25,12 @@ struct MapTopology {
   int regions = 0;
   std::vector<MapArc> arcs;
   std::vector<MapNode> nodes;
-  /// Cells that contradict each other: a side over which one sees two contacts and the other one.
-  int contradictions = 0;
 };
 
-/// Puts the cells of a map together. What a side between two cells shows is told from its ends: two
-/// arcs that both cross one side, and that no cell tells, are missed.
+/// Puts the cells of a map together. Where two contacts that one cell tells apart are one to that
+/// beside it, within the resolution, an arc ends in a node of its own. What a side between two
+/// cells shows is told from its ends: two arcs that both cross one side, and that no cell tells,
+/// are missed.
 /// @pre the map is of the geometry @throws Cancelled
 MapTopology map_topology(const ContactGeometry& geometry, const DirectionMap& map,
                          const std::stop_token& stop = {});
