@@ -176,7 +176,7 @@ TEST_P(InterruptHull, OfACage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Steps, InterruptHull,
-                         testing::Values("cull", "trace", "stitch", "sample", "mesh"),
+                         testing::Values("cull", "decide", "trace", "stitch", "sample", "mesh"),
                          [](const auto& step) { return std::string(step.param); });
 
 /// The teapot's hull, whose boundary is complete.

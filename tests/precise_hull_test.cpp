@@ -315,8 +315,9 @@ TEST(PreciseHull, OrderOfInstancesDoesNotMatter) {
 }
 
 /// What a hull took, but for the time.
-std::array<long, 5> efforts(const HullStatistics& s) {
-  return {s.support_queries, s.newton_iterations, s.cells, s.cells_kept, s.cells_searched};
+std::array<long, 6> efforts(const HullStatistics& s) {
+  return {s.support_queries, s.newton_iterations, s.cells,
+          s.cells_kept,      s.map_cells,         s.map_candidates};
 }
 
 /// The same hull, of the first of the copies, at the same effort.
@@ -357,10 +358,11 @@ TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
   SupportQuery query(scene);
   std::vector<Sample> more;
   HullStatistics all;
+  const DirectionMap directions = directions_of(geometry, told, culled);
   const HullBoundary whole = exact_boundary(scene, map, options(), all);
   for (int round = 0; round < 3; ++round) {
     HullStatistics own;
-    const HullBoundary boundary = exact_boundary(geometry, culling, told, own, more);
+    const HullBoundary boundary = exact_boundary(geometry, culling, directions, told, own, more);
     EXPECT_EQ(counts(boundary), counts(whole));
     if (round == 0) {
       EXPECT_EQ(own.support_queries + culled.support_queries, all.support_queries);
@@ -373,7 +375,7 @@ TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
   EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
 }
 
-/// Those of culling, of tracing and stitching, and of the refinement of cells between them.
+/// Those of culling, of the map of directions, of tracing and of stitching.
 TEST(ExactBoundary, CountsAllQueries) {
   const Scene scene = make_scene(teapot());
   const GaussMap map(scene, {.threads = 1, .progress = {}});
@@ -383,11 +385,14 @@ TEST(ExactBoundary, CountsAllQueries) {
   const Culling culling = culling_of(scene, map, options(), culled);
   const ContactGeometry geometry(scene);
   SupportQuery query(scene);
-  SeparatingGraph graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
-  const long refined = graph.support_queries;
-  EXPECT_GT(refined, 0);
-  stitch(geometry, query, std::move(graph), culling.cells);
-  EXPECT_EQ(statistics.support_queries, culled.support_queries + query.queries() + refined);
+  HullStatistics decided;
+  const DirectionMap directions = directions_of(geometry, options(), decided);
+  EXPECT_GT(decided.support_queries, 0);
+  stitch(geometry, query,
+         trace_separating_curves(geometry, query, culling.samples, culling.cells, directions),
+         culling.cells);
+  EXPECT_EQ(statistics.support_queries,
+            culled.support_queries + decided.support_queries + query.queries());
 }
 
 TEST(PreciseHull, Cancelled) {

@@ -43,8 +43,9 @@ taut::Report full_report() {
   report.mesh.distance_bound = 1.7976931348623157e308;
   report.mesh.files = {{"a.ply", 0}, {"b.stl", 0.1}};
   report.culling = {1000, 10, 2};
+  report.directions = {2000, 50, 3};
   report.queries = {7, 8};
-  report.seconds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 45.5};
+  report.seconds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 55.5};
   report.peak_bytes = 1L << 40;
   report.warnings = {{"open-border", "an \"open\" border"}};
   return report;
@@ -61,7 +62,7 @@ using Keys = std::vector<std::string>;
 TEST(Report, KeysOfTheContractInOrder) {
   const Json json = Json::parse(to_json(full_report()));
   EXPECT_EQ(keys(json), (Keys{"taut", "input", "method", "dimension", "hull", "mesh", "culling",
-                              "queries", "seconds", "peak_bytes", "warnings"}));
+                              "directions", "queries", "seconds", "peak_bytes", "warnings"}));
   EXPECT_EQ(keys(json["input"]),
             (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
   EXPECT_EQ(keys(json["hull"]),
@@ -72,9 +73,10 @@ TEST(Report, KeysOfTheContractInOrder) {
                                       "distance_bound", "files"}));
   for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
   EXPECT_EQ(keys(json["culling"]), (Keys{"leaves", "kept", "searched"}));
+  EXPECT_EQ(keys(json["directions"]), (Keys{"cells", "candidates", "undecided"}));
   EXPECT_EQ(keys(json["queries"]), (Keys{"support", "newton_iterations"}));
-  EXPECT_EQ(keys(json["seconds"]), (Keys{"read", "build", "sample", "cull", "trace", "stitch",
-                                         "mesh", "measure", "write", "total"}));
+  EXPECT_EQ(keys(json["seconds"]), (Keys{"read", "build", "sample", "cull", "decide", "trace",
+                                         "stitch", "mesh", "measure", "write", "total"}));
 }
 
 TEST(Report, ValuesRoundTrip) {
@@ -117,17 +119,19 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["mesh"]["files"][1]["file"], "b.stl");
   EXPECT_EQ(json["mesh"]["files"][1]["rounding"].get<double>(), 0.1);
   EXPECT_EQ(json["culling"], Json({{"leaves", 1000}, {"kept", 10}, {"searched", 2}}));
+  EXPECT_EQ(json["directions"], Json({{"cells", 2000}, {"candidates", 50}, {"undecided", 3}}));
   EXPECT_EQ(json["queries"], Json({{"support", 7}, {"newton_iterations", 8}}));
   EXPECT_EQ(json["seconds"]["read"], 1.0);
   EXPECT_EQ(json["seconds"]["build"], 2.0);
   EXPECT_EQ(json["seconds"]["sample"], 3.0);
   EXPECT_EQ(json["seconds"]["cull"], 4.0);
-  EXPECT_EQ(json["seconds"]["trace"], 5.0);
-  EXPECT_EQ(json["seconds"]["stitch"], 6.0);
-  EXPECT_EQ(json["seconds"]["mesh"], 7.0);
-  EXPECT_EQ(json["seconds"]["measure"], 8.0);
-  EXPECT_EQ(json["seconds"]["write"], 9.0);
-  EXPECT_EQ(json["seconds"]["total"], 45.5);
+  EXPECT_EQ(json["seconds"]["decide"], 5.0);
+  EXPECT_EQ(json["seconds"]["trace"], 6.0);
+  EXPECT_EQ(json["seconds"]["stitch"], 7.0);
+  EXPECT_EQ(json["seconds"]["mesh"], 8.0);
+  EXPECT_EQ(json["seconds"]["measure"], 9.0);
+  EXPECT_EQ(json["seconds"]["write"], 10.0);
+  EXPECT_EQ(json["seconds"]["total"], 55.5);
   EXPECT_EQ(json["peak_bytes"], 1L << 40);
   ASSERT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["warnings"][0]["code"], "open-border");

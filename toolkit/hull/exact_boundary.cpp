@@ -7,6 +7,14 @@
 #include "taut/hull/stitch/stitch.h"
 
 namespace taut {
+namespace {
+
+/// Pieces of a model that may be looked at for its map of directions, and how many more for each of
+/// its patches: twice what decides the slowest of generic models.
+constexpr long map_candidates = 600'000;
+constexpr long map_candidates_a_patch = 5'000;
+
+}  // namespace
 
 Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& options,
                    HullStatistics& statistics) {
@@ -24,19 +32,36 @@ Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& o
   return culling;
 }
 
+DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
+                           HullStatistics& statistics) {
+  const Stopwatch watch;
+  options.progress.update("decide", 0);
+  const Scene& scene = geometry.scene();
+  const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
+  DirectionMapOptions own;
+  own.resolution = scene.frame().length_to_frame(resolution.rho);
+  own.candidate_limit = map_candidates + map_candidates_a_patch * scene.patch_count();
+  own.stop = options.progress.stop;
+  DirectionMap map = direction_map(geometry, own);
+  statistics.map_cells += map.statistics.cells;
+  statistics.map_candidates += map.statistics.candidates;
+  statistics.map_undecided += map.statistics.of_kind[std::size_t(MapCellKind::undecided)];
+  statistics.support_queries += map.statistics.queries;
+  statistics.seconds_map += watch.seconds();
+  return map;
+}
+
 HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
-                            const HullOptions& options, HullStatistics& statistics,
-                            const std::vector<Sample>& more) {
+                            const DirectionMap& directions, const HullOptions& options,
+                            HullStatistics& statistics, const std::vector<Sample>& more) {
   Stopwatch watch;
   options.progress.update("trace", 0);
   std::vector<Sample> samples = culling.samples;
   samples.insert(samples.end(), more.begin(), more.end());
   SupportQuery query(geometry.scene(), options.progress.stop);
-  SeparatingGraph graph =
-      trace_separating_curves(geometry, query, samples, culling.cells, options.progress);
-  statistics.support_queries += graph.support_queries;
+  SeparatingGraph graph = trace_separating_curves(geometry, query, samples, culling.cells,
+                                                  directions, options.progress);
   statistics.newton_iterations += graph.newton_iterations;
-  statistics.cells_searched = graph.cells_searched;
   statistics.seconds_trace += watch.lap();
 
   options.progress.update("stitch", 0);
@@ -51,7 +76,8 @@ HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullO
                             HullStatistics& statistics) {
   const Culling culling = culling_of(scene, map, options, statistics);
   const ContactGeometry geometry(scene, options.progress.stop);
-  return exact_boundary(geometry, culling, options, statistics);
+  const DirectionMap directions = directions_of(geometry, options, statistics);
+  return exact_boundary(geometry, culling, directions, options, statistics);
 }
 
 }  // namespace taut

@@ -5,6 +5,7 @@
 #include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/gauss_map.h"
 #include "taut/hull/cull/culling.h"
+#include "taut/hull/decide/direction_map.h"
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/result/hull_options.h"
 #include "taut/hull/result/hull_statistics.h"
@@ -18,6 +19,13 @@ namespace taut {
 Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& options,
                    HullStatistics& statistics);
 
+/// The map of a scene's directions, at the resolution that the options or the model ask for. Where
+/// contacts all but tie it costs more than models do to decide it, and it is left undecided. Adds
+/// what it took to the statistics.
+/// @throws Cancelled
+DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
+                           HullStatistics& statistics);
+
 /// The exact boundary of a scene's convex hull: its separating curves traced, stitched. Adds what
 /// it took to the statistics.
 ///
@@ -25,15 +33,17 @@ Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& o
 /// more where coordinates are rounded to more (ContactGeometry::tie), by a support query each; so
 /// do the rulings of length zero in free ends, but where these are of no generic kind and
 /// extrapolated: there to within the third power of merge_distance (6e-8). Curves are sought
-/// between what culling samples and `more` samples. What could not be resolved is listed
-/// (HullBoundary::unresolved); a boundary without any is closed. Same result for any number of
-/// threads.
-/// @pre the culling is of the geometry's scene, which spans space (tolerances.h says what is flat)
+/// between what culling samples and `more` samples, and where the map of directions tells them.
+/// What could not be resolved is listed (HullBoundary::unresolved); a boundary without any is
+/// closed. Same result for any number of threads.
+/// @pre the culling and the map are of the geometry's scene, which spans space (tolerances.h says
+/// what is flat)
 /// @throws Cancelled
 HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
-                            const HullOptions& options, HullStatistics& statistics,
-                            const std::vector<Sample>& more = {});
-/// The boundary from the beginning: culling first. @pre the map is the scene's, which spans space
+                            const DirectionMap& directions, const HullOptions& options,
+                            HullStatistics& statistics, const std::vector<Sample>& more = {});
+/// The boundary from the beginning: culling and the map of directions first. @pre the map is the
+/// scene's, which spans space
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
                             HullStatistics& statistics);
 

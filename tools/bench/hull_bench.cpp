@@ -105,6 +105,7 @@ void structure(benchmark::State& state) {
     return benchmark::Counter(1e3 * seconds, benchmark::Counter::kAvgIterations);
   };
   state.counters["cull_ms"] = milliseconds(statistics.seconds_cull);
+  state.counters["decide_ms"] = milliseconds(statistics.seconds_map);
   state.counters["trace_ms"] = milliseconds(statistics.seconds_trace);
   state.counters["stitch_ms"] = milliseconds(statistics.seconds_stitch);
   state.counters["queries"] =

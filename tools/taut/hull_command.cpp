@@ -270,13 +270,15 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   report.subdivision = subdivision(input.model());
   const HullStatistics& statistics = hull.statistics;
   if (statistics.cells > 0) {
-    report.culling = {statistics.cells, statistics.cells_kept, statistics.cells_searched};
+    report.culling = {statistics.cells, statistics.cells_kept, statistics.map_undecided};
+    report.directions = {statistics.map_cells, statistics.map_candidates, statistics.map_undecided};
   }
   report.queries = {statistics.support_queries, statistics.newton_iterations};
   report.seconds.read = input.seconds_read();
   report.seconds.build = input.seconds_build() + statistics.seconds_gauss_map;
   report.seconds.sample = statistics.seconds_sample;
   report.seconds.cull = statistics.seconds_cull;
+  report.seconds.decide = statistics.seconds_map;
   report.seconds.trace = statistics.seconds_trace;
   report.seconds.stitch = statistics.seconds_stitch;
   report.seconds.mesh = statistics.seconds_mesh;
@@ -326,9 +328,10 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
                                      " of the diagonal");
   text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
                               number(s.build, 2) + ", sample " + number(s.sample, 2) + ", cull " +
-                              number(s.cull, 2) + ", trace " + number(s.trace, 2) + ", stitch " +
-                              number(s.stitch, 2) + ", mesh " + number(s.mesh, 2) + ", measure " +
-                              number(s.measure, 2) + ", write " + number(s.write, 2));
+                              number(s.cull, 2) + ", decide " + number(s.decide, 2) + ", trace " +
+                              number(s.trace, 2) + ", stitch " + number(s.stitch, 2) + ", mesh " +
+                              number(s.mesh, 2) + ", measure " + number(s.measure, 2) + ", write " +
+                              number(s.write, 2));
   for (const Report::Mesh::File& file : report.mesh.files) {
     if (file.rounding == 0) continue;
     text += line("rounding", "to float moved vertices of " + file.file + " by at most " +

@@ -24,18 +24,17 @@ CellTree::Key CellTree::key(int face, int level, std::uint32_t i, std::uint32_t 
   return (Key(face) << 61) ^ (Key(level) << 56) ^ (Key(i) << 28) ^ Key(j);
 }
 
+int CellTree::at(const dvec3& d) const {
+  const DirectionMap::Place place = DirectionMap::place(d);
+  return at(place.face, place.s, place.t);
+}
+
 int CellTree::at(int face, double s, double t) const {
   if (std::abs(s) > 1 || std::abs(t) > 1) {
-    const dvec3 d = DirectionMap::direction(face, s, t);
-    for (int other = 0; other < 6; ++other) {
-      const dvec3 own = DirectionMap::direction(other, 0, 0);
-      const double height = glm::dot(d, own);
-      if (height <= 0) continue;
-      s = glm::dot(d, DirectionMap::direction(other, 1, 0) - own) / height;
-      t = glm::dot(d, DirectionMap::direction(other, 0, 1) - own) / height;
-      face = other;
-      if (std::abs(s) <= 1 && std::abs(t) <= 1) break;
-    }
+    const auto [other, first, second] = DirectionMap::place(DirectionMap::direction(face, s, t));
+    face = other;
+    s = first;
+    t = second;
   }
   for (int level = 0; level <= deepest_; ++level) {
     const double count = std::ldexp(1.0, level);

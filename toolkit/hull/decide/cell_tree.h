@@ -17,6 +17,9 @@ class CellTree {
   /// there is none.
   int at(int face, double s, double t) const;
 
+  /// The cell that holds a direction; -1 if there is none.
+  int at(const dvec3& d) const;
+
   /// The cell beyond a corner of a cell, -1 if there is none.
   int at_corner(int cell, int number) const;
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/support_query.h"
@@ -58,7 +61,8 @@ FaceAxes face_axes(int face) {
   return {face % 2 == 0 ? e[own] : -e[own], e[(own + 1) % 3], e[(own + 2) % 3]};
 }
 
-/// Decides the cells of faces one after the other, depth first.
+/// Decides cells level by level, so that what costs too much to be decided takes nothing from the
+/// rest.
 class Decider {
  public:
   Decider(const ContactGeometry& geometry, const DirectionMapOptions& options)
@@ -74,12 +78,15 @@ class Decider {
     for (const MapElement& e : pieces_.elements()) {
       if (!e.covered) all.push_back(e.root);
     }
+    const auto whole = std::make_shared<const std::vector<int>>(std::move(all));
     for (int face = 0; face < 6; ++face) {
-      axes_ = face_axes(face);
-      decide({face, 0, 0, 0, MapCellKind::undecided, {}, {}}, all, {}, {});
+      waiting_.push_back({{face, 0, 0, 0, MapCellKind::undecided, {}, {}, {}}, whole, {}, {}});
     }
-    while (map_.statistics.cells < options_.cell_limit && split_nodes_beside_others()) {
-    }
+    do {
+      decide_waiting();
+    } while (!is_spent() && split_nodes_beside_others());
+    std::sort(map_.cells.begin(), map_.cells.end(), comes_before);
+    map_.resolution = options_.resolution;
     map_.statistics.queries = query_.queries();
     map_.statistics.candidates = view_.looked();
     return std::move(map_);
@@ -88,6 +95,42 @@ class Decider {
  private:
   /// Heights are differences of two support values, and of sums of some coefficients.
   static constexpr double noise_units = 4;
+
+  /// A cell that is to be decided, with what is known of it.
+  struct Waiting {
+    MapCell cell;
+    std::shared_ptr<const std::vector<int>> pieces;
+    std::vector<dvec3> beacons;
+    Contact hint;
+  };
+
+  /// By face, and along a Z-shaped curve: where two cells part first, at the coarsest.
+  static bool comes_before(const MapCell& a, const MapCell& b) {
+    if (a.face != b.face) return a.face < b.face;
+    const int level = std::min(a.level, b.level);
+    const std::uint32_t ai = a.i >> (a.level - level);
+    const std::uint32_t bi = b.i >> (b.level - level);
+    const std::uint32_t aj = a.j >> (a.level - level);
+    const std::uint32_t bj = b.j >> (b.level - level);
+    const std::uint32_t off_i = ai ^ bi;
+    const std::uint32_t off_j = aj ^ bj;
+    // The highest bit in which they differ decides; of equal ones that of i.
+    return off_i >= off_j || (off_i ^ off_j) < off_i ? ai < bi : aj < bj;
+  }
+
+  bool is_spent() const {
+    return map_.statistics.cells >= options_.cell_limit ||
+           view_.looked() >= options_.candidate_limit;
+  }
+
+  void decide_waiting() {
+    while (!waiting_.empty()) {
+      Waiting next = std::move(waiting_.front());
+      waiting_.pop_front();
+      axes_ = face_axes(next.cell.face);
+      decide(std::move(next));
+    }
+  }
 
   /// Two cells side by side with a node each, or what may be one: what is between is not told yet.
   /// Splits both, but for cells of one facet.
@@ -121,8 +164,7 @@ class Decider {
       const auto node = nodes.find(int(k));
       if (splits[k]) {
         --map_.statistics.of_kind[std::size_t(before[k].kind)];
-        axes_ = face_axes(before[k].face);
-        split(before[k], node->second.pieces, node->second.beacons, {});
+        split(before[k], std::move(node->second.pieces), node->second.beacons, {});
         continue;
       }
       if (node != nodes.end()) nodes_.emplace(int(map_.cells.size()), std::move(node->second));
@@ -131,17 +173,21 @@ class Decider {
     return true;
   }
 
-  void split(const MapCell& cell, const std::vector<int>& list, const std::vector<dvec3>& beacons,
+  void split(const MapCell& cell, std::vector<int> pieces, const std::vector<dvec3>& beacons,
              const Contact& hint) {
+    const auto shared = std::make_shared<const std::vector<int>>(std::move(pieces));
     for (std::uint32_t k = 0; k < 4; ++k) {
-      decide({cell.face,
-              cell.level + 1,
-              2 * cell.i + k / 2,
-              2 * cell.j + k % 2,
-              MapCellKind::undecided,
-              {},
-              {}},
-             list, beacons, hint);
+      waiting_.push_back({{cell.face,
+                           cell.level + 1,
+                           2 * cell.i + k / 2,
+                           2 * cell.j + k % 2,
+                           MapCellKind::undecided,
+                           {},
+                           {},
+                           {}},
+                          shared,
+                          beacons,
+                          hint});
     }
   }
 
@@ -151,16 +197,18 @@ class Decider {
     return left;
   }
 
-  void decide(MapCell cell, const std::vector<int>& list, std::vector<dvec3> beacons,
-              Contact hint) {
+  void decide(Waiting&& waiting) {
     check_stop(options_.stop);
+    auto& [cell, pieces, beacons, hint] = waiting;
+    if (is_spent()) return leave(std::move(cell));
     ++map_.statistics.cells;
     const std::array<dvec3, 4> d = DirectionMap::corners(cell);
     const Support support = query_(unit(d[0] + d[3]), hint);
+    cell.contact = support.contact;
     beacons.push_back(support.point);
     while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
     view_.turn_to(d, support.point, beacons);
-    for (const int piece : list) view_.look(piece);
+    for (const int piece : *pieces) view_.look(piece);
     view_.finish();
     std::optional<MapCellKind> kind = decided();
     // Of three contacts one may not reach the others: finer pieces tell.
@@ -168,9 +216,7 @@ class Decider {
     for (int round = 0; round < refinement_limit && !is_settled() && view_.refine(); ++round) {
       kind = decided();
     }
-    const bool goes_on =
-        cell.level < options_.level_limit && map_.statistics.cells < options_.cell_limit;
-    if (!kind && !goes_on) kind = MapCellKind::undecided;
+    if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
     split(cell, pieces_left(), beacons, support.contact);
@@ -200,9 +246,18 @@ class Decider {
     }
   }
 
+  /// As there is no time for it.
+  void leave(MapCell&& cell) {
+    ++map_.statistics.of_kind[std::size_t(MapCellKind::undecided)];
+    map_.cells.push_back(std::move(cell));
+  }
+
   void finish(MapCell& cell, MapCellKind kind, const std::vector<dvec3>& beacons) {
     cell.kind = kind;
-    if (kind == MapCellKind::facet) cell.normal = facet_normal_;
+    if (kind == MapCellKind::facet) {
+      cell.normal = facet_normal_;
+      cell.width = facet_width_;
+    }
     if (kind == MapCellKind::node) cell.normal = plane_of_three();
     for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
     if (kind == MapCellKind::facet || kind == MapCellKind::node) {
@@ -302,6 +357,7 @@ class Decider {
     if (std::abs(glm::dot(off, axes_.first)) > facet_reach) return false;
     if (std::abs(glm::dot(off, axes_.second)) > facet_reach) return false;
     facet_normal_ = n;
+    facet_width_ = glm::length(glm::cross(beside, along));
     return true;
   }
 
@@ -363,7 +419,9 @@ class Decider {
   FaceAxes axes_;
   DirectionMap map_;
   std::map<int, Node> nodes_;  // by cell
+  std::deque<Waiting> waiting_;
   dvec3 facet_normal_ = dvec3(0.0);
+  double facet_width_ = 0;
   std::vector<dvec3> points_;  // scratch
 };
 
@@ -372,6 +430,19 @@ class Decider {
 dvec3 DirectionMap::direction(int face, double s, double t) {
   const FaceAxes axes = face_axes(face);
   return axes.own + s * axes.first + t * axes.second;
+}
+
+DirectionMap::Place DirectionMap::place(const dvec3& d) {
+  Place place;
+  double highest = 0;
+  for (int face = 0; face < 6; ++face) {
+    const FaceAxes axes = face_axes(face);
+    const double height = glm::dot(d, axes.own);
+    if (!(height > highest)) continue;
+    highest = height;
+    place = {face, glm::dot(d, axes.first) / height, glm::dot(d, axes.second) / height};
+  }
+  return place;
 }
 
 std::array<dvec3, 4> DirectionMap::corners(const MapCell& cell) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -30,8 +31,13 @@ struct MapCell {
   /// Boxes of what may touch, in the scene's frame, one for each contact that is told apart; none
   /// where there was too much to look at.
   std::vector<Box> contacts;
+  /// Supports in the direction of the middle of the cell's corners; none if the cell was not looked
+  /// at.
+  Contact contact = {};
   /// kinds node and facet: normal of the plane that touches all of them, about, outwards.
   dvec3 normal = dvec3(0.0);
+  /// kind facet: how far what touches the plane reaches from a line in it, at least.
+  double width = 0;
 };
 
 struct DirectionMapStatistics {
@@ -48,24 +54,38 @@ struct DirectionMap {
   /// The cells that are not split, which cover the sphere; by face, and along a Z-shaped curve.
   std::vector<MapCell> cells;
   DirectionMapStatistics statistics;
+  double resolution = 0;  ///< at which it is decided, in the scene's frame
+
+  /// Two contacts no farther from each other than this may be one, though a cell tells them apart:
+  /// on a surface that curves as much as the scene, of size one, is large, heights of one contact
+  /// differ over so much by no more than the resolution.
+  double contact_extent() const { return std::sqrt(resolution); }
 
   /// Directions of the corners of a cell in the order (0, 0), (0, 1), (1, 0), (1, 1) of its axes,
   /// on a cube that is turned so that what models are symmetric in is nothing to it.
   static std::array<dvec3, 4> corners(const MapCell& cell);
   /// A point of a face of the cube, with coordinates in [-1, 1].
   static dvec3 direction(int face, double s, double t);
+  /// Where a direction meets the cube.
+  struct Place {
+    int face = 0;
+    double s = 0, t = 0;
+  };
+  static Place place(const dvec3& d);
 };
 
 struct DirectionMapOptions {
   /// In the scene's frame: what is nearer than this may be taken for one. > 0
   double resolution = 0;
-  /// Levels of cells, and cells, after which what is left stays undecided.
+  /// Levels of cells, cells, and pieces of the model looked at in them, after which what is left
+  /// stays undecided.
   int level_limit = 20;
   long cell_limit = 1'000'000;
+  long candidate_limit = 1'000'000'000;
   std::stop_token stop;
 };
 
-/// Splits cells until each is decided, or at the limit of levels.
+/// Splits cells, level by level, until each is decided or a limit is reached.
 ///
 /// A cell keeps the pieces of the model that may touch a plane with a normal in it: of patches
 /// those where the heights x . d grow in no one direction for all d of the cell, of edges those

@@ -5,6 +5,7 @@
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/cull/culling.h"
+#include "taut/hull/decide/direction_map.h"
 #include "taut/hull/result/sample.h"
 
 namespace taut {
@@ -40,11 +41,6 @@ struct SeparatingGraph {
   std::vector<FacetNode> nodes;
   std::vector<Unresolved> unresolved;
   long newton_iterations = 0;
-  /// Of the refinement of cells; those of the caller's query are counted there.
-  long support_queries = 0;
-  /// Cells, of the finest that were looked at, which are neither proven on nor off and which no
-  /// known contact accounts for; in them curves were sought in vain.
-  long cells_searched = 0;
   /// The search was given up since it took too many cells of support queries, as `unresolved` tells
   /// (not since too much of it failed): there may be much that it has not come to.
   bool exhausted = false;
@@ -58,14 +54,12 @@ struct SeparatingGraph {
 /// The same where a side of a mixed cell leads from a point that supports to one that does not, and
 /// on small circles about the normals of poles that support.
 ///
-/// Mixed cells through which no curve runs by then are refined: their quarters are proven on or
-/// off, or a curve is found across their sides, and so on for those that are left as long as they
-/// become fewer; in the last of them, where curvature does not exclude it, free ends of the hull
-/// are sought. A curve can be missed only there, and in cells that other curves cross.
+/// In the end curves are sought in all cells of the map in which contacts exchange and that none
+/// crosses by then. One can be missed only where the map is not decided.
 /// @throws Cancelled
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
                                         const std::vector<CulledCell>& cells,
-                                        const Progress& progress = {});
+                                        const DirectionMap& map, const Progress& progress = {});
 
 }  // namespace taut

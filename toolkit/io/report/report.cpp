@@ -61,10 +61,10 @@ ReportJson to_json(const Report::Queries& queries) {
 }
 
 ReportJson to_json(const Report::Seconds& seconds) {
-  return {{"read", seconds.read},  {"build", seconds.build},     {"sample", seconds.sample},
-          {"cull", seconds.cull},  {"trace", seconds.trace},     {"stitch", seconds.stitch},
-          {"mesh", seconds.mesh},  {"measure", seconds.measure}, {"write", seconds.write},
-          {"total", seconds.total}};
+  return {{"read", seconds.read},     {"build", seconds.build},   {"sample", seconds.sample},
+          {"cull", seconds.cull},     {"decide", seconds.decide}, {"trace", seconds.trace},
+          {"stitch", seconds.stitch}, {"mesh", seconds.mesh},     {"measure", seconds.measure},
+          {"write", seconds.write},   {"total", seconds.total}};
 }
 
 ReportJson to_json(const std::vector<Warning>& warnings) {
@@ -88,6 +88,11 @@ std::string to_json(const Report& report) {
     json["culling"] = {{"leaves", report.culling->leaves},
                        {"kept", report.culling->kept},
                        {"searched", report.culling->searched}};
+  }
+  if (report.directions) {
+    json["directions"] = {{"cells", report.directions->cells},
+                          {"candidates", report.directions->candidates},
+                          {"undecided", report.directions->undecided}};
   }
   json["queries"] = to_json(report.queries);
   json["seconds"] = to_json(report.seconds);

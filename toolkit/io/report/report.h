@@ -57,6 +57,12 @@ struct Report {
     long leaves = 0, kept = 0, searched = 0;
   };
   std::optional<Culling> culling;
+  /// Cells of the map of directions, pieces of the model looked at in them, and cells that were not
+  /// decided. None where there is no map.
+  struct Directions {
+    long cells = 0, candidates = 0, undecided = 0;
+  };
+  std::optional<Directions> directions;
   /// Faces of control cages whose surface is no single polynomial, and those of them that were
   /// refined since they may touch the hull; what is left changes the support function by no more
   /// than the bound. None where there are no cages.
@@ -69,8 +75,8 @@ struct Report {
     long support = 0, newton_iterations = 0;
   } queries;
   struct Seconds {
-    double read = 0, build = 0, sample = 0, cull = 0, trace = 0, stitch = 0, mesh = 0;
-    double measure = 0, write = 0, total = 0;
+    double read = 0, build = 0, sample = 0, cull = 0, decide = 0, trace = 0, stitch = 0;
+    double mesh = 0, measure = 0, write = 0, total = 0;
   } seconds;
   long peak_bytes = 0;
   std::vector<Warning> warnings;

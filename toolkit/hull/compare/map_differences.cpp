@@ -1,0 +1,214 @@
+#include "taut/hull/compare/map_differences.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "taut/hull/mesh/contact_faces.h"
+#include "taut/hull/trace/map_crossings.h"
+#include "taut/hull/trace/map_support.h"
+
+namespace taut {
+namespace {
+
+/// How far places between two rulings of an arc may be from the segments between theirs, as a share
+/// of the distance between the two.
+constexpr double chord_share = 0.25;
+/// Places looked at between two rulings; the share is wider than what is between these.
+constexpr int chord_steps = 4;
+/// Halvings of the angle between two directions until they are one.
+constexpr int parting_halvings = 50;
+/// Spots told, at most.
+constexpr std::size_t spot_limit = 16;
+
+double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
+  const dvec3 along = b - a;
+  const double square = glm::dot(along, along);
+  const double t = square > 0 ? std::clamp(glm::dot(x - a, along) / square, 0.0, 1.0) : 0;
+  return glm::distance(x, a + t * along);
+}
+
+class Comparison {
+ public:
+  Comparison(const ContactGeometry& geometry, SupportQuery& query, const DirectionMap& map,
+             const HullBoundary& boundary)
+      : geometry_(geometry),
+        query_(query),
+        map_(map),
+        boundary_(boundary),
+        faces_(geometry, boundary),
+        crossings_(map),
+        support_(geometry, query, map) {}
+
+  MapDifferences run() {
+    for (const SeparatingArc& arc : boundary_.arcs) crossings_.add(arc);
+    gather_points();
+    compare_rulings();
+    for (std::size_t k = 0; k < map_.cells.size() && found_.spots.size() < spot_limit; ++k) {
+      const MapCell& cell = map_.cells[k];
+      if (cell.kind == MapCellKind::undecided) continue;
+      compare_middle(cell);
+      if (cell.kind == MapCellKind::arc || cell.kind == MapCellKind::node) {
+        if (!crossings_.crosses(int(k))) compare_curves(cell);
+      } else if (cell.kind == MapCellKind::facet) {
+        compare_facet(cell);
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void tell(const SupportSample& at, const char* reason) {
+    found_.samples.push_back({at.n, at.contact});
+    const bool known = std::any_of(found_.spots.begin(), found_.spots.end(), [&](const auto& u) {
+      return u.reason == reason && glm::distance(u.n, at.n) < same_spot;
+    });
+    if (!known) found_.spots.push_back({at.n, reason});
+  }
+
+  void gather_points() {
+    for (const HullCurve& curve : boundary_.curves) {
+      points_.insert(points_.end(), curve.points.begin(), curve.points.end());
+    }
+    for (const HullFace& face : boundary_.faces) {
+      points_.insert(points_.end(), face.points.begin(), face.points.end());
+    }
+    for (const SeparatingArc& arc : boundary_.arcs) {
+      for (const ArcPiece& piece : arc.pieces) {
+        for (const Ruling& r : piece.rulings) {
+          points_.push_back(r.point[0]);
+          points_.push_back(r.point[1]);
+        }
+      }
+    }
+  }
+
+  /// Both contacts of a ruling lie in one plane.
+  void compare_rulings() {
+    for (const SeparatingArc& arc : boundary_.arcs) {
+      for (const ArcPiece& piece : arc.pieces) {
+        for (const Ruling& r : piece.rulings) {
+          if (std::abs(glm::dot(r.point[0] - r.point[1], r.n)) <= map_.resolution) continue;
+          tell({r.n, r.contact[0], r.point[0]}, "a ruling lies in no supporting plane");
+        }
+      }
+    }
+  }
+
+  /// Places of the boundary's curves that come within the resolution of the plane.
+  std::size_t places_at(const dvec3& n, double h, std::size_t enough) const {
+    std::size_t count = 0;
+    for (const dvec3& x : points_) {
+      if (glm::dot(x, n) < h - near * map_.resolution) continue;
+      if (++count == enough) break;
+    }
+    return count;
+  }
+
+  void compare_middle(const MapCell& cell) {
+    const Contact& c = cell.contact;
+    if (c.instance < 0 || !faces_.surely_uncovered(c)) return;
+    const std::array<dvec3, 4> d = DirectionMap::corners(cell);
+    const dvec3 n = unit(d[0] + d[3]);
+    const dvec3 x = geometry_.point(c);
+    if (places_at(n, glm::dot(x, n), 1) > 0) return;
+    tell({n, c, x}, "a support point lies on no face that was found");
+  }
+
+  /// The two directions next to each other, on the great arc between two of which different
+  /// contacts support, at which these exchange.
+  std::array<SupportSample, 2> exchange(SupportSample a, SupportSample b) {
+    for (int k = 0; k < parting_halvings; ++k) {
+      const dvec3 n = unit(a.n + b.n);
+      if (n == a.n || n == b.n) break;
+      const SupportSample middle = seen(geometry_, query_, n, a.contact);
+      (glm::distance(middle.x, a.x) <= glm::distance(middle.x, b.x) ? a : b) = middle;
+    }
+    return {a, b};
+  }
+
+  void compare_curves(const MapCell& cell) {
+    for (const auto& [from, to] : support_.partings(cell)) {
+      const auto [a, b] = exchange(from, to);
+      if (glm::distance(a.x, b.x) <= map_.contact_extent()) continue;
+      if (is_on_arc(a.n, a.x, b.x)) continue;
+      if (is_in_facet(a.n, a.x, b.x)) continue;
+      tell(a, "a separating curve that the map of directions tells was not found");
+      tell(b, "a separating curve that the map of directions tells was not found");
+    }
+  }
+
+  /// A scroll runs over the directions and both of the places, be they inside of a ruling: contacts
+  /// may lie in line.
+  bool is_on_arc(const dvec3& n, const dvec3& a, const dvec3& b) const {
+    return std::any_of(boundary_.arcs.begin(), boundary_.arcs.end(), [&](const auto& arc) {
+      return std::any_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
+        for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
+          if (is_between(piece.rulings[k - 1], piece.rulings[k], n, a, b)) return true;
+        }
+        return false;
+      });
+    });
+  }
+
+  bool is_between(const Ruling& from, const Ruling& to, const dvec3& n, const dvec3& a,
+                  const dvec3& b) const {
+    const double turn = glm::distance(from.n, to.n);
+    const double way = std::max(glm::distance(from.point[0], to.point[0]),
+                                glm::distance(from.point[1], to.point[1]));
+    const double slack = map_.contact_extent();
+    const double turn_slack = chord_share * turn + slack;
+    const double way_slack = chord_share * way + slack;
+    if (glm::distance(n, from.n) > turn + turn_slack) return false;
+    for (int step = 0; step <= chord_steps; ++step) {
+      const double t = double(step) / chord_steps;
+      if (glm::distance(n, glm::mix(from.n, to.n, t)) > turn_slack) continue;
+      const dvec3 first = glm::mix(from.point[0], to.point[0], t);
+      const dvec3 second = glm::mix(from.point[1], to.point[1], t);
+      if (distance_to_segment(a, first, second) <= way_slack &&
+          distance_to_segment(b, first, second) <= way_slack) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool is_in_facet(const dvec3& n, const dvec3& a, const dvec3& b) const {
+    return std::any_of(boundary_.faces.begin(), boundary_.faces.end(), [&](const HullFace& face) {
+      if (face.kind != FaceKind::facet || glm::dot(face.n, n) <= 0) return false;
+      const double low = std::min(glm::dot(face.n, a), glm::dot(face.n, b));
+      return low >= face.offset - near * map_.resolution;
+    });
+  }
+
+  /// Surfaces are flat to within the resolution over so much.
+  void compare_facet(const MapCell& cell) {
+    if (cell.width <= 2 * map_.contact_extent()) return;
+    const SupportSample s = seen(geometry_, query_, cell.normal, cell.contact);
+    if (places_at(s.n, glm::dot(s.x, s.n), 3) >= 3) return;
+    tell(s, "a facet that the map of directions tells was not found");
+  }
+
+  /// In units of the resolution: either answer is right nearer than this.
+  static constexpr double near = 4;
+  static constexpr double same_spot = 1e-6;
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  const DirectionMap& map_;
+  const HullBoundary& boundary_;
+  ContactFaces faces_;
+  MapCrossings crossings_;
+  MapSupport support_;
+  std::vector<dvec3> points_;
+  MapDifferences found_;
+};
+
+}  // namespace
+
+MapDifferences map_differences(const ContactGeometry& geometry, SupportQuery& query,
+                               const DirectionMap& map, const HullBoundary& boundary) {
+  return Comparison(geometry, query, map, boundary).run();
+}
+
+}  // namespace taut
