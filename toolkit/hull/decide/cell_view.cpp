@@ -23,15 +23,25 @@ void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
   q_ = q;
   beacons_.clear();
   for (const dvec3& b : beacons) beacons_.push_back(heights({b, 1}, q_, d_));
+  envelope_.find(beacons_);
   seen_.clear();
   values_.clear();
   highest_ = {};
 }
 
-bool CellView::is_beaten(const Corners& top) const {
-  return std::any_of(beacons_.begin(), beacons_.end(), [&](const Corners& b) {
-    return top[0] < b[0] - noise_ && top[1] < b[1] - noise_ && top[2] < b[2] - noise_ &&
-           top[3] < b[3] - noise_;
+/// Its control points are below the envelope of the beacons.
+bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
+  const auto& corners = envelope_.vertices();
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (!(seen.top[c] < corners[c].height - noise_)) return false;
+  }
+  const dvec4* p = pieces_.points(piece.net);
+  const Corners* y = values(seen);
+  return std::all_of(corners.begin() + 4, corners.end(), [&](const BeaconEnvelope::Vertex& v) {
+    for (int k = 0; k < piece.net.shape.size(); ++k) {
+      if (!(height_at(y[k], v.s, v.t) < (v.height - noise_) * p[k].w)) return false;
+    }
+    return true;
   });
 }
 
@@ -52,7 +62,7 @@ void CellView::look(int index) {
       seen.low[c] = std::min(seen.low[c], y[c] * scale);
     }
   }
-  if (is_beaten(seen.top)) {
+  if (is_beaten(seen, piece)) {
     values_.resize(seen.values);
   } else {
     seen_.push_back(seen);

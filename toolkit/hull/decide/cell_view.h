@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "taut/hull/decide/beacon_envelope.h"
 #include "taut/hull/decide/pieces.h"
 #include "taut/hull/decide/seen_piece.h"
 
@@ -23,7 +24,10 @@ class CellView {
   const std::array<dvec3, 4>& corners() const { return d_; }
   const dvec3& q() const { return q_; }
 
-  /// Looks at a piece: drops it if one of the beacons is above all of it in all directions.
+  /// A beacon is the highest of them for some direction of the cell.
+  bool is_highest(std::size_t beacon) const { return envelope_.is_highest(beacon); }
+
+  /// Looks at a piece: drops it if for each direction one of the beacons is above all of it.
   void look(int piece);
   /// Once all pieces have been looked at: drops those that no plane can touch.
   void finish();
@@ -43,7 +47,7 @@ class CellView {
   long looked() const { return looked_; }
 
  private:
-  bool is_beaten(const Corners& top) const;
+  bool is_beaten(const SeenPiece& seen, const MapPiece& piece) const;
   bool rises_inward(const SeenPiece& seen) const;
 
   MapPieces& pieces_;
@@ -51,6 +55,7 @@ class CellView {
   std::array<dvec3, 4> d_ = {};
   dvec3 q_ = dvec3(0.0);
   std::vector<Corners> beacons_;
+  BeaconEnvelope envelope_;
   std::vector<SeenPiece> seen_;
   std::vector<SeenPiece> before_;  // scratch
   std::vector<Corners> values_;

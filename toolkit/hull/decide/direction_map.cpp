@@ -20,7 +20,7 @@ namespace taut {
 namespace {
 
 /// Support points of cells above that are compared with.
-constexpr std::size_t beacon_limit = 12;
+constexpr std::size_t beacon_limit = 20;
 /// Branches of which each adds a point.
 constexpr std::size_t branch_beacons = 4;
 /// Rounds of splitting pieces in a cell before it is split.
@@ -208,6 +208,7 @@ class Decider {
     beacons.push_back(support.point);
     while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
     view_.turn_to(d, support.point, beacons);
+    drop_low(beacons);
     for (const int piece : *pieces) view_.look(piece);
     view_.finish();
     std::optional<MapCellKind> kind = decided();
@@ -222,27 +223,41 @@ class Decider {
     split(cell, pieces_left(), beacons, support.contact);
   }
 
-  /// The highest corner of a piece of each branch, in the cell's middle: what surpasses the rest of
-  /// the branch, though it may not support itself.
+  /// Points that are nowhere the highest in a cell are so nowhere in its quarters.
+  void drop_low(std::vector<dvec3>& beacons) const {
+    std::vector<dvec3> left;
+    for (std::size_t k = 0; k < beacons.size(); ++k) {
+      if (view_.is_highest(k)) left.push_back(beacons[k]);
+    }
+    beacons.swap(left);
+  }
+
+  /// For each corner of the cell the highest corner of a piece of each branch: what surpasses the
+  /// rest of the branch, or of others, though it may not support itself.
   void add_branch_points(std::vector<dvec3>& beacons) {
     if (branches_.all().size() > branch_beacons) return;
     for (const Branch& branch : branches_.all()) {
-      double highest = -infinity;
-      dvec3 best(0.0);
+      Corners highest;
+      highest.fill(-infinity);
+      std::array<dvec3, 4> best = {};
       for (const int chart : branch.charts) {
         for (const int k : branches_.chart(chart).pieces) {
-          const StoredNet& net = pieces_.piece(view_.seen()[std::size_t(k)].piece).net;
+          const SeenPiece& seen = view_.seen()[std::size_t(k)];
+          const StoredNet& net = pieces_.piece(seen.piece).net;
           const int p = net.shape.p;
           const int q = net.shape.q;
           for (const int corner : {0, q, p * (q + 1), p * (q + 1) + q}) {
-            const dvec3 x = euclidean(pieces_.points(net)[corner]);
-            const double h = glm::dot(x, view_.corners()[0] + view_.corners()[3]);
-            if (h > highest) best = x;
-            highest = std::max(highest, h);
+            const dvec4& x = pieces_.points(net)[corner];
+            for (std::size_t c = 0; c < 4; ++c) {
+              const double h = view_.values(seen)[corner][c] / x.w;
+              if (h <= highest[c]) continue;
+              highest[c] = h;
+              best[c] = euclidean(x);
+            }
           }
         }
       }
-      beacons.push_back(best);
+      beacons.insert(beacons.end(), best.begin(), best.end());
     }
   }
 
