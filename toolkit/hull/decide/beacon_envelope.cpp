@@ -19,8 +19,7 @@ void BeaconEnvelope::find(std::span<const Corners> points) {
       if (j == i) continue;
       Corners above;
       for (std::size_t c = 0; c < 4; ++c) above[c] = points[i][c] - points[j][c];
-      const bool equal =
-          std::all_of(above.begin(), above.end(), [](double x) { return x == 0; });
+      const bool equal = std::all_of(above.begin(), above.end(), [](double x) { return x == 0; });
       is_left = equal ? i < j : clip(above, int(j));
     }
     if (!is_left) continue;
@@ -43,8 +42,8 @@ bool BeaconEnvelope::clip(const Corners& above, int line) {
     if (over_[k] >= 0) clipped_.push_back(p);
     if ((over_[k] >= 0) == (over_[next] >= 0)) continue;
     const double share = over_[k] / (over_[k] - over_[next]);
-    clipped_.push_back({p.s + share * (q.s - p.s), p.t + share * (q.t - p.t),
-                        over_[k] >= 0 ? line : p.line});
+    clipped_.push_back(
+        {p.s + share * (q.s - p.s), p.t + share * (q.t - p.t), over_[k] >= 0 ? line : p.line});
   }
   polygon_.swap(clipped_);
   return polygon_.size() > 2;

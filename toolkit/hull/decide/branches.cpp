@@ -49,6 +49,17 @@ void Branches::clear() {
   glues_.clear();
 }
 
+void Branches::keep(const std::vector<bool>& left) {
+  std::vector<Branch> all;
+  all.swap(branches_);
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    for (const int k : all[b].charts) {
+      charts_[std::size_t(k)].branch = left[b] ? int(branches_.size()) : -1;
+    }
+    if (left[b]) branches_.push_back(std::move(all[b]));
+  }
+}
+
 void Branches::find(const CellView& view) {
   clear();
   make_charts(view);

@@ -47,6 +47,8 @@ class Branches {
   /// @pre the view is finished
   void find(const CellView& view);
   void clear();
+  /// Forgets the other branches, and that their charts are of one.
+  void keep(const std::vector<bool>& left);
 
   const std::vector<Branch>& all() const { return branches_; }
   const Chart& chart(int k) const { return charts_[std::size_t(k)]; }

@@ -11,6 +11,8 @@
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/branch_domination.h"
+#include "taut/hull/decide/branch_order.h"
 #include "taut/hull/decide/branches.h"
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/contact_index.h"
@@ -27,8 +29,10 @@ constexpr std::size_t branch_beacons = 4;
 constexpr int refinement_limit = 12;
 /// Pieces of a cell beyond which it is split rather than looked at.
 constexpr std::size_t looked_at_limit = 200;
-/// Distances in units of the resolution below which three points span no plane.
-constexpr double least_span = 16;
+/// In units of the resolution: three points span a plane if the planes across directions of a cell
+/// part by more over the least of their distances from a line. What is thinner is near them all
+/// across it.
+constexpr double least_span = 4;
 
 /// In units of the resolution: how far planes across directions of a cell part over a flat spot
 /// that is waited for to become none.
@@ -70,6 +74,7 @@ class Decider {
         query_(geometry.scene(), options.stop),
         options_(options),
         view_(pieces_, noise_units * geometry.scene().content().rounding),
+        domination_(pieces_.budget_left() * options.resolution),
         index_(pieces_, options.resolution),
         concavity_(pieces_, options.resolution) {}
 
@@ -232,32 +237,13 @@ class Decider {
     beacons.swap(left);
   }
 
-  /// For each corner of the cell the highest corner of a piece of each branch: what surpasses the
-  /// rest of the branch, or of others, though it may not support itself.
+  /// What surpasses the rest of a branch, or of others, though it may not support itself.
   void add_branch_points(std::vector<dvec3>& beacons) {
     if (branches_.all().size() > branch_beacons) return;
-    for (const Branch& branch : branches_.all()) {
-      Corners highest;
-      highest.fill(-infinity);
-      std::array<dvec3, 4> best = {};
-      for (const int chart : branch.charts) {
-        for (const int k : branches_.chart(chart).pieces) {
-          const SeenPiece& seen = view_.seen()[std::size_t(k)];
-          const StoredNet& net = pieces_.piece(seen.piece).net;
-          const int p = net.shape.p;
-          const int q = net.shape.q;
-          for (const int corner : {0, q, p * (q + 1), p * (q + 1) + q}) {
-            const dvec4& x = pieces_.points(net)[corner];
-            for (std::size_t c = 0; c < 4; ++c) {
-              const double h = view_.values(seen)[corner][c] / x.w;
-              if (h <= highest[c]) continue;
-              highest[c] = h;
-              best[c] = euclidean(x);
-            }
-          }
-        }
-      }
-      beacons.insert(beacons.end(), best.begin(), best.end());
+    branch_points_.find(view_, branches_);
+    for (std::size_t b = 0; b < branches_.all().size(); ++b) {
+      const auto& points = branch_points_.points(b);
+      beacons.insert(beacons.end(), points.begin(), points.end());
     }
   }
 
@@ -275,6 +261,7 @@ class Decider {
     }
     if (kind == MapCellKind::node) cell.normal = plane_of_three();
     for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
+    cell.contacts.insert(cell.contacts.end(), dominated_.begin(), dominated_.end());
     if (kind == MapCellKind::facet || kind == MapCellKind::node) {
       nodes_.emplace(int(map_.cells.size()), Node{pieces_left(), beacons});
     }
@@ -284,24 +271,62 @@ class Decider {
   }
 
   std::optional<MapCellKind> decided() {
+    dominated_.clear();
     if (view_.seen().size() > looked_at_limit) {
       branches_.clear();
       return is_facet() ? std::optional(MapCellKind::facet) : std::nullopt;
     }
     branches_.find(view_);
-    const std::vector<Branch>& all = branches_.all();
-    if (all.size() <= 3 && std::all_of(all.begin(), all.end(), [&](const Branch& branch) {
-          return index_.is_one(view_, branches_, branch) ||
-                 concavity_.is_one(view_, branches_, branch);
-        })) {
-      if (all.size() == 1) return MapCellKind::region;
-      if (all.size() == 2 && is_arc(all[0], all[1])) return MapCellKind::arc;
-      if (all.size() == 3 && is_node(all[0], all[1], all[2])) return MapCellKind::node;
-    }
+    if (const auto kind = kind_of_branches()) return kind;
     // All that is near all the planes hangs together.
+    const std::vector<Branch>& all = branches_.all();
     if (is_flat()) return hang_together(all) ? MapCellKind::region : MapCellKind::flat;
-    if (is_spot()) return std::nullopt;
-    return is_facet() ? std::optional(MapCellKind::facet) : std::nullopt;
+    if (!is_spot() && is_facet()) return MapCellKind::facet;
+    return kind_without_dominated();
+  }
+
+  /// Without the branches that others stand for to within what is left of the resolution. (The only
+  /// one that is left would have to be told from these.)
+  std::optional<MapCellKind> kind_without_dominated() {
+    const std::vector<Branch> all = branches_.all();
+    if (all.size() < 3) return std::nullopt;
+    branch_points_.find(view_, branches_);
+    const std::vector<bool> left = domination_.left(view_, branch_points_, branches_);
+    const auto count = std::count(left.begin(), left.end(), true);
+    if (count < 2 || count == std::ptrdiff_t(all.size())) return std::nullopt;
+    branches_.keep(left);
+    const std::optional<MapCellKind> kind = kind_of_branches();
+    for (std::size_t b = 0; b < all.size() && kind; ++b) {
+      if (!left[b]) dominated_.push_back({all[b].lower, all[b].upper});
+    }
+    return kind;
+  }
+
+  std::optional<MapCellKind> kind_of_branches() {
+    const std::vector<Branch>& all = branches_.all();
+    if (all.size() > 3 || !boxes_part(all)) return std::nullopt;
+    order_.find(view_, branches_, axes_.first, axes_.second);
+    if (all.size() == 2 && !order_.apart(0, 1)) return std::nullopt;
+    if (all.size() == 3 && !order_.go_around(0, 1, 2)) return std::nullopt;
+    for (const Branch& branch : all) {
+      if (!index_.is_one(view_, branches_, branch) &&
+          !concavity_.is_one(view_, branches_, branch)) {
+        return std::nullopt;
+      }
+    }
+    constexpr std::array kinds = {MapCellKind::region, MapCellKind::arc, MapCellKind::node};
+    return all.empty() ? std::nullopt : std::optional(kinds[all.size() - 1]);
+  }
+
+  /// A point of a contact tells by its place which of them it is of.
+  static bool boxes_part(const std::vector<Branch>& all) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        const dvec3 gap = glm::max(all[i].lower - all[j].upper, all[j].lower - all[i].upper);
+        if (!(std::max({gap.x, gap.y, gap.z}) > 0)) return false;
+      }
+    }
+    return true;
   }
 
   /// All that is left is within the resolution of the supporting planes of all directions.
@@ -334,9 +359,10 @@ class Decider {
   bool is_spot() const {
     Box box;
     for (const Branch& branch : branches_.all()) box.include({branch.lower, branch.upper});
-    const double width = glm::distance(view_.corners()[0], view_.corners()[3]);
-    return diagonal(box) * width <= spot * options_.resolution;
+    return diagonal(box) * width() <= spot * options_.resolution;
   }
+
+  double width() const { return glm::distance(view_.corners()[0], view_.corners()[3]); }
 
   /// All that is left is within the resolution of one plane, with a normal in the cell.
   bool is_facet() {
@@ -355,7 +381,9 @@ class Decider {
     const dvec3 along = unit(farthest([&](const dvec3& x) { return glm::distance(x, o); }) - o);
     const dvec3 beside =
         farthest([&](const dvec3& x) { return glm::length(glm::cross(x - o, along)); }) - o;
-    if (glm::length(glm::cross(beside, along)) < least_span * options_.resolution) return false;
+    if (glm::length(glm::cross(beside, along)) * width() < least_span * options_.resolution) {
+      return false;
+    }
     const dvec3 n = aligned(unit(glm::cross(beside, along)), axes_.own);
     double lower = 0;
     double upper = 0;
@@ -383,41 +411,6 @@ class Decider {
     return aligned(unit(glm::cross(middle(1) - middle(0), middle(2) - middle(0))), axes_.own);
   }
 
-  /// How far the points of one branch are from those of another along the cell's axes: the slopes
-  /// of the difference of their support functions.
-  std::array<Interval, 2> difference(const Branch& a, const Branch& b) const {
-    const dvec3 middle = 0.5 * (a.lower + a.upper - b.lower - b.upper);
-    const dvec3 half = 0.5 * (a.upper - a.lower + b.upper - b.lower);
-    const auto along = [&](const dvec3& axis) {
-      const double m = glm::dot(middle, axis);
-      const double r = glm::dot(half, glm::abs(axis));
-      return Interval{m - r, m + r};
-    };
-    return {along(axes_.first), along(axes_.second)};
-  }
-  static bool excludes_zero(const Interval& x) { return x.lower > 0 || x.upper < 0; }
-
-  /// The difference of two support functions is monotone along one of the axes.
-  bool is_arc(const Branch& a, const Branch& b) const {
-    const std::array<Interval, 2> slope = difference(a, b);
-    return excludes_zero(slope[0]) || excludes_zero(slope[1]);
-  }
-
-  /// Two differences of three support functions have independent gradients: they vanish together
-  /// at most once.
-  bool is_node(const Branch& a, const Branch& b, const Branch& c) const {
-    const std::array<Interval, 2> s = difference(a, b);
-    const std::array<Interval, 2> t = difference(a, c);
-    const auto product = [](const Interval& x, const Interval& y) {
-      const auto [least, most] =
-          std::minmax({x.lower * y.lower, x.lower * y.upper, x.upper * y.lower, x.upper * y.upper});
-      return Interval{least, most};
-    };
-    const Interval p = product(s[0], t[1]);
-    const Interval q = product(s[1], t[0]);
-    return excludes_zero({p.lower - q.upper, p.upper - q.lower});
-  }
-
   /// What a node's cell is split with.
   struct Node {
     std::vector<int> pieces;
@@ -429,6 +422,10 @@ class Decider {
   DirectionMapOptions options_;
   CellView view_;
   Branches branches_;
+  BranchPoints branch_points_;
+  BranchDomination domination_;
+  std::vector<Box> dominated_;
+  BranchOrder order_;
   ContactIndex index_;
   NearConcavity concavity_;
   FaceAxes axes_;

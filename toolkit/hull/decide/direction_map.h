@@ -28,8 +28,9 @@ struct MapCell {
   int level = 0;
   std::uint32_t i = 0, j = 0;
   MapCellKind kind = MapCellKind::undecided;
-  /// Boxes of what may touch, in the scene's frame, one for each contact that is told apart; none
-  /// where there was too much to look at.
+  /// Boxes of what may touch, in the scene's frame, one for each contact that is told apart, and
+  /// behind them those of what is above their convex hull by no more than the resolution, if at
+  /// all; none where there was too much to look at.
   std::vector<Box> contacts;
   /// Supports in the direction of the middle of the cell's corners; none if the cell was not looked
   /// at.

@@ -7,6 +7,7 @@
 #include "taut/bounds/poles.h"
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/vector_net.h"
+#include "taut/hull/decide/nearly_straight.h"
 #include "taut/hull/decide/translates.h"
 
 namespace taut {
@@ -77,7 +78,23 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution) : geome
   }
   find_beside();
   const std::vector<bool> covered = covered_translates(*this, cover_share * resolution);
-  for (std::size_t k = 0; k < covered.size(); ++k) elements_[k].covered = covered[k];
+  const std::vector<bool> straight =
+      nearly_straight(*this, covered, straight_budget(covered) * resolution);
+  for (std::size_t k = 0; k < covered.size(); ++k) elements_[k].covered = covered[k] || straight[k];
+}
+
+/// Where edges stand for others of their shape already, what these are off by counts too.
+double MapPieces::straight_budget(const std::vector<bool>& covered) const {
+  for (std::size_t k = 0; k < covered.size(); ++k) {
+    if (covered[k] && elements_[k].contact.kind == SourceKind::edge) return 1 - cover_share;
+  }
+  return cover_share;
+}
+
+double MapPieces::budget_left() const {
+  const bool any = std::any_of(elements_.begin(), elements_.end(),
+                               [](const MapElement& element) { return element.covered; });
+  return any ? 1 - cover_share : cover_share;
 }
 
 void MapPieces::find_beside() {

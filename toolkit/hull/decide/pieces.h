@@ -45,7 +45,8 @@ struct MapElement {
   /// Of an edge or vertex: the elements that MapPiece::inward belongs to, -1 for those without
   /// contacts of their own.
   std::vector<int> beside;
-  bool covered = false;  ///< no contact is its alone (covered_translates)
+  /// No contact is its alone (covered_translates, nearly_straight).
+  bool covered = false;
 };
 
 /// The elements of a scene, in its frame, with trees of their pieces that grow as they are asked.
@@ -64,6 +65,10 @@ class MapPieces {
   int find_first(const Contact& c) const;
   /// A piece of an edge runs against the first of those that coincide with it.
   bool runs_against_first(const Contact& c) const;
+
+  /// The share of the resolution by which what is left out in a cell may be above the rest: that
+  /// for which others stand everywhere is above them too.
+  double budget_left() const;
 
   const MapPiece& piece(int index) const { return pieces_[std::size_t(index)]; }
   const MapElement& element_of(const MapPiece& piece) const { return element(piece.element); }
@@ -85,6 +90,7 @@ class MapPieces {
   std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   double kink(const Contact& c, Side side) const;
+  double straight_budget(const std::vector<bool>& covered) const;
 
   const ContactGeometry& geometry_;
   std::vector<MapElement> elements_;

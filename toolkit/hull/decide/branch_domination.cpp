@@ -1,0 +1,84 @@
+#include "taut/hull/decide/branch_domination.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+/// Branches beyond which none is dropped.
+constexpr std::size_t dominated_limit = 12;
+
+}  // namespace
+
+void BranchPoints::find(const CellView& view, const Branches& branches) {
+  const MapPieces& pieces = view.pieces();
+  points_.resize(branches.all().size());
+  heights_.resize(branches.all().size());
+  for (std::size_t b = 0; b < points_.size(); ++b) {
+    Corners highest;
+    highest.fill(-infinity);
+    for (const int chart : branches.all()[b].charts) {
+      for (const int k : branches.chart(chart).pieces) {
+        const SeenPiece& seen = view.seen()[std::size_t(k)];
+        const StoredNet& net = pieces.piece(seen.piece).net;
+        const int p = net.shape.p;
+        const int q = net.shape.q;
+        for (const int corner : {0, q, p * (q + 1), p * (q + 1) + q}) {
+          const dvec4& x = pieces.points(net)[corner];
+          Corners y = view.values(seen)[corner];
+          for (double& h : y) h /= x.w;
+          for (std::size_t c = 0; c < 4; ++c) {
+            if (y[c] <= highest[c]) continue;
+            highest[c] = y[c];
+            points_[b][c] = euclidean(x);
+            heights_[b][c] = y;
+          }
+        }
+      }
+    }
+  }
+}
+
+std::vector<bool> BranchDomination::left(const CellView& view, const BranchPoints& points,
+                                         const Branches& branches) {
+  std::vector<bool> left(branches.all().size(), true);
+  if (left.size() > dominated_limit) return left;
+  std::size_t count = left.size();
+  for (std::size_t b = left.size(); b-- > 0 && count > 1;) {
+    others_.clear();
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      if (k == b || !left[k]) continue;
+      const auto& heights = points.heights(k);
+      others_.insert(others_.end(), heights.begin(), heights.end());
+    }
+    envelope_.find(others_);
+    left[b] = !is_dominated(view, branches, b);
+    count -= left[b] ? 0 : 1;
+  }
+  return left;
+}
+
+bool BranchDomination::is_dominated(const CellView& view, const Branches& branches,
+                                    std::size_t branch) const {
+  const auto& vertices = envelope_.vertices();
+  const auto is_below = [&](const SeenPiece& seen) {
+    const StoredNet& net = view.pieces().piece(seen.piece).net;
+    const dvec4* p = view.pieces().points(net);
+    const Corners* y = view.values(seen);
+    return std::all_of(vertices.begin(), vertices.end(), [&](const BeaconEnvelope::Vertex& v) {
+      const double highest = v.height + budget_ - view.noise();
+      for (int k = 0; k < net.shape.size(); ++k) {
+        if (!(height_at(y[k], v.s, v.t) <= highest * p[k].w)) return false;
+      }
+      return true;
+    });
+  };
+  const std::vector<int>& charts = branches.all()[branch].charts;
+  return std::all_of(charts.begin(), charts.end(), [&](int chart) {
+    const std::vector<int>& own = branches.chart(chart).pieces;
+    return std::all_of(own.begin(), own.end(),
+                       [&](int k) { return is_below(view.seen()[std::size_t(k)]); });
+  });
+}
+
+}  // namespace taut

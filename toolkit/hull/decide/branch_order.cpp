@@ -1,0 +1,81 @@
+#include "taut/hull/decide/branch_order.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+bool excludes_zero(const Interval& x) { return x.lower > 0 || x.upper < 0; }
+
+Interval difference(const Interval& x, const Interval& y) {
+  return {x.lower - y.upper, x.upper - y.lower};
+}
+
+Interval product(const Interval& x, const Interval& y) {
+  const auto [least, most] =
+      std::minmax({x.lower * y.lower, x.lower * y.upper, x.upper * y.lower, x.upper * y.upper});
+  return {least, most};
+}
+
+dvec2 turned(const dvec2& x) { return {-x.y, x.x}; }
+
+}  // namespace
+
+void BranchOrder::find(const CellView& view, const Branches& branches, const dvec3& first,
+                       const dvec3& second) {
+  points_.resize(branches.all().size());
+  for (std::size_t b = 0; b < points_.size(); ++b) {
+    points_[b].clear();
+    for (const int chart : branches.all()[b].charts) {
+      for (const int k : branches.chart(chart).pieces) {
+        const StoredNet& net = view.pieces().piece(view.seen()[std::size_t(k)].piece).net;
+        const dvec4* p = view.pieces().points(net);
+        for (int i = 0; i < net.shape.size(); ++i) {
+          const dvec3 x = euclidean(p[i]) - view.q();
+          points_[b].emplace_back(glm::dot(x, first), glm::dot(x, second));
+        }
+      }
+    }
+  }
+}
+
+Interval BranchOrder::along(std::size_t branch, const dvec2& axis) const {
+  Interval range{infinity, -infinity};
+  for (const dvec2& x : points_[branch]) {
+    range.lower = std::min(range.lower, glm::dot(x, axis));
+    range.upper = std::max(range.upper, glm::dot(x, axis));
+  }
+  return range;
+}
+
+dvec2 BranchOrder::middle(std::size_t branch) const {
+  const Interval x = along(branch, {1, 0});
+  const Interval y = along(branch, {0, 1});
+  return {0.5 * (x.lower + x.upper), 0.5 * (y.lower + y.upper)};
+}
+
+/// By the line between their middles and that across it, and the axes.
+bool BranchOrder::apart(std::size_t a, std::size_t b) const {
+  const dvec2 between = middle(b) - middle(a);
+  for (const dvec2& axis : {between, dvec2(1, 0), dvec2(0, 1), turned(between)}) {
+    if (excludes_zero(difference(along(a, axis), along(b, axis)))) return true;
+  }
+  return false;
+}
+
+/// In axes along the line between the middles of two of them.
+bool BranchOrder::go_around(std::size_t a, std::size_t b, std::size_t c) const {
+  for (const auto& [from, to, third] : {std::array{a, b, c}, {b, c, a}, {c, a, b}}) {
+    const dvec2 own = middle(to) - middle(from);
+    const dvec2 across = turned(own);
+    const auto offset = [&](std::size_t branch, const dvec2& axis) {
+      return difference(along(branch, axis), along(from, axis));
+    };
+    const Interval p = product(offset(to, own), offset(third, across));
+    const Interval q = product(offset(to, across), offset(third, own));
+    if (excludes_zero(difference(p, q))) return true;
+  }
+  return false;
+}
+
+}  // namespace taut

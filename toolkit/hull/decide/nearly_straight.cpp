@@ -1,0 +1,96 @@
+#include "taut/hull/decide/nearly_straight.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+/// Pieces that go on into each other from a vertex on, in the direction away from it.
+class Chain {
+ public:
+  Chain(const MapPieces& pieces, const Contact& first, int from_end)
+      : pieces_(pieces), geometry_(pieces.geometry()) {
+    start_ = vertex(first, from_end);
+    if (start_ >= 0) follow(first, from_end);
+  }
+
+  /// It ends in vertices, and all on the way are elements.
+  bool is_whole() const { return start_ >= 0 && end_ >= 0; }
+  int start() const { return start_; }
+  int end() const { return end_; }
+  const std::vector<int>& elements() const { return elements_; }
+
+ private:
+  /// The element of a vertex in which the piece ends, -1 if there is none.
+  int vertex(const Contact& piece, int end) const {
+    const int v = geometry_.piece(piece).end_vertex[std::size_t(end)];
+    return v < 0 ? -1 : pieces_.find_first({piece.instance, SourceKind::vertex, v, 0, 0});
+  }
+
+  void follow(Contact at, int from_end) {
+    for (;;) {
+      const int element = pieces_.find(at);
+      if (element < 0 || std::count(elements_.begin(), elements_.end(), element) > 0) return;
+      elements_.push_back(element);
+      const int next = geometry_.piece(at).end_neighbor[std::size_t(1 - from_end)];
+      if (next < 0) {
+        end_ = vertex(at, 1 - from_end);
+        return;
+      }
+      const std::array<int, 2>& back =
+          geometry_.piece({at.instance, SourceKind::edge, next, 0, 0}).end_neighbor;
+      if (back[0] == back[1]) return;  // it cannot be told which end is the nearer
+      from_end = back[0] == at.element ? 0 : 1;
+      at.element = next;
+    }
+  }
+
+  const MapPieces& pieces_;
+  const ContactGeometry& geometry_;
+  int start_ = -1, end_ = -1;
+  std::vector<int> elements_;
+};
+
+double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
+  const dvec3 along = b - a;
+  const double length2 = glm::dot(along, along);
+  const double t = length2 > 0 ? std::clamp(glm::dot(x - a, along) / length2, 0.0, 1.0) : 0;
+  return glm::length(x - a - t * along);
+}
+
+bool is_nearly_straight(const MapPieces& pieces, const Chain& chain, double budget) {
+  const auto place = [&](int vertex) {
+    return euclidean(*pieces.points(pieces.piece(pieces.element(vertex).root).exact));
+  };
+  const dvec3 a = place(chain.start());
+  const dvec3 b = place(chain.end());
+  return std::all_of(chain.elements().begin(), chain.elements().end(), [&](int k) {
+    const StoredNet& net = pieces.piece(pieces.element(k).root).exact;
+    const dvec4* p = pieces.points(net);
+    return std::all_of(p, p + net.shape.size(), [&](const dvec4& x) {
+      return distance_to_segment(euclidean(x), a, b) <= budget;
+    });
+  });
+}
+
+}  // namespace
+
+std::vector<bool> nearly_straight(const MapPieces& pieces, const std::vector<bool>& covered,
+                                  double budget) {
+  std::vector<bool> result(pieces.elements().size(), false);
+  for (int k = 0; k < int(result.size()); ++k) {
+    const Contact& c = pieces.element(k).contact;
+    if (c.kind != SourceKind::edge || result[std::size_t(k)]) continue;
+    for (const int end : {0, 1}) {
+      const Chain chain(pieces, c, end);
+      if (!chain.is_whole() || covered[std::size_t(chain.start())] ||
+          covered[std::size_t(chain.end())] || !is_nearly_straight(pieces, chain, budget)) {
+        continue;
+      }
+      for (const int element : chain.elements()) result[std::size_t(element)] = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace taut
