@@ -63,12 +63,91 @@ void Branches::keep(const std::vector<bool>& left) {
 void Branches::find(const CellView& view) {
   clear();
   make_charts(view);
+  glue(view.pieces());
+  sort_into_branches();
+  find_boxes(view);
+}
+
+void Branches::glue(const MapPieces& pieces) {
+  glues_.clear();
   for (int k = 0; k < int(charts_.size()); ++k) {
-    if (charts_[std::size_t(k)].kind == SourceKind::face) glue_face(view.pieces(), k);
-    if (charts_[std::size_t(k)].kind == SourceKind::edge) glue_edge(view.pieces(), k);
+    if (charts_[std::size_t(k)].kind == SourceKind::face) glue_face(pieces, k);
+    if (charts_[std::size_t(k)].kind == SourceKind::edge) glue_edge(pieces, k);
   }
   even_out();
-  sort_into_branches(view);
+}
+
+Branches Branches::alone(const Branch& branch) const {
+  Branches result;
+  std::vector<int> index(charts_.size(), -1);
+  result.branches_.push_back(branch);
+  Branch& own = result.branches_.front();
+  for (int& k : own.charts) {
+    index[std::size_t(k)] = int(result.charts_.size());
+    result.charts_.push_back(charts_[std::size_t(k)]);
+    result.charts_.back().branch = 0;
+    k = index[std::size_t(k)];
+  }
+  for (int& g : own.glues) {
+    Glue glue = glues_[std::size_t(g)];
+    glue.a = index[std::size_t(glue.a)];
+    glue.b = index[std::size_t(glue.b)];
+    g = int(result.glues_.size());
+    result.glues_.push_back(glue);
+  }
+  return result;
+}
+
+bool Branches::extend(const MapPieces& pieces, const std::vector<std::pair<int, Side>>& beyond) {
+  for (const auto& [chart, side] : beyond) {
+    if (!extend(pieces, chart, side)) return false;
+  }
+  glue(pieces);
+  sort_into_branches();
+  for (Branch& branch : branches_) {
+    std::vector<dvec4> net;
+    for (const int k : branch.charts) {
+      const Chart& chart = charts_[std::size_t(k)];
+      pieces.restricted(chart.element, chart.u, chart.v, net);
+      for (const dvec4& p : net) {
+        branch.lower = glm::min(branch.lower, euclidean(p));
+        branch.upper = glm::max(branch.upper, euclidean(p));
+      }
+    }
+  }
+  return true;
+}
+
+bool Branches::extend(const MapPieces& pieces, int index, Side side) {
+  Chart& chart = charts_[std::size_t(index)];
+  Interval& across = along_v(side) ? chart.u : chart.v;
+  const double width = across.upper - across.lower;
+  if (!is_at(chart, side)) {
+    if (at_upper_end(side)) {
+      across.upper = std::min(1.0, across.upper + width);
+    } else {
+      across.lower = std::max(0.0, across.lower - width);
+    }
+    return true;
+  }
+  const Contact& c = pieces.element(chart.element).contact;
+  const Border& border = pieces.geometry().patch(c).borders[std::size_t(side)];
+  if (border.kind != BorderKind::smooth) return false;
+  const int element = pieces.find({c.instance, SourceKind::face, border.neighbor, 0, 0});
+  if (element < 0) return false;
+  const Side there = border.neighbor_side;
+  Chart next{element, SourceKind::face, {0, 1}, {0, 1}, {}, -1, {}, {}};
+  Interval& beyond = along_v(there) ? next.u : next.v;
+  beyond = at_upper_end(there) ? Interval{1 - width, 1} : Interval{0, width};
+  along(next, there) = turned(along(chart, side), border.reversed);
+  const int known = chart_touching(element, next.u, next.v);
+  if (known >= 0) {
+    include(charts_[std::size_t(known)].u, next.u);
+    include(charts_[std::size_t(known)].v, next.v);
+  } else {
+    charts_.push_back(std::move(next));
+  }
+  return true;
 }
 
 void Branches::make_charts(const CellView& view) {
@@ -213,9 +292,10 @@ void Branches::even_out() {
   }
 }
 
-void Branches::sort_into_branches(const CellView& view) {
+void Branches::sort_into_branches() {
   DisjointSets sets(charts_.size());
   for (const Glue& glue : glues_) sets.unite(glue.a, glue.b);
+  branches_.clear();
   std::vector<int> branch_of(charts_.size(), -1);
   for (std::size_t k = 0; k < charts_.size(); ++k) {
     int& branch = branch_of[std::size_t(sets.find(int(k)))];
@@ -224,20 +304,25 @@ void Branches::sort_into_branches(const CellView& view) {
       branches_.emplace_back();
     }
     charts_[k].branch = branch;
-    Branch& own = branches_[std::size_t(branch)];
-    own.charts.push_back(int(k));
-    for (const int index : charts_[k].pieces) {
+    branches_[std::size_t(branch)].charts.push_back(int(k));
+  }
+  for (std::size_t k = 0; k < glues_.size(); ++k) {
+    branches_[std::size_t(charts_[std::size_t(glues_[k].a)].branch)].glues.push_back(int(k));
+  }
+}
+
+void Branches::find_boxes(const CellView& view) {
+  for (const Chart& chart : charts_) {
+    Branch& own = branches_[std::size_t(chart.branch)];
+    for (const int index : chart.pieces) {
       const MapPiece& piece = view.pieces().piece(view.seen()[std::size_t(index)].piece);
       const dvec4* p = view.pieces().points(piece.net);
       for (int i = 0; i < piece.net.shape.size(); ++i) {
-        const dvec3 x = dvec3(p[i]) / p[i].w;
+        const dvec3 x = euclidean(p[i]);
         own.lower = glm::min(own.lower, x);
         own.upper = glm::max(own.upper, x);
       }
     }
-  }
-  for (std::size_t k = 0; k < glues_.size(); ++k) {
-    branches_[std::size_t(charts_[std::size_t(glues_[k].a)].branch)].glues.push_back(int(k));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "taut/hull/decide/cell_view.h"
@@ -49,6 +50,13 @@ class Branches {
   void clear();
   /// Forgets the other branches, and that their charts are of one.
   void keep(const std::vector<bool>& left);
+  /// One of the branches alone.
+  Branches alone(const Branch& branch) const;
+  /// Lets charts of patches reach further, beyond some of their sides, by as much as they are wide:
+  /// onto what no plane of the cell touches, or what is known to be lower. Over smooth joins they
+  /// go on in charts without pieces; beyond other borders there is nothing, and the answer false.
+  /// Charts have no boxes of heights then.
+  bool extend(const MapPieces& pieces, const std::vector<std::pair<int, Side>>& beyond);
 
   const std::vector<Branch>& all() const { return branches_; }
   const Chart& chart(int k) const { return charts_[std::size_t(k)]; }
@@ -64,7 +72,10 @@ class Branches {
   void add(const Glue& glue);
   /// Charts span the same stretch of what they share.
   void even_out();
-  void sort_into_branches(const CellView& view);
+  void glue(const MapPieces& pieces);
+  void sort_into_branches();
+  void find_boxes(const CellView& view);
+  bool extend(const MapPieces& pieces, int chart, Side side);
   int chart_touching(int element, const Interval& u, const Interval& v) const;
 
   std::vector<Chart> charts_;

@@ -13,6 +13,9 @@ namespace {
 /// too.
 constexpr double most_oblique = 0.99;
 
+/// How often a surface is let reach further: each time it becomes up to three times as wide.
+constexpr int extension_limit = 12;
+
 Corners heights_in(const CellView& view, const dvec4& p) {
   return heights(p, view.q(), view.corners());
 }
@@ -52,71 +55,67 @@ bool ContactIndex::is_curved(const CellView& view, const Chart& chart) {
   if (chart.kind == SourceKind::vertex) return true;
   if (chart.kind == SourceKind::face) return regions_.are_definite(chart.element, chart.u, chart.v);
   pieces_.restricted(chart.element, chart.u, {0, 1}, net_);
+  Growth growth(view);
+  for (const dvec4& p : net_) growth.include(p);
   for (std::size_t k = 0; k + 2 < net_.size(); ++k) {
-    const dvec4 second = net_[k] - 2.0 * net_[k + 1] + net_[k + 2];
-    const Corners y = heights_in(view, second);
-    for (std::size_t c = 0; c < 4; ++c) {
-      const double h = second.w > 0 ? chart.low[c] : chart.top[c];
-      if (!(y[c] - h * second.w < -view.noise())) return false;
-    }
+    if (!growth.along(2.0 * net_[k + 1] - net_[k] - net_[k + 2])) return false;
   }
   return net_.size() > 2;
+}
+
+/// The control points of a patch over a chart's rectangle, for side_rises().
+void ContactIndex::show(int index) {
+  const Chart& chart = view_branches_->chart(index);
+  const MapElement& element = pieces_.element(chart.element);
+  pieces_.restricted(chart.element, chart.u, chart.v, net_);
+  if (element.rational) even_weights(pieces_.piece(element.root).exact.shape, net_);
 }
 
 /// From the border of a patch's rectangle inwards, where nothing is glued to it.
 bool ContactIndex::face_border_rises(const CellView& view, int index) {
   const std::array<int, 4>& glued = glued_[std::size_t(index)];
   if (std::all_of(glued.begin(), glued.end(), [](int g) { return g >= 0; })) return true;
-  const Chart& chart = view_branches_->chart(index);
-  const MapElement& element = pieces_.element(chart.element);
-  const NetShape shape = pieces_.piece(element.root).exact.shape;
-  pieces_.restricted(chart.element, chart.u, chart.v, net_);
-  if (element.rational) even_weights(shape, net_);
-  const auto at = [&](Side side, int along, int depth) -> const dvec4& {
-    const int last = along_v(side) ? shape.p : shape.q;
-    const int across = at_upper_end(side) ? last - depth : depth;
-    const int i = along_v(side) ? across : along;
-    const int j = along_v(side) ? along : across;
+  show(index);
+  const int element = view_branches_->chart(index).element;
+  const NetShape shape = pieces_.piece(pieces_.element(element).root).exact.shape;
+  return std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    return glued[std::size_t(side)] >= 0 || side_rises(view, shape, side);
+  });
+}
+
+/// Inwards, or also along the side so that the slope is much the same all over it.
+bool ContactIndex::side_rises(const CellView& view, const NetShape& shape, Side side) const {
+  const int degree = along_v(side) ? shape.q : shape.p;
+  const int across = along_v(side) ? shape.p : shape.q;
+  const auto at = [&](int along, int depth) -> const dvec4& {
+    const int k = at_upper_end(side) ? across - depth : depth;
+    const int i = along_v(side) ? k : along;
+    const int j = along_v(side) ? along : k;
     return net_[std::size_t(i * (shape.q + 1) + j)];
   };
-  for (const Side side : all_sides) {
-    if (glued[std::size_t(side)] >= 0) continue;
-    const int degree = along_v(side) ? shape.q : shape.p;
-    Growth growth(view);
-    for (int k = 0; k <= degree; ++k) growth.include(at(side, k, 0));
-    const int across = along_v(side) ? shape.p : shape.q;
-    // Inwards, and along the side so that the slope is much the same all over it.
-    double own = 0;
-    double mixed = 0;
-    const auto middle = [&](const dvec4& p) {
-      const Corners y = heights_in(view, p);
-      return y[0] + y[1] + y[2] + y[3];
-    };
-    if (degree > 1) {
-      const int k = (degree - 2) / 2;
-      own = degree * (degree - 1) *
-            middle(at(side, k, 0) - 2.0 * at(side, k + 1, 0) + at(side, k + 2, 0));
-      const int l = (degree - 1) / 2;
-      mixed = degree * across *
-              middle(at(side, l + 1, 1) - at(side, l, 1) - at(side, l + 1, 0) + at(side, l, 0));
+  Growth growth(view);
+  for (int k = 0; k <= degree; ++k) growth.include(at(k, 0));
+  const auto rises = [&](double m) {
+    for (int k = 0; k <= degree; ++k) {
+      dvec4 along(0.0);
+      if (m != 0 && k > 0) along += double(k) * (at(k, 0) - at(k - 1, 0));
+      if (m != 0 && k < degree) along += double(degree - k) * (at(k + 1, 0) - at(k, 0));
+      if (!growth.along(double(across) * (at(k, 1) - at(k, 0)) + m * along)) return false;
     }
-    const double oblique = own != 0 ? std::clamp(-mixed / own, -most_oblique, most_oblique) : 0;
-    const auto rises = [&](double m) {
-      for (int k = 0; k <= degree; ++k) {
-        dvec4 along(0.0);
-        if (m != 0 && k > 0) along += double(k) * (at(side, k, 0) - at(side, k - 1, 0));
-        if (m != 0 && k < degree) {
-          along += double(degree - k) * (at(side, k + 1, 0) - at(side, k, 0));
-        }
-        if (!growth.along(double(across) * (at(side, k, 1) - at(side, k, 0)) + m * along)) {
-          return false;
-        }
-      }
-      return true;
-    };
-    if (!rises(0) && (oblique == 0 || !rises(oblique))) return false;
-  }
-  return true;
+    return true;
+  };
+  if (rises(0)) return true;
+  if (degree < 2) return false;
+  const auto middle = [&](const dvec4& p) {
+    const Corners y = heights_in(view, p);
+    return y[0] + y[1] + y[2] + y[3];
+  };
+  const int k = (degree - 2) / 2;
+  const double own = degree * (degree - 1) * middle(at(k, 0) - 2.0 * at(k + 1, 0) + at(k + 2, 0));
+  const int l = (degree - 1) / 2;
+  const double mixed = degree * across * middle(at(l + 1, 1) - at(l, 1) - at(l + 1, 0) + at(l, 0));
+  const double oblique = own != 0 ? std::clamp(-mixed / own, -most_oblique, most_oblique) : 0;
+  return oblique != 0 && rises(oblique);
 }
 
 /// From the ends of an interval inwards, and from the surfaces beside it onto the edge.
@@ -215,6 +214,16 @@ double ContactIndex::kink(const Glue& glue) {
   return glm::length(tangent(glue.a, glue.at_a) + tangent(glue.b, glue.at_b));
 }
 
+/// Two charts span the same stretch of what they share.
+bool ContactIndex::is_whole(const Branches& branches, const Glue& glue) {
+  if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::face_edge) return true;
+  const Interval& own = along(branches.chart(glue.a), Side(glue.at_a));
+  const Chart& other = branches.chart(glue.b);
+  const Interval& b = glue.kind == Glue::Kind::faces ? along(other, Side(glue.at_b)) : other.u;
+  return glue.reversed ? own.lower == 1 - b.upper && own.upper == 1 - b.lower
+                       : own.lower == b.lower && own.upper == b.upper;
+}
+
 bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
   view_branches_ = &branches;
   // Two charts of one element that overlap count twice what is in both.
@@ -235,6 +244,7 @@ bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
     if (glue.kind == Glue::Kind::face_vertex) continue;
+    if (!is_whole(branches, glue)) return false;
     ++arcs;
     sets.unite(glue.a, glue.b);
     int& at_a = glued_[std::size_t(glue.a)][std::size_t(glue.at_a)];
@@ -258,20 +268,51 @@ bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
   return int(branch.charts.size()) - arcs + rings.count() == 1;
 }
 
-bool ContactIndex::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
+bool ContactIndex::is_cap(const CellView& view, const Branches& branches, const Branch& branch) {
   if (!is_disc(branches, branch)) return false;
   const double size = glm::distance(branch.lower, branch.upper);
   for (const int g : branch.glues) {
     if (!(kink(branches.glue(g)) * size <= rho_)) return false;
   }
-  const bool rises = std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
-    const SourceKind kind = branches.chart(k).kind;
-    return kind == SourceKind::face   ? face_border_rises(view, k)
-           : kind == SourceKind::edge ? edge_border_rises(view, k)
-                                      : vertex_border_rises(view, k);
-  });
-  return rises && std::all_of(branch.charts.begin(), branch.charts.end(),
-                              [&](int k) { return is_curved(view, branches.chart(k)); });
+  return std::all_of(branch.charts.begin(), branch.charts.end(),
+                     [&](int k) { return is_curved(view, branches.chart(k)); });
+}
+
+bool ContactIndex::border_rises(const CellView& view, int chart) {
+  const SourceKind kind = view_branches_->chart(chart).kind;
+  return kind == SourceKind::face   ? face_border_rises(view, chart)
+         : kind == SourceKind::edge ? edge_border_rises(view, chart)
+                                    : vertex_border_rises(view, chart);
+}
+
+bool ContactIndex::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
+  return is_cap(view, branches, branch) &&
+         std::all_of(branch.charts.begin(), branch.charts.end(),
+                     [&](int k) { return border_rises(view, k); });
+}
+
+bool ContactIndex::is_one_of_more(const CellView& view, const Branches& branches,
+                                  const Branch& branch) {
+  Branches more = branches.alone(branch);
+  std::vector<std::pair<int, Side>> beyond;
+  for (int round = 0; round < extension_limit; ++round) {
+    if (more.all().size() != 1 || !is_cap(view, more, more.all().front())) return false;
+    beyond.clear();
+    for (const int k : more.all().front().charts) {
+      if (border_rises(view, k)) continue;
+      const Chart& chart = more.chart(k);
+      if (chart.kind != SourceKind::face) return false;
+      show(k);
+      const NetShape shape = pieces_.piece(pieces_.element(chart.element).root).exact.shape;
+      for (const Side side : all_sides) {
+        if (glued_[std::size_t(k)][std::size_t(side)] >= 0) continue;
+        if (!side_rises(view, shape, side)) beyond.emplace_back(k, side);
+      }
+    }
+    if (beyond.empty()) return true;
+    if (!more.extend(pieces_, beyond)) return false;
+  }
+  return false;
 }
 
 }  // namespace taut

@@ -29,13 +29,22 @@ class ContactIndex {
 
   /// True is certain.
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
+  /// The same for a surface that reaches further, where the heights do not grow from the border of
+  /// the branch inwards: what of it planes do not touch does not matter.
+  bool is_one_of_more(const CellView& view, const Branches& branches, const Branch& branch);
 
  private:
   class Growth;
   /// The charts hang together to a surface of Euler characteristic one, with a border.
   bool is_disc(const Branches& branches, const Branch& branch);
+  static bool is_whole(const Branches& branches, const Glue& glue);
+  /// They are joined to a disc, smoothly, and curved.
+  bool is_cap(const CellView& view, const Branches& branches, const Branch& branch);
   bool is_curved(const CellView& view, const Chart& chart);
+  bool border_rises(const CellView& view, int chart);
   bool face_border_rises(const CellView& view, int chart);
+  bool side_rises(const CellView& view, const NetShape& shape, Side side) const;
+  void show(int chart);
   bool edge_border_rises(const CellView& view, int chart);
   bool vertex_border_rises(const CellView& view, int chart);
   bool is_beside(int chart, int element) const;

@@ -222,6 +222,7 @@ class Decider {
     for (int round = 0; round < refinement_limit && !is_settled() && view_.refine(); ++round) {
       kind = decided();
     }
+    if (!kind && view_.seen().size() <= looked_at_limit) kind = kind_of_branches(true);
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
@@ -302,7 +303,7 @@ class Decider {
     return kind;
   }
 
-  std::optional<MapCellKind> kind_of_branches() {
+  std::optional<MapCellKind> kind_of_branches(bool extends = false) {
     const std::vector<Branch>& all = branches_.all();
     if (all.size() > 3 || !boxes_part(all)) return std::nullopt;
     order_.find(view_, branches_, axes_.first, axes_.second);
@@ -310,7 +311,8 @@ class Decider {
     if (all.size() == 3 && !order_.go_around(0, 1, 2)) return std::nullopt;
     for (const Branch& branch : all) {
       if (!index_.is_one(view_, branches_, branch) &&
-          !concavity_.is_one(view_, branches_, branch)) {
+          !concavity_.is_one(view_, branches_, branch) &&
+          !(extends && index_.is_one_of_more(view_, branches_, branch))) {
         return std::nullopt;
       }
     }
