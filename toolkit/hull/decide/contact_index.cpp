@@ -13,6 +13,9 @@ namespace {
 /// too.
 constexpr double most_oblique = 0.99;
 
+/// In units of the resolution: what is smaller may be taken for a point.
+constexpr double point_size = 4;
+
 /// How often a surface is let reach further: each time it becomes up to three times as wide.
 constexpr int extension_limit = 12;
 
@@ -53,6 +56,7 @@ class ContactIndex::Growth {
 /// Strictly, so that every point at which a plane touches counts one.
 bool ContactIndex::is_curved(const CellView& view, const Chart& chart) {
   if (chart.kind == SourceKind::vertex) return true;
+  if (stand_ins_.is_stand_in(chart)) return true;  // are_points() tells
   if (chart.kind == SourceKind::face) return regions_.are_definite(chart.element, chart.u, chart.v);
   pieces_.restricted(chart.element, chart.u, {0, 1}, net_);
   Growth growth(view);
@@ -274,7 +278,8 @@ bool ContactIndex::is_cap(const CellView& view, const Branches& branches, const 
   for (const int g : branch.glues) {
     if (!(kink(branches.glue(g)) * size <= rho_)) return false;
   }
-  return std::all_of(branch.charts.begin(), branch.charts.end(),
+  return stand_ins_.are_points(branches, branch, rho_) &&
+         std::all_of(branch.charts.begin(), branch.charts.end(),
                      [&](int k) { return is_curved(view, branches.chart(k)); });
 }
 
@@ -286,6 +291,7 @@ bool ContactIndex::border_rises(const CellView& view, int chart) {
 }
 
 bool ContactIndex::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
+  if (glm::distance(branch.lower, branch.upper) <= point_size * rho_) return true;
   return is_cap(view, branches, branch) &&
          std::all_of(branch.charts.begin(), branch.charts.end(),
                      [&](int k) { return border_rises(view, k); });

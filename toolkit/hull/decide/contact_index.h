@@ -7,6 +7,7 @@
 #include "taut/hull/decide/branches.h"
 #include "taut/hull/decide/corner_rings.h"
 #include "taut/hull/decide/curved_regions.h"
+#include "taut/hull/decide/stand_in_normals.h"
 
 namespace taut {
 
@@ -25,7 +26,7 @@ class ContactIndex {
  public:
   /// `resolution`: kinks of joins that amount to less over a branch are none.
   ContactIndex(const MapPieces& pieces, double resolution)
-      : pieces_(pieces), regions_(pieces), rho_(resolution) {}
+      : pieces_(pieces), regions_(pieces), stand_ins_(pieces), rho_(resolution) {}
 
   /// True is certain.
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
@@ -53,6 +54,7 @@ class ContactIndex {
 
   const MapPieces& pieces_;
   CurvedRegions regions_;
+  StandInNormals stand_ins_;
   double rho_;
   CornerRings::Glued glued_;
   /// An edge or vertex, and a chart of the branch that ends there.
