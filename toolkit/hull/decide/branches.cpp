@@ -1,6 +1,7 @@
 #include "taut/hull/decide/branches.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "taut/core/disjoint_sets.h"
 
@@ -136,7 +137,7 @@ bool Branches::extend(const MapPieces& pieces, int index, Side side) {
   const int element = pieces.find({c.instance, SourceKind::face, border.neighbor, 0, 0});
   if (element < 0) return false;
   const Side there = border.neighbor_side;
-  Chart next{element, SourceKind::face, {0, 1}, {0, 1}, {}, -1, {}, {}};
+  Chart next{element, SourceKind::face, {0, 1}, {0, 1}, {}, -1};
   Interval& beyond = along_v(there) ? next.u : next.v;
   beyond = at_upper_end(there) ? Interval{1 - width, 1} : Interval{0, width};
   along(next, there) = turned(along(chart, side), border.reversed);
@@ -153,35 +154,29 @@ bool Branches::extend(const MapPieces& pieces, int index, Side side) {
 void Branches::make_charts(const CellView& view) {
   const std::vector<SeenPiece>& seen = view.seen();
   const MapPieces& pieces = view.pieces();
-  std::vector<bool> known(seen.size(), false);
   const auto piece = [&](int k) -> const MapPiece& {
     return pieces.piece(seen[std::size_t(k)].piece);
   };
-  for (std::size_t first = 0; first < seen.size(); ++first) {
-    if (known[first]) continue;
-    known[first] = true;
-    const MapPiece& own = piece(int(first));
-    Chart chart{own.element,     pieces.element(own.element).contact.kind,
-                own.u,           own.v,
-                {int(first)},    -1,
-                seen[first].low, seen[first].top};
+  rest_.resize(seen.size());
+  std::iota(rest_.begin(), rest_.end(), 0);
+  while (!rest_.empty()) {
+    const int first = rest_.front();
+    rest_.erase(rest_.begin());
+    const MapPiece& own = piece(first);
+    Chart chart{own.element, pieces.element(own.element).contact.kind, own.u, own.v, {first}, -1};
     for (std::size_t next = 0; next < chart.pieces.size(); ++next) {
       const MapPiece& from = piece(chart.pieces[next]);
-      for (std::size_t k = first + 1; k < seen.size(); ++k) {
-        const MapPiece& other = piece(int(k));
-        if (known[k] || other.element != from.element || !touches(from.u, other.u) ||
+      std::erase_if(rest_, [&](int k) {
+        const MapPiece& other = piece(k);
+        if (other.element != from.element || !touches(from.u, other.u) ||
             !touches(from.v, other.v)) {
-          continue;
+          return false;
         }
-        known[k] = true;
-        chart.pieces.push_back(int(k));
+        chart.pieces.push_back(k);
         include(chart.u, other.u);
         include(chart.v, other.v);
-        for (std::size_t c = 0; c < 4; ++c) {
-          chart.low[c] = std::min(chart.low[c], seen[k].low[c]);
-          chart.top[c] = std::max(chart.top[c], seen[k].top[c]);
-        }
-      }
+        return true;
+      });
     }
     charts_.push_back(std::move(chart));
   }
@@ -315,13 +310,9 @@ void Branches::find_boxes(const CellView& view) {
   for (const Chart& chart : charts_) {
     Branch& own = branches_[std::size_t(chart.branch)];
     for (const int index : chart.pieces) {
-      const MapPiece& piece = view.pieces().piece(view.seen()[std::size_t(index)].piece);
-      const dvec4* p = view.pieces().points(piece.net);
-      for (int i = 0; i < piece.net.shape.size(); ++i) {
-        const dvec3 x = euclidean(p[i]);
-        own.lower = glm::min(own.lower, x);
-        own.upper = glm::max(own.upper, x);
-      }
+      const Box& box = view.pieces().piece(view.seen()[std::size_t(index)].piece).box;
+      own.lower = glm::min(own.lower, box.lower);
+      own.upper = glm::max(own.upper, box.upper);
     }
   }
 }

@@ -16,7 +16,6 @@ struct Chart {
   Interval u, v;
   std::vector<int> pieces;  ///< of CellView::seen()
   int branch = -1;
-  Corners low = {}, top = {};  ///< bounds of the heights of its pieces
 };
 
 /// Where two charts meet. Sides of a patch are numbered as Side, the ends of an edge 0 and 1.
@@ -55,7 +54,6 @@ class Branches {
   /// Lets charts of patches reach further, beyond some of their sides, by as much as they are wide:
   /// onto what no plane of the cell touches, or what is known to be lower. Over smooth joins they
   /// go on in charts without pieces; beyond other borders there is nothing, and the answer false.
-  /// Charts have no boxes of heights then.
   bool extend(const MapPieces& pieces, const std::vector<std::pair<int, Side>>& beyond);
 
   const std::vector<Branch>& all() const { return branches_; }
@@ -81,6 +79,7 @@ class Branches {
   std::vector<Chart> charts_;
   std::vector<Branch> branches_;
   std::vector<Glue> glues_;
+  std::vector<int> rest_;  // scratch
 };
 
 /// The interval of a side's free parameter that a chart spans.

@@ -53,13 +53,15 @@ void CellView::look(int index) {
   seen.top.fill(-infinity);
   seen.low.fill(infinity);
   const bool rational = pieces_.element_of(piece).rational;
-  for (int k = 0; k < piece.net.shape.size(); ++k) {
-    const Corners y = heights(p[k], q_, d_);
-    values_.push_back(y);
+  const int size = piece.net.shape.size();
+  values_.resize(seen.values + std::size_t(size));
+  Corners* y = values_.data() + seen.values;
+  for (int k = 0; k < size; ++k) {
+    y[k] = heights(p[k], q_, d_);
     const double scale = rational ? 1 / p[k].w : 1;
     for (std::size_t c = 0; c < 4; ++c) {
-      seen.top[c] = std::max(seen.top[c], y[c] * scale);
-      seen.low[c] = std::min(seen.low[c], y[c] * scale);
+      seen.top[c] = std::max(seen.top[c], y[k][c] * scale);
+      seen.low[c] = std::min(seen.low[c], y[k][c] * scale);
     }
   }
   if (is_beaten(seen, piece)) {
@@ -103,7 +105,7 @@ bool CellView::refine() {
   bool any = false;
   for (const SeenPiece& seen : before_) {
     const std::optional<Direction> split =
-        PieceSlopes(pieces_, seen, values(seen), noise_).wanted_split(share);
+        PieceSlopes(pieces_, seen, values(seen), noise_).wanted_split(share, scratch_);
     if (!split) {
       seen_.push_back(seen);
       continue;

@@ -58,6 +58,7 @@ class CellView {
   BeaconEnvelope envelope_;
   std::vector<SeenPiece> seen_;
   std::vector<SeenPiece> before_;  // scratch
+  std::vector<double> scratch_;
   std::vector<Corners> values_;
   Corners highest_ = {};
   long looked_ = 0;

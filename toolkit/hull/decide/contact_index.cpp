@@ -299,6 +299,7 @@ bool ContactIndex::is_one(const CellView& view, const Branches& branches, const 
 
 bool ContactIndex::is_one_of_more(const CellView& view, const Branches& branches,
                                   const Branch& branch) {
+  if (!is_cap(view, branches, branch)) return false;
   Branches more = branches.alone(branch);
   std::vector<std::pair<int, Side>> beyond;
   for (int round = 0; round < extension_limit; ++round) {

@@ -216,13 +216,13 @@ class Decider {
     drop_low(beacons);
     for (const int piece : *pieces) view_.look(piece);
     view_.finish();
-    std::optional<MapCellKind> kind = decided();
+    std::optional<MapCellKind> kind = decided(true);
     // Of three contacts one may not reach the others: finer pieces tell.
     const auto is_settled = [&] { return kind && *kind != MapCellKind::node; };
     for (int round = 0; round < refinement_limit && !is_settled() && view_.refine(); ++round) {
-      kind = decided();
+      kind = decided(false);
     }
-    if (!kind && view_.seen().size() <= looked_at_limit) kind = kind_of_branches(true);
+    if (!kind) kind = decided_last();
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
@@ -271,18 +271,26 @@ class Decider {
     map_.cells.push_back(std::move(cell));
   }
 
-  std::optional<MapCellKind> decided() {
+  std::optional<MapCellKind> decided(bool before_splits) {
     dominated_.clear();
     if (view_.seen().size() > looked_at_limit) {
       branches_.clear();
       return is_facet() ? std::optional(MapCellKind::facet) : std::nullopt;
     }
     branches_.find(view_);
-    if (const auto kind = kind_of_branches()) return kind;
+    if (const auto kind = kind_of_branches(false)) return kind;
     // All that is near all the planes hangs together.
     const std::vector<Branch>& all = branches_.all();
     if (is_flat()) return hang_together(all) ? MapCellKind::region : MapCellKind::flat;
+    return before_splits && !is_spot() && is_facet() ? std::optional(MapCellKind::facet)
+                                                     : std::nullopt;
+  }
+
+  /// What takes longer, for pieces that are as fine as they become.
+  std::optional<MapCellKind> decided_last() {
+    if (view_.seen().size() > looked_at_limit) return std::nullopt;
     if (!is_spot() && is_facet()) return MapCellKind::facet;
+    if (const auto kind = kind_of_branches(true)) return kind;
     return kind_without_dominated();
   }
 
@@ -296,17 +304,17 @@ class Decider {
     const auto count = std::count(left.begin(), left.end(), true);
     if (count < 2 || count == std::ptrdiff_t(all.size())) return std::nullopt;
     branches_.keep(left);
-    const std::optional<MapCellKind> kind = kind_of_branches();
+    const std::optional<MapCellKind> kind = kind_of_branches(true);
     for (std::size_t b = 0; b < all.size() && kind; ++b) {
       if (!left[b]) dominated_.push_back({all[b].lower, all[b].upper});
     }
     return kind;
   }
 
-  std::optional<MapCellKind> kind_of_branches(bool extends = false) {
+  std::optional<MapCellKind> kind_of_branches(bool extends) {
     const std::vector<Branch>& all = branches_.all();
     if (all.size() > 3 || !boxes_part(all)) return std::nullopt;
-    order_.find(view_, branches_, axes_.first, axes_.second);
+    if (all.size() > 1) order_.find(view_, branches_, axes_.first, axes_.second);
     if (all.size() == 2 && !order_.apart(0, 1)) return std::nullopt;
     if (all.size() == 3 && !order_.go_around(0, 1, 2)) return std::nullopt;
     for (const Branch& branch : all) {

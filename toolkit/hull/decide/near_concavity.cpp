@@ -55,9 +55,17 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
   const NetShape shape = pieces_.piece(element.root).exact.shape;
   if (element.rational) even_weights(shape, net_);
   double least = infinity;
+  Corners low, top;
+  low.fill(infinity);
+  top.fill(-infinity);
   for (dvec4& p : net_) {
     least = std::min(least, p.w);
     p = dvec4(dvec3(p) - p.w * view.q(), p.w);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double h = glm::dot(dvec3(p), view.corners()[c]) / p.w;
+      low[c] = std::min(low[c], h);
+      top[c] = std::max(top[c], h);
+    }
   }
   const int row = shape.q + 1;
   const auto at = [&](int i, int j) -> const dvec4& { return net_[std::size_t(i * row + j)]; };
@@ -89,7 +97,7 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
       const double a = glm::dot(dvec3(uu_[k]), d);
       const double b = glm::dot(dvec3(uv_[k]), d);
       const double e = glm::dot(dvec3(vv_[k]), d);
-      for (const double h : {chart.low[c], chart.top[c]}) {
+      for (const double h : {low[c], top[c]}) {
         if (largest(a - h * uu_[k].w, b - h * uv_[k].w, e - h * vv_[k].w) > limit) return false;
         if (!element.rational) break;
       }

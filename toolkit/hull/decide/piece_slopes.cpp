@@ -41,29 +41,32 @@ void PieceSlopes::Change::include(double of_u, double of_v) {
 }
 
 /// Height of a control point times its weight, over that of the piece's middle.
-double PieceSlopes::middle(int i, int j) const {
-  const std::size_t k = index(i, j);
+double PieceSlopes::middle(std::size_t k) const {
   return mean(values_[k]) - 0.5 * (mean(seen_.low) + mean(seen_.top)) * points_[k].w;
 }
 
-/// By the control points next to one.
-PieceSlopes::Bend PieceSlopes::bend_at(int i, int j) const {
+/// By the control points next to one, with such heights.
+template <class Middle>
+PieceSlopes::Bend PieceSlopes::bend_at(int i, int j, const Middle& middle) const {
+  const auto row = std::size_t(q() + 1);
   Bend bend;
   if (p() > 1) {
-    const int k = std::clamp(i, 0, p() - 2);
-    const int l = std::clamp(j, 0, q());
-    bend.uu = p() * (p() - 1) * (middle(k, l) - 2 * middle(k + 1, l) + middle(k + 2, l));
+    const std::size_t k = index(std::clamp(i, 0, p() - 2), std::clamp(j, 0, q()));
+    bend.uu = p() * (p() - 1) * (middle(k) - 2 * middle(k + row) + middle(k + 2 * row));
   }
   if (q() > 1) {
-    const int k = std::clamp(i, 0, p());
-    const int l = std::clamp(j, 0, q() - 2);
-    bend.vv = q() * (q() - 1) * (middle(k, l) - 2 * middle(k, l + 1) + middle(k, l + 2));
+    const std::size_t k = index(std::clamp(i, 0, p()), std::clamp(j, 0, q() - 2));
+    bend.vv = q() * (q() - 1) * (middle(k) - 2 * middle(k + 1) + middle(k + 2));
   }
   if (p() > 0 && q() > 0) {
-    bend.uv =
-        p() * q() * (middle(i + 1, j + 1) - middle(i + 1, j) - middle(i, j + 1) + middle(i, j));
+    const std::size_t k = index(i, j);
+    bend.uv = p() * q() * (middle(k + row + 1) - middle(k + row) - middle(k + 1) + middle(k));
   }
   return bend;
+}
+
+PieceSlopes::Bend PieceSlopes::bend() const {
+  return bend_at((p() - 1) / 2, (q() - 1) / 2, [&](std::size_t k) { return middle(k); });
 }
 
 bool PieceSlopes::is_at(Side side) const {
@@ -201,16 +204,20 @@ double PieceSlopes::spread(double along_u, double along_v) const {
 
 /// Slopes in two directions change over the piece by its second derivatives, and over the cell by
 /// its width; where both directions are oblique to the parameters', often by less.
-std::optional<Direction> PieceSlopes::wanted_split(double share) const {
+std::optional<Direction> PieceSlopes::wanted_split(double share,
+                                                   std::vector<double>& scratch) const {
   if (p() == 0 && q() == 0) return std::nullopt;
-  const Bend b = bend();
+  scratch.clear();
+  for (int k = 0; k < piece_.net.shape.size(); ++k) scratch.push_back(middle(std::size_t(k)));
+  const auto known = [&](std::size_t k) { return scratch[k]; };
+  const Bend b = bend_at((p() - 1) / 2, (q() - 1) / 2, known);
   const double m = std::abs(b.uv) < std::abs(b.vv) ? -b.uv / b.vv : 0;
   const double n = std::abs(b.uv) < std::abs(b.uu) ? -b.uv / b.uu : 0;
   // Of slopes along u and v, and along (1, m) and (n, 1).
   Change plain_u, plain_v, oblique_u, oblique_v;
   for (int i = 0; i <= std::max(0, p() - 1); ++i) {
     for (int j = 0; j <= std::max(0, q() - 1); ++j) {
-      const Bend at = bend_at(i, j);
+      const Bend at = bend_at(i, j, known);
       plain_u.include(at.uu, at.uv);
       plain_v.include(at.uv, at.vv);
       oblique_u.include(at.uu + m * at.uv, at.uv + m * at.vv);

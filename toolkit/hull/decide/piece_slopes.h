@@ -28,7 +28,8 @@ class PieceSlopes {
 
   /// The parameter across which the piece is to be halved so that its slopes change over it by less
   /// than over the cell, times `share`; none if they do already.
-  std::optional<Direction> wanted_split(double share) const;
+  /// Scratch is working space.
+  std::optional<Direction> wanted_split(double share, std::vector<double>& scratch) const;
 
  private:
   /// Second derivatives in the middle of the piece and of the cell, with respect to parameters that
@@ -45,9 +46,10 @@ class PieceSlopes {
   int p() const { return piece_.net.shape.p; }
   int q() const { return piece_.net.shape.q; }
   std::size_t index(int i, int j) const { return std::size_t(i * (q() + 1) + j); }
-  double middle(int i, int j) const;
-  Bend bend_at(int i, int j) const;
-  Bend bend() const { return bend_at((p() - 1) / 2, (q() - 1) / 2); }
+  double middle(std::size_t k) const;
+  template <class Middle>
+  Bend bend_at(int i, int j, const Middle& middle) const;
+  Bend bend() const;
   bool is_at(Side side) const;
   bool rise_along(Direction direction) const;
   double pole_margin(Direction direction, bool lower, bool upper) const;

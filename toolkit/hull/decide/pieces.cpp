@@ -138,6 +138,10 @@ int MapPieces::add(MapPiece piece, bool rational) {
     even_weights(piece.net.shape, net);
     piece.net = store(piece.net.shape, net);
   }
+  piece.box = {};
+  for (int k = 0; k < piece.net.shape.size(); ++k) {
+    piece.box.include(euclidean(points(piece.net)[k]));
+  }
   pieces_.push_back(std::move(piece));
   return int(pieces_.size()) - 1;
 }

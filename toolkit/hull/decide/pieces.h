@@ -26,6 +26,7 @@ struct MapPiece {
   std::vector<StoredNet> inward;
   std::array<int, 2> halves_u = {-1, -1};
   std::array<int, 2> halves_v = {-1, -1};
+  Box box = {};  ///< of its control points
 };
 
 /// Scales a rational net so that the weights at its four corners are as alike as changes of
