@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "cages.h"
 #include "judge/families.h"
 #include "judge/support_reference.h"
+#include "judge/sweeps.h"
 #include "models.h"
 #include "taut/hull/decide/map_topology.h"
 #include "taut/surface/resolution.h"
@@ -143,6 +146,115 @@ TEST(DirectionMap, CellsCoverTheCube) {
   double area = 0;
   for (const MapCell& cell : mapped.map.cells) area += std::ldexp(1.0, -2 * cell.level);
   EXPECT_EQ(area, 6);
+}
+
+/// A map at a resolution that is told, a length of the model.
+DirectionMap map_at(const Scene& scene, double rho) {
+  taut::DirectionMapOptions options;
+  options.resolution = scene.frame().length_to_frame(rho);
+  options.cell_limit = 100'000;
+  return direction_map(ContactGeometry(scene), options);
+}
+
+long count(const DirectionMap& map, MapCellKind kind) {
+  return map.statistics.of_kind[std::size_t(kind)];
+}
+
+const MapCell& cell_at(const DirectionMap& map, const dvec3& n) {
+  const auto holds = [&](const MapCell& cell) {
+    const auto d = DirectionMap::corners(cell);
+    const double height = glm::dot(n, glm::cross(d[1] - d[0], d[2] - d[0]));
+    const dvec3 off = n * (glm::dot(d[0], glm::cross(d[1] - d[0], d[2] - d[0])) / height) - d[0];
+    const double s = glm::dot(off, d[2] - d[0]) / glm::dot(d[2] - d[0], d[2] - d[0]);
+    const double t = glm::dot(off, d[1] - d[0]) / glm::dot(d[1] - d[0], d[1] - d[0]);
+    return glm::dot(n, d[0]) > 0 && s >= 0 && s <= 1 && t >= 0 && t <= 1;
+  };
+  return *std::find_if(map.cells.begin(), map.cells.end(), holds);
+}
+
+/// A sheet above [-1, 1] x [-1, 1] with two equal crests at x = -1/2 and 1/2, and between them a
+/// dent: z = -16 depth (x^2 - 1/4)^2 - y^2.
+Shape dented(double depth) {
+  std::vector<std::vector<dvec3>> rows;
+  for (int i = 0; i <= 4; ++i) {
+    // Blossoms of the powers of x at so many ones, and else minus ones.
+    const double sum = 2.0 * i - 4;
+    const double x2 = (sum * sum - 4) / 12;
+    const double x4 = i % 2 == 0 ? 1 : -1;
+    std::vector<dvec3> row;
+    for (int j = 0; j <= 2; ++j) {
+      const double z = -16 * depth * (x4 - 0.5 * x2 + 1.0 / 16) - (j == 1 ? -1 : 1);
+      row.emplace_back(sum / 4, j - 1, z);
+    }
+    rows.push_back(row);
+  }
+  return {{spline(rows, 4, 2)}, {}, {}};
+}
+
+/// Whatever takes a branch for one contact leaves a dent that is deeper than the resolution: where
+/// it is shallow it is told from its ends, or left open.
+TEST(DirectionMap, DentsStayApart) {
+  constexpr double rho = 1e-6;
+  for (const double depth : {4 * rho, 64 * rho, 1e-3}) {
+    SCOPED_TRACE(depth);
+    const dmat3 rotation = skew_rotation();
+    const Scene scene = make_scene(mapped(dented(depth), rotation));
+    const DirectionMap map = map_at(scene, rho);
+    const MapCell& cell = cell_at(map, rotation * dvec3(0, 0, 1));
+    if (depth < 100 * rho) {
+      EXPECT_NE(cell.kind, MapCellKind::region);
+      EXPECT_LT(count(map, MapCellKind::undecided), 50);
+    } else {
+      EXPECT_EQ(cell.kind, MapCellKind::arc);
+      EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    }
+  }
+}
+
+/// A point a little off the middle of two others may be left out, but not one far enough.
+TEST(DirectionMap, PointsBesideASegment) {
+  constexpr double rho = 1e-6;
+  for (const double off : {-4 * rho, 0.0, 0.2 * rho, 4 * rho, 64 * rho}) {
+    SCOPED_TRACE(off);
+    const Scene scene = make_scene({{}, {}, {{0, 0, 0}, {1, 0, 0}, {0.4, 0, off}, {0.5, 1, -2}}});
+    const DirectionMap map = map_at(scene, rho);
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    const dvec3 x = scene.frame().to_frame({0.4, 0, off});
+    const bool is_told = std::any_of(map.cells.begin(), map.cells.end(), [&](const MapCell& cell) {
+      return std::any_of(cell.contacts.begin(), cell.contacts.end(), [&](const taut::Box& box) {
+        return glm::distance(box.lower, x) == 0 && glm::distance(box.upper, x) == 0;
+      });
+    });
+    EXPECT_TRUE(is_told || std::abs(off) < 4 * rho);
+    EXPECT_FALSE(is_told && off == 0);
+  }
+}
+
+/// Sheets above straight sides: beside the sides they are shaped like saddles.
+TEST(DirectionMap, DomesOnStraightSidesAreDecided) {
+  const std::vector<std::vector<dvec3>> rows = {
+      {{0, 0, 0}, {0, 10, 0}, {0, 20, 0}, {0, 30, 0}},
+      {{10, 0, 0}, {10, 10, 9}, {10, 20, 12}, {10, 30, 0}},
+      {{20, 0, 0}, {20, 10, 11}, {20, 20, 8}, {20, 30, 0}},
+      {{30, 0, 0}, {30, 10, 0}, {30, 20, 0}, {30, 30, 0}}};
+  taut_test::Random random(2);
+  for (const Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
+    SCOPED_TRACE(name_of(variant));
+    const Mapped mapped(placed({{{spline(rows)}, {}, {}}}, variant, random).shape);
+    // At most where one of the tips of the sheet's region is.
+    EXPECT_LE(count(mapped.map, MapCellKind::undecided), 4);
+  }
+}
+
+/// Patches that stand for the surface about extraordinary vertices.
+TEST(DirectionMap, CagesAreDecided) {
+  for (const taut::ControlCage& cage :
+       {cube_cage(), tetrahedron_cage(CageScheme::loop), torus_cage(5, 4)}) {
+    const Scene scene(cage_model(cage, taut::default_cage_accuracy));
+    const DirectionMap map = map_at(scene, 1e-7 * scene.diagonal());
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    EXPECT_LT(map.statistics.cells, 20'000);
+  }
 }
 
 /// In directions of a cell the support function is attained, within the resolution, where the cell
