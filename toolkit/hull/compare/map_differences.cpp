@@ -49,7 +49,7 @@ class Comparison {
       if (cell.kind == MapCellKind::undecided) continue;
       compare_middle(cell);
       if (cell.kind == MapCellKind::arc || cell.kind == MapCellKind::node) {
-        if (!crossings_.crosses(int(k))) compare_curves(cell);
+        if (!is_crossed(int(k))) compare_curves(cell);
       } else if (cell.kind == MapCellKind::facet) {
         compare_facet(cell);
       }
@@ -95,14 +95,11 @@ class Comparison {
     }
   }
 
-  /// Places of the boundary's curves that come within the resolution of the plane.
-  std::size_t places_at(const dvec3& n, double h, std::size_t enough) const {
-    std::size_t count = 0;
-    for (const dvec3& x : points_) {
-      if (glm::dot(x, n) < h - near * map_.resolution) continue;
-      if (++count == enough) break;
-    }
-    return count;
+  /// A place of the boundary's curves comes within the resolution of the plane.
+  bool reaches(const dvec3& n, double h) const {
+    return std::any_of(points_.begin(), points_.end(), [&](const dvec3& x) {
+      return glm::dot(x, n) >= h - near * map_.resolution;
+    });
   }
 
   void compare_middle(const MapCell& cell) {
@@ -111,7 +108,7 @@ class Comparison {
     const std::array<dvec3, 4> d = DirectionMap::corners(cell);
     const dvec3 n = unit(d[0] + d[3]);
     const dvec3 x = geometry_.point(c);
-    if (places_at(n, glm::dot(x, n), 1) > 0) return;
+    if (reaches(n, glm::dot(x, n))) return;
     tell({n, c, x}, "a support point lies on no face that was found");
   }
 
@@ -151,6 +148,31 @@ class Comparison {
     });
   }
 
+  /// A curve crosses the cell, between two of its contacts.
+  bool is_crossed(int k) const {
+    const std::vector<Box>& contacts = map_.cells[std::size_t(k)].contacts;
+    const std::vector<MapCrossings::Stretch>& stretches = crossings_.of(k);
+    return std::any_of(stretches.begin(), stretches.end(), [&](const auto& stretch) {
+      std::array<std::size_t, 2> nearest = {};
+      for (const std::size_t i : {0u, 1u}) {
+        const dvec3& from = stretch.from.point[i];
+        const dvec3& to = stretch.to.point[i];
+        const double slack = chord_share * glm::distance(from, to) + map_.contact_extent();
+        double least = infinity;
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+          const double gap =
+              distance_to_segment(0.5 * (contacts[c].lower + contacts[c].upper), from, to);
+          if (gap >= least) continue;
+          least = gap;
+          nearest[i] = c;
+        }
+        const Box& box = contacts[nearest[i]];
+        if (least > slack + 0.5 * glm::distance(box.lower, box.upper)) return false;
+      }
+      return nearest[0] != nearest[1];
+    });
+  }
+
   bool is_between(const Ruling& from, const Ruling& to, const dvec3& n, const dvec3& a,
                   const dvec3& b) const {
     const double turn = glm::distance(from.n, to.n);
@@ -185,7 +207,15 @@ class Comparison {
   void compare_facet(const MapCell& cell) {
     if (cell.width <= 2 * map_.contact_extent()) return;
     const SupportSample s = seen(geometry_, query_, cell.normal, cell.contact);
-    if (places_at(s.n, glm::dot(s.x, s.n), 3) >= 3) return;
+    const double h = glm::dot(s.x, s.n);
+    const bool is_known =
+        std::any_of(boundary_.faces.begin(), boundary_.faces.end(), [&](const HullFace& face) {
+          return face.kind == FaceKind::facet && glm::dot(face.n, s.n) > 0 &&
+                 std::all_of(face.points.begin(), face.points.end(), [&](const dvec3& x) {
+                   return glm::dot(x, s.n) >= h - near * map_.resolution;
+                 });
+        });
+    if (is_known) return;
     tell(s, "a facet that the map of directions tells was not found");
   }
 

@@ -11,18 +11,24 @@ namespace taut {
 /// between their rulings tell.
 class MapCrossings {
  public:
+  /// Two rulings between which a curve crosses a cell.
+  struct Stretch {
+    Ruling from, to;
+  };
+
   /// The map must outlive it.
   explicit MapCrossings(const DirectionMap& map);
 
   void add(const SeparatingArc& arc);
-  bool crosses(int cell) const { return crossed_[std::size_t(cell)]; }
+  const std::vector<Stretch>& of(int cell) const { return stretches_[std::size_t(cell)]; }
+  bool crosses(int cell) const { return !of(cell).empty(); }
 
  private:
-  void add(const dvec3& from, const dvec3& to);
+  void add(const Stretch& stretch, const dvec3& from, const dvec3& to);
 
   const DirectionMap& map_;
   CellTree tree_;
-  std::vector<bool> crossed_;
+  std::vector<std::vector<Stretch>> stretches_;  // by cell
 };
 
 }  // namespace taut

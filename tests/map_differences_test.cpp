@@ -1,0 +1,147 @@
+#include "taut/hull/compare/map_differences.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "direction_maps.h"
+#include "freeform.h"
+#include "models.h"
+#include "taut/hull/exact_boundary.h"
+#include "truths.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+const Shape& shape_of(const std::string& name) {
+  static const std::vector<Truth> all = truths();
+  return std::find_if(all.begin(), all.end(), [&](const Truth& t) { return t.name == name; })
+      ->shape;
+}
+
+/// A scene with its map and its boundary, into which errors are planted.
+struct Compared {
+  explicit Compared(const Shape& shape, double share = 1e-7)
+      : scene(make_scene(shape)), geometry(scene), query(scene) {
+    options.threads = 1;
+    options.resolution = share;
+    HullStatistics statistics;
+    map = directions_of(geometry, options, statistics);
+    boundary =
+        exact_boundary(scene, GaussMap(scene, {.threads = 1, .progress = {}}), options, statistics);
+    EXPECT_TRUE(boundary.unresolved.empty());
+    EXPECT_EQ(statistics.map_undecided, 0);
+  }
+  std::vector<Unresolved> spots() { return map_differences(geometry, query, map, boundary).spots; }
+
+  Scene scene;
+  ContactGeometry geometry;
+  SupportQuery query;
+  HullOptions options;
+  DirectionMap map;
+  HullBoundary boundary;
+};
+
+TEST(MapDifferences, NoneFromTruths) {
+  for (const Truth& truth : truths()) {
+    if (truth.name == "twisted cubic") continue;  // takes long
+    SCOPED_TRACE(truth.name);
+    EXPECT_TRUE(Compared(truth.shape).spots().empty());
+    EXPECT_TRUE(Compared(mapped(truth.shape, skew_rotation(), {3, -1, 2})).spots().empty());
+  }
+}
+
+/// A sheet over [-1, 1] x [-1, 1], curved as a sphere of radius two, a control point in the middle
+/// of which is moved down.
+Shape sheet(double down) {
+  constexpr int count = 17;
+  NurbsSurface surface{3, 3, {0, 0, 0}, {0, 0, 0}, {}};
+  for (int k = 0; k <= count - 3; ++k) {
+    surface.knots_u.push_back(k);
+    surface.knots_v.push_back(k);
+  }
+  surface.knots_u.insert(surface.knots_u.end(), 3, count - 3.0);
+  surface.knots_v.insert(surface.knots_v.end(), 3, count - 3.0);
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      const dvec2 p(2.0 * i / (count - 1) - 1, 2.0 * j / (count - 1) - 1);
+      const double z = -0.25 * glm::dot(p, p) - (i == count / 2 && j == count / 2 ? down : 0);
+      surface.points.push_back(homogeneous({p.x, p.y, z}));
+    }
+  }
+  return {{surface}, {}, {}};
+}
+
+TEST(MapDifferences, TellAMissingDent) {
+  const double down = 0.02;
+  const Shape dented = mapped(sheet(down), skew_rotation());
+  const dvec3 up = skew_rotation() * dvec3(0, 0, 1);
+  const Scene scene = make_scene(dented);
+  const ContactGeometry geometry(scene);
+  SupportQuery query(scene);
+  // How far the middle lies below the plane over the dent.
+  const dvec3 middle = geometry.point(geometry.canonical({0, SourceKind::face, 7 * 14 + 7, 0, 0}));
+  const double depth = glm::dot(query(up).point - middle, up);
+  ASSERT_GT(depth, 1e-4);
+  const double share = depth / 4 / scene.frame().length_to_frame(scene.diagonal());
+  Compared own(dented, share);
+  EXPECT_TRUE(own.spots().empty());
+  EXPECT_EQ(Compared(mapped(sheet(0), skew_rotation()), share).spots().size(), 0U);
+  own.boundary = Compared(mapped(sheet(0), skew_rotation()), share).boundary;
+  const std::vector<Unresolved> spots = own.spots();
+  ASSERT_FALSE(spots.empty());
+  for (const Unresolved& spot : spots) EXPECT_GT(glm::dot(spot.n, up), 0.99);
+}
+
+/// The first scroll of a hull lies where it is not.
+TEST(MapDifferences, TellAMissingScroll) {
+  for (const char* name : {"spheres 1 and 0.5, 3 apart", "three spheres", "cylinder", "oloid"}) {
+    SCOPED_TRACE(name);
+    Compared own(shape_of(name));
+    ASSERT_FALSE(own.boundary.arcs.empty());
+    for (ArcPiece& piece : own.boundary.arcs.front().pieces) {
+      for (Ruling& ruling : piece.rulings) ruling.n = -ruling.n;
+    }
+    EXPECT_FALSE(own.spots().empty());
+  }
+}
+
+TEST(MapDifferences, TellAMissingFacet) {
+  for (const char* name : {"torus 2, 0.5", "cylinder", "filleted box"}) {
+    SCOPED_TRACE(name);
+    Compared own(shape_of(name));
+    for (HullFace& face : own.boundary.faces) {
+      if (face.kind != FaceKind::facet) continue;
+      face.n = -face.n;
+      break;
+    }
+    EXPECT_FALSE(own.spots().empty());
+  }
+}
+
+/// The region of a patch is said to be that of another, which lies inside of the hull.
+TEST(MapDifferences, TellARegionOfAnotherSource) {
+  Compared own(two_spheres(1, 0.5, 3) + shifted(sphere(0.25), {1, 0, 0}));
+  const int count = own.scene.model().patch_count() / 3;
+  for (HullFace& face : own.boundary.faces) {
+    for (PatchRegion& region : face.regions) {
+      if (region.patch < count) region.patch += 2 * count;
+    }
+  }
+  EXPECT_FALSE(own.spots().empty());
+}
+
+TEST(MapDifferences, TellARulingInNoPlane) {
+  Compared own(two_spheres(1, 0.5, 3));
+  Ruling& ruling = own.boundary.arcs.front().pieces.front().rulings[1];
+  ruling.point[0] += 1e-6 * ruling.n;
+  const std::vector<Unresolved> spots = own.spots();
+  ASSERT_EQ(spots.size(), 1U);
+  EXPECT_EQ(spots.front().n, ruling.n);
+}
+
+}  // namespace
+}  // namespace taut
