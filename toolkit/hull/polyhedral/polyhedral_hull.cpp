@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -48,6 +49,8 @@ class PolyhedralHull {
   void make_polytope(const PointHull& hull, const std::vector<int>* original = nullptr);
   void finish(std::vector<int> corners);
   void join_hull_faces();
+  void join_slivers();
+  void mark_features();
   dvec3 normal_of(OpenMesh::FaceHandle f) const;
   double height(const dvec3& p, OpenMesh::FaceHandle f) const;
   void label_faces();
@@ -67,6 +70,9 @@ class PolyhedralHull {
   std::vector<int> corners_;    ///< per vertex of the mesh: its number among the points
   std::vector<dvec3> normals_;  ///< per face of the mesh
 };
+
+/// Slivers side by side that are passed on the way to a face with a normal.
+constexpr std::size_t sliver_steps = 16;
 
 /// Neighbours of vertices that coarse_hull() may look at: some seconds.
 constexpr double most_work = 3e8;
@@ -214,6 +220,7 @@ void PolyhedralHull::make_polytope(const PointHull& hull, const std::vector<int>
   }
   finish(std::move(corners));
   if (original != nullptr) join_hull_faces();
+  join_slivers();
   label_faces();
   result_.boundary =
       std::make_shared<const HullBoundary>(polyhedral_boundary(model_, result_.mesh));
@@ -294,6 +301,55 @@ void PolyhedralHull::join_hull_faces() {
     ++count;
   }
   for (const auto f : mesh.faces()) mesh.data(f).hull_face = face[std::size_t(f.idx())];
+  mark_features();
+}
+
+/// Numbers faces that are too narrow for their normals to mean anything as one with what lies
+/// across from their longest sides.
+void PolyhedralHull::join_slivers() {
+  if (width_ == 0) return;
+  HullMesh& mesh = result_.mesh;
+  const auto length = [&](OpenMesh::HalfedgeHandle h) {
+    return glm::distance(point_at(mesh.from_vertex_handle(h)), point_at(mesh.to_vertex_handle(h)));
+  };
+  const auto longest_side = [&](OpenMesh::FaceHandle f) {
+    const auto sides = mesh.fh_range(f);
+    return *std::max_element(sides.begin(), sides.end(),
+                             [&](auto a, auto b) { return length(a) < length(b); });
+  };
+  const auto is_sliver = [&](OpenMesh::FaceHandle f) {
+    const auto side = longest_side(f);
+    const dvec3& from = point_at(mesh.from_vertex_handle(side));
+    const dvec3 along = unit(point_at(mesh.to_vertex_handle(side)) - from);
+    const auto corners = mesh.fv_range(f);
+    return std::all_of(corners.begin(), corners.end(), [&](auto v) {
+      return glm::length(glm::cross(point_at(v) - from, along)) <= width_;
+    });
+  };
+  std::vector<int> face(mesh.n_faces());
+  for (const auto f : mesh.faces()) face[std::size_t(f.idx())] = mesh.data(f).hull_face;
+  bool any = false;
+  for (const auto f : mesh.faces()) {
+    OpenMesh::FaceHandle across = f;
+    for (std::size_t step = 0; is_sliver(across) && step < sliver_steps; ++step) {
+      across = mesh.opposite_face_handle(longest_side(across));
+    }
+    if (across == f) continue;
+    face[std::size_t(f.idx())] = mesh.data(across).hull_face;
+    any = true;
+  }
+  if (!any) return;
+  std::map<int, int> numbers;
+  for (const auto f : mesh.faces()) {
+    const auto [number, is_new] = numbers.try_emplace(face[std::size_t(f.idx())], numbers.size());
+    mesh.data(f).hull_face = number->second;
+  }
+  mark_features();
+}
+
+/// The edges between hull faces.
+void PolyhedralHull::mark_features() {
+  HullMesh& mesh = result_.mesh;
   for (const auto e : mesh.edges()) {
     const auto f = mesh.face_handle(mesh.halfedge_handle(e, 0));
     const auto g = mesh.face_handle(mesh.halfedge_handle(e, 1));
