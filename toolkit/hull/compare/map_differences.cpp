@@ -203,19 +203,25 @@ class Comparison {
     });
   }
 
-  /// Surfaces are flat to within the resolution over so much.
+  /// A facet or a ruling has the normal, to within what the resolution leaves open over so wide a
+  /// facet; over less than contacts' extents surfaces are flat.
   void compare_facet(const MapCell& cell) {
     if (cell.width <= 2 * map_.contact_extent()) return;
-    const SupportSample s = seen(geometry_, query_, cell.normal, cell.contact);
-    const double h = glm::dot(s.x, s.n);
+    const double turn = 2 * near * map_.resolution / cell.width;
+    const auto is_near = [&](const dvec3& n) { return glm::distance(n, cell.normal) <= turn; };
     const bool is_known =
-        std::any_of(boundary_.faces.begin(), boundary_.faces.end(), [&](const HullFace& face) {
-          return face.kind == FaceKind::facet && glm::dot(face.n, s.n) > 0 &&
-                 std::all_of(face.points.begin(), face.points.end(), [&](const dvec3& x) {
-                   return glm::dot(x, s.n) >= h - near * map_.resolution;
-                 });
+        std::any_of(boundary_.faces.begin(), boundary_.faces.end(),
+                    [&](const HullFace& face) {
+                      return face.kind == FaceKind::facet && is_near(face.n);
+                    }) ||
+        std::any_of(boundary_.arcs.begin(), boundary_.arcs.end(), [&](const SeparatingArc& arc) {
+          return std::any_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
+            return std::any_of(piece.rulings.begin(), piece.rulings.end(),
+                               [&](const Ruling& r) { return is_near(r.n); });
+          });
         });
     if (is_known) return;
+    const SupportSample s = seen(geometry_, query_, cell.normal, cell.contact);
     tell(s, "a facet that the map of directions tells was not found");
   }
 
