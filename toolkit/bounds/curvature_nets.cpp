@@ -179,6 +179,33 @@ int CurvatureNets::definite_sign() const {
   return all([](const SecondForm& form) { return form.surely_positive(); }) ? 1 : 0;
 }
 
+/// By the least eigenvalue of an entry, which its errors change by no more than their sum.
+double CurvatureNets::shortfall_bound(int sign) const {
+  double result = 0;
+  for (std::size_t k = 0; k < uu_.entries.size(); ++k) {
+    const double a = sign * uu_.entries[k];
+    const double c = sign * vv_.entries[k];
+    const double least = 0.5 * (a + c) - std::hypot(0.5 * (a - c), uv_.entries[k]);
+    result = std::max(result, uu_.error + uv_.error + vv_.error - least);
+  }
+  return result;
+}
+
+CurvatureNets::NormalBounds CurvatureNets::normal_bounds() const {
+  NormalBounds result;
+  dvec3 sum(0.0);
+  for (const dvec3& n : normals_.entries) sum += n;
+  result.axis = unit(sum);
+  result.least = std::numeric_limits<double>::infinity();
+  for (const dvec3& n : normals_.entries) {
+    const double along = glm::dot(n, result.axis) - normals_.error;
+    const double across = glm::length(glm::cross(n, result.axis)) + normals_.error;
+    result.least = std::min(result.least, along);
+    result.angle = std::max(result.angle, std::atan2(across, along));
+  }
+  return result;
+}
+
 /// Convex combinations, one after the other along a line of the net, each of one rounding.
 template <class Entry>
 CurvatureNets::Net<Entry> CurvatureNets::Net<Entry>::upper_half(Direction direction,

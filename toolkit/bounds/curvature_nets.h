@@ -31,6 +31,17 @@ class CurvatureNets {
   /// What the form surely is over all of the square: -1 negative, 1 positive definite; 0 if
   /// neither.
   int definite_sign() const;
+  /// At least how much has to be added to the form, times the sign, as a multiple of the sum of
+  /// squares, so that it is surely not negative over the square; 0: nothing.
+  double shortfall_bound(int sign) const;
+  /// Of the vectors N over the square: their lengths along a unit vector are at least `least`, and
+  /// their angles to it at most `angle`.
+  struct NormalBounds {
+    dvec3 axis = dvec3(0.0);
+    double least = 0;
+    double angle = 0;
+  };
+  NormalBounds normal_bounds() const;
   /// Contains the normals over the rectangle.
   std::optional<NormalPyramid> normals(const Interval& u, const Interval& v) const;
   /// Contains the normals over all of the square.

@@ -29,7 +29,8 @@ Corners heights_in(const CellView& view, const dvec4& p) {
 /// points between the points.
 class ContactIndex::Growth {
  public:
-  explicit Growth(const CellView& view) : view_(view) {
+  /// Along vectors of length one by more than `tilt`.
+  explicit Growth(const CellView& view, double tilt = 0) : view_(view), tilt_(tilt) {
     lower_.fill(infinity);
     upper_.fill(-infinity);
   }
@@ -42,14 +43,16 @@ class ContactIndex::Growth {
   }
   bool along(const dvec4& vector) const {
     const Corners y = heights_in(view_, vector);
+    const double least = view_.noise() + (tilt_ > 0 ? tilt_ * glm::length(dvec3(vector)) : 0);
     for (std::size_t c = 0; c < 4; ++c) {
-      if (!(y[c] - (vector.w > 0 ? upper_[c] : lower_[c]) * vector.w > view_.noise())) return false;
+      if (!(y[c] - (vector.w > 0 ? upper_[c] : lower_[c]) * vector.w > least)) return false;
     }
     return true;
   }
 
  private:
   const CellView& view_;
+  double tilt_;
   Corners lower_, upper_;
 };
 
@@ -97,7 +100,7 @@ bool ContactIndex::side_rises(const CellView& view, const NetShape& shape, Side 
     const int j = along_v(side) ? along : k;
     return net_[std::size_t(i * (shape.q + 1) + j)];
   };
-  Growth growth(view);
+  Growth growth(view, tilt_);
   for (int k = 0; k <= degree; ++k) growth.include(at(k, 0));
   const auto rises = [&](double m) {
     for (int k = 0; k <= degree; ++k) {
@@ -278,9 +281,27 @@ bool ContactIndex::is_cap(const CellView& view, const Branches& branches, const 
   for (const int g : branch.glues) {
     if (!(kink(branches.glue(g)) * size <= rho_)) return false;
   }
-  return stand_ins_.are_points(branches, branch, rho_) &&
-         std::all_of(branch.charts.begin(), branch.charts.end(),
-                     [&](int k) { return is_curved(view, branches.chart(k)); });
+  tilt_ = 0;
+  const bool curved = std::all_of(branch.charts.begin(), branch.charts.end(),
+                                  [&](int k) { return is_curved(view, branches.chart(k)); });
+  if (curved) return stand_ins_.are_points(branches, branch, rho_);
+  return is_nearly_concave(view, branches, branch);
+}
+
+/// Let D be the extent of the branch, h the heights less e |x - c|^2 with c in its box and
+/// e = rho / (4 D^2). Where h has no slope, the normal is d - 2 e (x - c), of a length less than
+/// 2, and h is concave there if the curvature towards it is less than e, for its second derivatives
+/// are that times the length less 2 e. The slopes of h differ from those of the heights by 2 e D.
+bool ContactIndex::is_nearly_concave(const CellView& view, const Branches& branches,
+                                     const Branch& branch) {
+  const double size = glm::distance(branch.lower, branch.upper);
+  tilt_ = rho_ / (2 * size);
+  return std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
+    const Chart& chart = branches.chart(k);
+    return chart.kind == SourceKind::face &&
+           regions_.are_nearly_concave(chart.element, chart.u, chart.v, view.corners(),
+                                       rho_ / (4 * size * size));
+  });
 }
 
 bool ContactIndex::border_rises(const CellView& view, int chart) {

@@ -21,6 +21,10 @@ namespace taut {
 /// points. All near-maxima hang together with it: a piece of the surface above some height that
 /// does not hold it would have a maximum of its own.
 ///
+/// Patches may be nearly flat too, or bend towards the directions a little: the heights less
+/// e times the square of the distance from a point, which is less than a quarter of the resolution
+/// over the branch, count in place of the heights.
+///
 /// Nothing of this depends on how charts are parametrised: it holds about poles and over joins.
 class ContactIndex {
  public:
@@ -39,9 +43,10 @@ class ContactIndex {
   /// The charts hang together to a surface of Euler characteristic one, with a border.
   bool is_disc(const Branches& branches, const Branch& branch);
   static bool is_whole(const Branches& branches, const Glue& glue);
-  /// They are joined to a disc, smoothly, and curved.
+  /// They are joined to a disc, smoothly, and curved, or nearly so.
   bool is_cap(const CellView& view, const Branches& branches, const Branch& branch);
   bool is_curved(const CellView& view, const Chart& chart);
+  bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   bool border_rises(const CellView& view, int chart);
   bool face_border_rises(const CellView& view, int chart);
   bool side_rises(const CellView& view, const NetShape& shape, Side side) const;
@@ -56,6 +61,7 @@ class ContactIndex {
   CurvedRegions regions_;
   StandInNormals stand_ins_;
   double rho_;
+  double tilt_ = 0;  ///< by which heights have to grow from the border of the last cap
   CornerRings::Glued glued_;
   /// An edge or vertex, and a chart of the branch that ends there.
   std::vector<std::pair<int, int>> beside_;

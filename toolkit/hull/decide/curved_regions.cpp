@@ -1,6 +1,8 @@
 #include "taut/hull/decide/curved_regions.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace taut {
 namespace {
@@ -43,52 +45,150 @@ CurvedRegions::Tree& CurvedRegions::tree(int element) {
   return tree;
 }
 
-/// That of the part of the rectangle in the node.
-int CurvedRegions::sign(Tree& tree, int index, const Interval& u, const Interval& v) {
-  {
-    Node& node = tree[std::size_t(index)];
-    if (!node.known) {
-      node.known = true;
-      node.sign = node.nets->definite_sign();
-      if (node.sign != 0) node.nets.reset();
-    }
-    if (node.sign != 0 || node.level == curvature_level_limit) return node.sign;
-    // Halves are curved both ways too, if the rectangle is all there is of the node.
-    if (contains(u, node.u) && contains(v, node.v) && width(u) > 4 * width(node.u) &&
-        width(v) > 4 * width(node.v)) {
-      return 0;
-    }
-    if (node.first_half < 0) {
-      const bool of_u = width(node.u) >= width(node.v);
-      const auto nets = node.nets->halves(of_u ? Direction::u : Direction::v);
-      node.nets.reset();
-      const int first = int(tree.size());
-      node.first_half = first;
-      const Node whole{node.u, node.v, node.level + 1, false, 0, -1, nullptr};
-      for (std::size_t k : {0u, 1u}) {
-        Node half{
-            whole.u, whole.v, whole.level, false, 0, -1, std::make_unique<CurvatureNets>(nets[k])};
-        Interval& range = of_u ? half.u : half.v;
-        const double middle = 0.5 * (range.lower + range.upper);
-        (k == 0 ? range.upper : range.lower) = middle;
-        tree.push_back(std::move(half));
-      }
+/// What the nets tell of a rectangle. Their forms are the second derivatives of the heights along
+/// N, where that is normal to the surface, times its length: curvatures are these over the squares
+/// of lengths on the surface.
+void CurvedRegions::know(int element, Node& node) const {
+  if (node.known) return;
+  node.known = true;
+  node.sign = node.nets->definite_sign();
+  if (pieces_.element(element).rational || has_pole(element)) return;
+  node.normals = node.nets->normal_bounds();
+  const double stretch = least_stretch(element, node.u, node.v);
+  if (!(node.normals.least > 0) || !(stretch > 0)) return;
+  for (const int sign : {-1, 1}) {
+    node.hollow[std::size_t(sign > 0)] =
+        node.nets->shortfall_bound(sign) / (node.normals.least * stretch * stretch);
+  }
+}
+
+bool CurvedRegions::has_pole(int element) const {
+  const auto& collapsed = pieces_.element(element).collapsed;
+  return std::count(collapsed.begin(), collapsed.end(), true) > 0;
+}
+
+/// The least length on the surface of a step of length one in the parameters: that of the means of
+/// the differences of control points, less what these differ from them.
+double CurvedRegions::least_stretch(int element, const Interval& u, const Interval& v) const {
+  const NetShape shape = pieces_.piece(pieces_.element(element).root).exact.shape;
+  std::vector<dvec4> net;
+  pieces_.restricted(element, u, v, net);
+  const int row = shape.q + 1;
+  std::vector<dvec3> along_u, along_v;
+  for (int i = 0; i <= shape.p; ++i) {
+    for (int j = 0; j <= shape.q; ++j) {
+      const dvec4* p = net.data() + i * row + j;
+      if (i < shape.p) along_u.push_back(shape.p / width(u) * (euclidean(p[row]) - euclidean(*p)));
+      if (j < shape.q) along_v.push_back(shape.q / width(v) * (euclidean(p[1]) - euclidean(*p)));
     }
   }
+  const auto mean = [](const std::vector<dvec3>& all) {
+    dvec3 sum(0.0);
+    for (const dvec3& x : all) sum += x;
+    return sum / double(all.size());
+  };
+  const auto off = [](const std::vector<dvec3>& all, const dvec3& from) {
+    double farthest = 0;
+    for (const dvec3& x : all) farthest = std::max(farthest, glm::distance(x, from));
+    return farthest;
+  };
+  const dvec3 a = mean(along_u);
+  const dvec3 b = mean(along_v);
+  const double e = glm::dot(a, a);
+  const double g = glm::dot(b, b);
+  const double least = 0.5 * (e + g) - std::hypot(0.5 * (e - g), glm::dot(a, b));
+  return least > 0 ? std::sqrt(least) - std::hypot(off(along_u, a), off(along_v, b)) : 0;
+}
+
+/// False at the limit of levels.
+bool CurvedRegions::split(Tree& tree, int index) {
+  Node& node = tree[std::size_t(index)];
+  if (node.first_half >= 0) return true;
+  if (node.level == curvature_level_limit) return false;
+  const bool of_u = width(node.u) >= width(node.v);
+  const auto nets = node.nets->halves(of_u ? Direction::u : Direction::v);
+  node.nets.reset();
+  const int first = int(tree.size());
+  node.first_half = first;
+  const Interval u = node.u;
+  const Interval v = node.v;
+  const int level = node.level + 1;
+  for (std::size_t k : {0u, 1u}) {
+    Node half;
+    half.u = u;
+    half.v = v;
+    half.level = level;
+    half.nets = std::make_unique<CurvatureNets>(nets[k]);
+    Interval& range = of_u ? half.u : half.v;
+    const double middle = 0.5 * (range.lower + range.upper);
+    (k == 0 ? range.upper : range.lower) = middle;
+    tree.push_back(std::move(half));
+  }
+  return true;
+}
+
+/// Halves are not curved otherwise either, if the rectangle is all there is of the node.
+bool CurvedRegions::is_small_part(const Node& node, const Interval& u, const Interval& v) {
+  return contains(u, node.u) && contains(v, node.v) && width(u) > 4 * width(node.u) &&
+         width(v) > 4 * width(node.v);
+}
+
+/// That of the part of the rectangle in the node.
+int CurvedRegions::sign(int element, int index, const Interval& u, const Interval& v) {
+  Tree& tree = this->tree(element);
+  know(element, tree[std::size_t(index)]);
+  const Node& node = tree[std::size_t(index)];
+  if (node.sign != 0 || is_small_part(node, u, v)) return node.sign;
+  if (!split(tree, index)) return 0;
   int result = 0;
   const int first = tree[std::size_t(index)].first_half;
   for (const int half : {first, first + 1}) {
     if (!overlap(tree[std::size_t(half)].u, u) || !overlap(tree[std::size_t(half)].v, v)) continue;
-    const int own = sign(tree, half, u, v);
+    const int own = sign(element, half, u, v);
     if (own == 0 || (result != 0 && own != result)) return 0;
     result = own;
   }
   return result;
 }
 
+bool CurvedRegions::is_nearly_concave(int element, int index, const Interval& u, const Interval& v,
+                                      const std::array<dvec3, 4>& directions, double hollow) {
+  Tree& tree = this->tree(element);
+  know(element, tree[std::size_t(index)]);
+  {
+    const Node& node = tree[std::size_t(index)];
+    const dvec3& axis = node.normals.axis;
+    const bool along = glm::dot(axis, directions[0]) > 0;
+    const double reach = std::sin(node.normals.angle);
+    const bool one_side = node.normals.angle < 0.5 * std::numbers::pi &&
+                          std::all_of(directions.begin(), directions.end(), [&](const dvec3& d) {
+                            return (along ? 1 : -1) * glm::dot(axis, d) > reach * glm::length(d);
+                          });
+    if (one_side && node.hollow[along ? 0 : 1] <= hollow) return true;
+    if (is_small_part(node, u, v)) return false;
+    // What is curved the other way is so in its halves.
+    if (one_side && node.sign == (along ? 1 : -1)) return false;
+  }
+  if (!split(tree, index)) return false;
+  const int first = tree[std::size_t(index)].first_half;
+  for (const int half : {first, first + 1}) {
+    const Node& node = tree[std::size_t(half)];
+    if (!overlap(node.u, u) || !overlap(node.v, v)) continue;
+    if (!is_nearly_concave(element, half, u, v, directions, hollow)) return false;
+  }
+  return true;
+}
+
+bool CurvedRegions::are_nearly_concave(int element, const Interval& u, const Interval& v,
+                                       const std::array<dvec3, 4>& directions, double hollow) {
+  if (pieces_.element(element).rational || has_pole(element)) return false;
+  if (pieces_.geometry().patch(pieces_.element(element).contact).stand_in) return false;
+  return is_nearly_concave(element, 0, u, v, directions, hollow);
+}
+
 bool CurvedRegions::are_definite(int element, const Interval& u, const Interval& v) {
   if (pieces_.geometry().patch(pieces_.element(element).contact).stand_in) return false;
-  return sign(tree(element), 0, u, v) != 0;
+  return sign(element, 0, u, v) != 0;
 }
 
 }  // namespace taut

@@ -20,18 +20,34 @@ class CurvedRegions {
   /// not zero; at poles of the patch too. @pre the element is a patch
   bool are_definite(int element, const Interval& u, const Interval& v);
 
+  /// Certain: all over the rectangle, where a normal is one of the directions, the surface bends
+  /// away from it, or towards it with a curvature of at most `hollow`. Only of patches without
+  /// weights and poles. @pre the element is a patch
+  bool are_nearly_concave(int element, const Interval& u, const Interval& v,
+                          const std::array<dvec3, 4>& directions, double hollow);
+
  private:
   struct Node {
     Interval u, v;
     int level = 0;
     bool known = false;
     int sign = 0;
+    /// Of its normals, and bounds of the curvatures against them and along them.
+    CurvatureNets::NormalBounds normals;
+    std::array<double, 2> hollow = {infinity, infinity};
     int first_half = -1;
-    std::unique_ptr<CurvatureNets> nets;
+    std::unique_ptr<CurvatureNets> nets;  ///< none once it has halves
   };
   using Tree = std::vector<Node>;
   Tree& tree(int element);
-  int sign(Tree& tree, int node, const Interval& u, const Interval& v);
+  int sign(int element, int node, const Interval& u, const Interval& v);
+  bool is_nearly_concave(int element, int node, const Interval& u, const Interval& v,
+                         const std::array<dvec3, 4>& directions, double hollow);
+  static bool is_small_part(const Node& node, const Interval& u, const Interval& v);
+  bool has_pole(int element) const;
+  void know(int element, Node& node) const;
+  double least_stretch(int element, const Interval& u, const Interval& v) const;
+  bool split(Tree& tree, int node);
 
   const MapPieces& pieces_;
   std::vector<Tree> trees_;  // by element
