@@ -259,18 +259,21 @@ std::array<int, 2> MapPieces::halves(int index, Direction across) {
     if (made[0] >= 0) return made;
   }
   const MapPiece whole = pieces_[std::size_t(index)];
-  std::array<MapPiece, 2> half = {whole, whole};
+  std::array<MapPiece, 2> half;
   for (MapPiece& h : half) {
-    h.halves_u = h.halves_v = {-1, -1};
-    h.inward.clear();
+    h.element = whole.element;
+    h.u = whole.u;
+    h.v = whole.v;
   }
   const auto split = [&](const StoredNet& net) {
-    const auto first = points_.begin() + std::ptrdiff_t(net.first);
-    std::vector<dvec4> upper(first, first + net.shape.size());
-    std::vector<dvec4> lower(upper.size());
-    along_u ? halve_u(net.shape, upper.data(), lower.data())
-            : halve_v(net.shape, upper.data(), lower.data());
-    return std::array<StoredNet, 2>{store(net.shape, lower), store(net.shape, upper)};
+    const auto size = std::size_t(net.shape.size());
+    const std::size_t first = points_.size();
+    points_.resize(first + 2 * size);
+    dvec4* const lower = points_.data() + first;
+    dvec4* const upper = lower + size;
+    std::copy_n(points_.data() + net.first, size, upper);
+    along_u ? halve_u(net.shape, upper, lower) : halve_v(net.shape, upper, lower);
+    return std::array<StoredNet, 2>{StoredNet{net.shape, first}, {net.shape, first + size}};
   };
   const auto nets = split(whole.exact);
   const bool rational = elements_[std::size_t(whole.element)].rational;
