@@ -44,6 +44,11 @@ double largest(double a, double b, double c) {
   return std::max(at_one(a, std::abs(b), c), at_one(c, std::abs(b), a));
 }
 
+/// Of length one, from a side into its patch.
+dvec3 inwards(const ContactJet& j, Side side) {
+  return unit((at_upper_end(side) ? -1.0 : 1.0) * (along_v(side) ? j.dx[0] : j.dx[1]));
+}
+
 }  // namespace
 
 /// Along any chord of the rectangle second derivatives are at most 8 rho over its length's square:
@@ -106,24 +111,38 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
   return true;
 }
 
-/// At neither end of what they share do the heights along it grow outwards: its highest point is
-/// inside, where the gradient across is that of both sides, and so the highest of one of them.
-bool NearConcavity::meet_once(const CellView& view, const Branches& branches,
+/// The highest point of what they share is inside, where the gradient across is that of both sides,
+/// and so the highest of one of them; or at an end that the heights along it grow towards, if what
+/// leads from there into the two sides is opposite: it is the highest of the one they fall into.
+bool NearConcavity::meet_once(const CellView& view, const Branches& branches, const Branch& branch,
                               const Glue& glue) const {
   if (glue.kind == Glue::Kind::edges) return true;  // they share a point
-  const Side side = Side(glue.at_a);
-  const Chart& chart = branches.chart(glue.a);
-  const Contact& c = pieces_.element(chart.element).contact;
-  const Interval& common = along(chart, side);
+  const Interval& common = along(branches.chart(glue.a), Side(glue.at_a));
+  const Interval& other = along(branches.chart(glue.b), Side(glue.at_b));
+  const double size = glm::distance(branch.lower, branch.upper);
   for (const bool upper : {false, true}) {
-    const dvec2 uv = on_side(side, upper ? common.upper : common.lower);
-    const ContactJet j = pieces_.geometry().jet({c.instance, c.kind, c.element, uv.x, uv.y});
-    const dvec3 outwards = (upper ? 1.0 : -1.0) * (along_v(side) ? j.dx[1] : j.dx[0]);
-    for (const dvec3& d : view.corners()) {
-      if (glm::dot(outwards, d) > 0) return false;
+    const double t = upper ? common.upper : common.lower;
+    const ContactJet own = jet_at(branches, glue.a, Side(glue.at_a), t);
+    const dvec3 outwards =
+        (upper ? 1.0 : -1.0) * (along_v(Side(glue.at_a)) ? own.dx[1] : own.dx[0]);
+    const auto& d = view.corners();
+    if (std::all_of(d.begin(), d.end(), [&](const dvec3& n) { return glm::dot(outwards, n) <= 0; }))
+      continue;
+    const double there = glue.reversed ? 1 - t : t;
+    if (there != (upper != glue.reversed ? other.upper : other.lower)) return false;
+    const ContactJet beyond = jet_at(branches, glue.b, Side(glue.at_b), there);
+    const dvec3 both = inwards(own, Side(glue.at_a)) + inwards(beyond, Side(glue.at_b));
+    for (const dvec3& n : d) {
+      if (!(glm::dot(both, n) * size <= rho_)) return false;
     }
   }
   return true;
+}
+
+ContactJet NearConcavity::jet_at(const Branches& branches, int chart, Side side, double t) const {
+  const Contact& c = pieces_.element(branches.chart(chart).element).contact;
+  const dvec2 uv = on_side(side, t);
+  return pieces_.geometry().jet({c.instance, c.kind, c.element, uv.x, uv.y});
 }
 
 bool NearConcavity::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
@@ -145,7 +164,7 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
     if (glue.kind == Glue::Kind::faces && !(element.kink[std::size_t(glue.at_a)] * size <= rho_)) {
       continue;
     }
-    if (meet_once(view, branches, glue)) sets.unite(glue.a, glue.b);
+    if (meet_once(view, branches, branch, glue)) sets.unite(glue.a, glue.b);
   }
   for (const int k : branch.charts) {
     if (sets.find(k) != sets.find(branch.charts.front())) return false;

@@ -18,7 +18,9 @@ class NearConcavity {
 
  private:
   bool is_nearly_concave(const CellView& view, const Chart& chart);
-  bool meet_once(const CellView& view, const Branches& branches, const Glue& glue) const;
+  bool meet_once(const CellView& view, const Branches& branches, const Branch& branch,
+                 const Glue& glue) const;
+  ContactJet jet_at(const Branches& branches, int chart, Side side, double t) const;
 
   const MapPieces& pieces_;
   double rho_;
