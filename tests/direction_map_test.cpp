@@ -3,15 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cages.h"
 #include "judge/families.h"
+#include "judge/patterns.h"
 #include "judge/support_reference.h"
 #include "judge/sweeps.h"
 #include "models.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/decide/map_topology.h"
 #include "taut/surface/resolution.h"
 
@@ -26,6 +31,7 @@ using taut::MapCellKind;
 using taut::MapNode;
 using taut::MapTopology;
 using taut::Scene;
+using taut::unit;
 
 /// A model with its map at the resolution that is the model's.
 struct Mapped {
@@ -77,6 +83,28 @@ Shape waisted() {
   return upper + mapped(upper, mirror);
 }
 
+Shape with_rims(Shape shape, double radius, double height, const dvec3& off) {
+  for (const double z : {0.0, height}) {
+    shape.curves.push_back(circle(dvec3(0, 0, z) + off, {radius, 0, 0}, {0, radius, 0}));
+  }
+  return shape;
+}
+
+Shape capsule_of_one_size() {
+  Random random(1);
+  return scaled(capsule(random).shape, 0.1);
+}
+
+Shape turned(const Shape& shape, double angle) {
+  return mapped(shape, dmat3(1, 0, -angle, 0, 1, 0, angle, 0, 1));
+}
+
+/// The eight corners on a sphere of radius 1.
+Shape box_in_a_sphere() {
+  return sphere() +
+         shifted(box(2 * 2.0 / 3, 2 * 2.0 / 3, 2 * 1.0 / 3), {-2.0 / 3, -2.0 / 3, -1.0 / 3});
+}
+
 /// Regions are contacts that hang together; arcs between them scrolls, straight edges among them;
 /// nodes facets.
 std::vector<Known> known_maps() {
@@ -106,6 +134,25 @@ std::vector<Known> known_maps() {
       {"waisted", waisted(), 2, 1, 0},
       {"oloid", oloid(), 2, 1, 0},
       {"filleted_box", filleted_box(4, 3, 2, 0.5), 8, 12, 6},
+      // The same surfaces and curves in other parameters, or nearly the same.
+      {"sphere_of_two_seams", sphere() + mapped(sphere(), skew_rotation()), 1, 0, 0},
+      {"ellipsoid_of_two_seams",
+       ellipsoid(3, 2, 1) + mapped(mapped(sphere(), skew_rotation()),
+                                   dmat3(dvec3(3, 0, 0), dvec3(0, 2, 0), dvec3(0, 0, 1))),
+       1, 0, 0},
+      {"spheres_of_two_seams_in_a_row",
+       in_a_row(sphere(), 2, {4, 2, 1}) + shifted(mapped(sphere(), skew_rotation()), {2, 1, 0.5}),
+       2, 1, 0},
+      {"walls_that_overlap", cylinder(1, 2) + mapped(cylinder(1, 2), turn_about_z(0.5), {0, 0, 1}),
+       2, 1, 2},
+      {"cylinder_with_rims", with_rims(solid_cylinder(1, 2), 1, 2, dvec3(0.0)), 2, 1, 2},
+      {"cylinder_with_rims_off_it", with_rims(solid_cylinder(1, 2), 1, 2, {1e-9, 0, -1e-9}), 2, 1,
+       2},
+      {"capsule", capsule_of_one_size(), 2, 1, 0},
+      {"capsule_turned_a_little", capsule_of_one_size() + turned(capsule_of_one_size(), 1e-8), 2, 1,
+       0},
+      {"sphere_that_touches_another", two_spheres(1, 0.5, 0.5), 1, 0, 0},
+      {"box_in_a_sphere", box_in_a_sphere(), 1, 0, 0},
   };
 }
 
@@ -139,6 +186,51 @@ TEST_P(KnownMapsTurned, AreFound) {
 
 INSTANTIATE_TEST_SUITE_P(Turned, KnownMapsTurned, testing::ValuesIn(known_maps()),
                          [](const auto& info) { return info.param.name; });
+
+/// A shape beside another one, at a distance.
+struct Neighbors {
+  const char* name;
+  std::function<Shape(double)> at;
+  double far;  ///< in diagonals
+  /// Numbers far below the resolution, and from there on.
+  std::array<int, 3> one, two;
+};
+
+Shape two_seams_at(double off) {
+  return sphere() + shifted(mapped(sphere(), skew_rotation()), off * unit({2, 1, -2}));
+}
+Shape rims_at(double off) { return with_rims(cylinder(1, 2), 1, 2, off * unit({1, 0, -1})); }
+Shape radii_at(double off) { return cylinder(1, 2) + shifted(cylinder(1 + off, 2), {0, 0, 2}); }
+Shape overlapping_radii_at(double off) {
+  return cylinder(1, 2) + mapped(cylinder(1 + off, 2), turn_about_z(0.5), {0, 0, 1});
+}
+
+/// What is nearer than an eighth of the resolution is one; what is eight times as far is told
+/// apart, or where edges would be joined what is eight times as far as that.
+TEST(DirectionMap, TellsNeighborsApart) {
+  const std::vector<Neighbors> all = {
+      {"two_seams", two_seams_at, 8 * taut::resolution_floor, {1, 0, 0}, {2, 1, 0}},
+      {"rims", rims_at, 8 * taut::join_distance, {2, 1, 2}, {4, 4, 4}},
+      {"radii", radii_at, 8 * taut::join_distance, {2, 1, 2}, {3, 2, 2}},
+      {"radii_that_overlap",
+       overlapping_radii_at,
+       8 * taut::resolution_floor,
+       {2, 1, 2},
+       {3, 2, 2}},
+  };
+  for (const Neighbors& neighbors : all) {
+    SCOPED_TRACE(neighbors.name);
+    const double diagonal = make_scene(neighbors.at(0)).diagonal();
+    const auto& [one, two] = std::tie(neighbors.one, neighbors.two);
+    expect_known({"one", {}, one[0], one[1], one[2]},
+                 neighbors.at(taut::tie_share * taut::resolution_floor * diagonal));
+    for (const double share : {1, 10, 100}) {
+      SCOPED_TRACE(share);
+      expect_known({"two", {}, two[0], two[1], two[2]},
+                   neighbors.at(share * neighbors.far * diagonal));
+    }
+  }
+}
 
 /// The cells are all of the sphere, once.
 TEST(DirectionMap, CellsCoverTheCube) {

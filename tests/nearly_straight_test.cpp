@@ -33,7 +33,7 @@ std::pair<int, int> counts(const Shape& shape) {
   const MapPieces pieces(geometry, scene.frame().length_to_frame(rho));
   std::pair<int, int> result;
   for (const MapElement& e : pieces.elements()) {
-    if (e.contact.kind == SourceKind::edge) ++(e.covered ? result.first : result.second);
+    if (e.contact.kind == SourceKind::edge) ++(e.likeness.covered ? result.first : result.second);
   }
   return result;
 }

@@ -24,6 +24,7 @@ struct Interval {
     return s <= 0 ? lower : s >= 1 ? upper : (1 - s) * lower + s * upper;
   }
 };
+inline bool excludes_zero(const Interval& x) { return x.lower > 0 || x.upper < 0; }
 
 /// Axis-parallel closed box. A default-constructed box is empty and contains nothing.
 struct Box {

@@ -5,8 +5,6 @@
 namespace taut {
 namespace {
 
-bool excludes_zero(const Interval& x) { return x.lower > 0 || x.upper < 0; }
-
 Interval difference(const Interval& x, const Interval& y) {
   return {x.lower - y.upper, x.upper - y.lower};
 }

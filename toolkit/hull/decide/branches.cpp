@@ -1,6 +1,7 @@
 #include "taut/hull/decide/branches.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "taut/core/disjoint_sets.h"
@@ -28,6 +29,23 @@ Interval turned(const Interval& t, bool reversed) {
 
 Interval& along(Chart& chart, Side side) { return along_v(side) ? chart.v : chart.u; }
 
+/// What of a branch may be moved: the elements that are translates of others, or of one round shape
+/// together; none where one is no translate.
+std::vector<const Likeness*> movable(const MapPieces& pieces, const Branches& branches,
+                                     const Branch& branch) {
+  std::vector<const Likeness*> result;
+  for (const int chart : branch.charts) {
+    const Likeness& own = pieces.element(branches.chart(chart).element).likeness;
+    if (own.group < 0) return {};
+    if (std::none_of(result.begin(), result.end(), [&](const Likeness* other) {
+          return other->group == own.group && other->place == own.place;
+        })) {
+      result.push_back(&own);
+    }
+  }
+  return result;
+}
+
 /// The strip of no width along a side.
 std::array<Interval, 2> strip(Side side, const Interval& t) {
   const double fixed = at_upper_end(side) ? 1 : 0;
@@ -42,6 +60,28 @@ const Interval& along(const Chart& chart, Side side) { return along_v(side) ? ch
 bool is_at(const Chart& chart, Side side) {
   const Interval& across = along_v(side) ? chart.u : chart.v;
   return at_upper_end(side) ? across.upper == 1 : across.lower == 0;
+}
+
+std::optional<Box> translation(const MapPieces& pieces, const Branches& branches,
+                               const Branch& from, const Branch& to, double tolerance) {
+  const std::vector<const Likeness*> own = movable(pieces, branches, from);
+  const std::vector<const Likeness*> others = movable(pieces, branches, to);
+  if (own.empty() || own.size() != others.size()) return std::nullopt;
+  for (const Likeness* first : others) {
+    if (first->group != own.front()->group) continue;
+    const dvec3 off = first->place - own.front()->place;
+    Box box;
+    const bool all_move = std::all_of(own.begin(), own.end(), [&](const Likeness* a) {
+      return std::any_of(others.begin(), others.end(), [&](const Likeness* b) {
+        const dvec3 moved = b->place - a->place;
+        if (a->group != b->group || !(glm::distance(moved, off) <= tolerance)) return false;
+        box.include(moved);
+        return true;
+      });
+    });
+    if (all_move) return box;
+  }
+  return std::nullopt;
 }
 
 void Branches::clear() {
@@ -65,7 +105,7 @@ void Branches::find(const CellView& view) {
   clear();
   make_charts(view);
   glue(view.pieces());
-  sort_into_branches();
+  sort_into_branches(view.pieces());
   find_boxes(view);
 }
 
@@ -104,7 +144,7 @@ bool Branches::extend(const MapPieces& pieces, const std::vector<std::pair<int, 
     if (!extend(pieces, chart, side)) return false;
   }
   glue(pieces);
-  sort_into_branches();
+  sort_into_branches(pieces);
   for (Branch& branch : branches_) {
     std::vector<dvec4> net;
     for (const int k : branch.charts) {
@@ -219,13 +259,12 @@ void Branches::glue_face(const MapPieces& pieces, int index) {
   for (const Side side : all_sides) {
     if (!is_at(chart, side)) continue;
     const Border& border = patch.borders[std::size_t(side)];
-    if (border.kind == BorderKind::smooth) {
-      const int element = pieces.find({c.instance, SourceKind::face, border.neighbor, 0, 0});
-      const auto there = strip(border.neighbor_side, turned(along(chart, side), border.reversed));
-      const int other = chart_touching(element, there[0], there[1]);
+    const auto& beyond = pieces.element(chart.element).beyond[std::size_t(side)];
+    if (beyond.element >= 0) {
+      const auto there = strip(beyond.side, turned(along(chart, side), beyond.reversed));
+      const int other = chart_touching(beyond.element, there[0], there[1]);
       if (other >= 0) {
-        add({Glue::Kind::faces, index, other, int(side), int(border.neighbor_side),
-             border.reversed});
+        add({Glue::Kind::faces, index, other, int(side), int(beyond.side), beyond.reversed});
       }
     } else if (border.kind == BorderKind::collapsed) {
       at_vertex(border.vertex, int(side));
@@ -258,6 +297,11 @@ void Branches::glue_edge(const MapPieces& pieces, int index) {
       const int other = chart_touching(element, {0, 0}, {0, 0});
       if (other >= 0) add({Glue::Kind::edge_vertex, index, other, end, 0, false});
     }
+    if (const auto& [passed, at] = pieces.element(chart.element).next[std::size_t(end)];
+        passed >= 0) {
+      const int other = chart_touching(passed, {double(at), double(at)}, {0, 0});
+      if (other >= 0) add({Glue::Kind::edges, index, other, end, at, false});
+    }
     const int next = piece.end_neighbor[std::size_t(end)];
     if (next < 0) continue;
     const Contact beyond{c.instance, SourceKind::edge, next, 0, 0};
@@ -287,10 +331,15 @@ void Branches::even_out() {
   }
 }
 
-void Branches::sort_into_branches() {
+void Branches::sort_into_branches(const MapPieces& pieces) {
   DisjointSets sets(charts_.size());
   for (const Glue& glue : glues_) sets.unite(glue.a, glue.b);
   branches_.clear();
+  std::map<int, int> of_rounds;
+  for (int k = 0; k < int(charts_.size()); ++k) {
+    const int round = pieces.element(charts_[std::size_t(k)].element).likeness.round;
+    if (round >= 0) sets.unite(k, of_rounds.try_emplace(round, k).first->second);
+  }
   std::vector<int> branch_of(charts_.size(), -1);
   for (std::size_t k = 0; k < charts_.size(); ++k) {
     int& branch = branch_of[std::size_t(sets.find(int(k)))];

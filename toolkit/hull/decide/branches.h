@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -71,7 +72,7 @@ class Branches {
   /// Charts span the same stretch of what they share.
   void even_out();
   void glue(const MapPieces& pieces);
-  void sort_into_branches();
+  void sort_into_branches(const MapPieces& pieces);
   void find_boxes(const CellView& view);
   bool extend(const MapPieces& pieces, int chart, Side side);
   int chart_touching(int element, const Interval& u, const Interval& v) const;
@@ -81,6 +82,11 @@ class Branches {
   std::vector<Glue> glues_;
   std::vector<int> rest_;  // scratch
 };
+
+/// How far a branch is moved to be another one, to within rounding of the model's coordinates; none
+/// if they are no translates of each other.
+std::optional<Box> translation(const MapPieces& pieces, const Branches& branches,
+                               const Branch& from, const Branch& to, double tolerance);
 
 /// The interval of a side's free parameter that a chart spans.
 const Interval& along(const Chart& chart, Side side);

@@ -45,9 +45,18 @@ bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
   });
 }
 
+bool CellView::is_surpassed(const MapElement& element) const {
+  const std::vector<dvec3>& to_others = element.likeness.to_others;
+  return std::any_of(to_others.begin(), to_others.end(), [&](const dvec3& off) {
+    return std::all_of(d_.begin(), d_.end(),
+                       [&](const dvec3& d) { return glm::dot(off, d) > noise_; });
+  });
+}
+
 void CellView::look(int index) {
   ++looked_;
   const MapPiece& piece = pieces_.piece(index);
+  if (is_surpassed(pieces_.element_of(piece))) return;
   const dvec4* p = pieces_.points(piece.net);
   SeenPiece seen{index, values_.size(), {}, {}};
   seen.top.fill(-infinity);

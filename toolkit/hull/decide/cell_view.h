@@ -27,7 +27,8 @@ class CellView {
   /// A beacon is the highest of them for some direction of the cell.
   bool is_highest(std::size_t beacon) const { return envelope_.is_highest(beacon); }
 
-  /// Looks at a piece: drops it if for each direction one of the beacons is above all of it.
+  /// Looks at a piece: drops it if for each direction one of the beacons is above all of it, or its
+  /// element moved on to a translate is higher.
   void look(int piece);
   /// Once all pieces have been looked at: drops those that no plane can touch.
   void finish();
@@ -48,6 +49,7 @@ class CellView {
 
  private:
   bool is_beaten(const SeenPiece& seen, const MapPiece& piece) const;
+  bool is_surpassed(const MapElement& element) const;
   bool rises_inward(const SeenPiece& seen) const;
 
   MapPieces& pieces_;

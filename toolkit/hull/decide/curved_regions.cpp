@@ -29,16 +29,12 @@ CurvedRegions::Tree& CurvedRegions::tree(int element) {
   Tree& tree = trees_[std::size_t(element)];
   if (!tree.empty()) return tree;
   const MapElement& e = pieces_.element(element);
-  const Patch& patch = pieces_.geometry().patch(e.contact);
   const StoredNet& net = pieces_.piece(e.root).exact;
   BezierPatch bezier{net.shape.p, net.shape.q, {}};
   const dvec4* p = pieces_.points(net);
   bezier.points.assign(p, p + net.shape.size());
   std::array<bool, 4> poles;
-  for (const Side side : all_sides) {
-    const Border& border = patch.borders[std::size_t(side)];
-    poles[std::size_t(side)] = border.kind == BorderKind::collapsed && border.vertex < 0;
-  }
+  for (const Side side : all_sides) poles[std::size_t(side)] = pieces_.is_pole(e, side);
   Node root;
   root.nets = std::make_unique<CurvatureNets>(bezier, poles);
   tree.push_back(std::move(root));

@@ -11,6 +11,8 @@
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/disjoint_sets.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/decide/branch_differences.h"
 #include "taut/hull/decide/branch_domination.h"
 #include "taut/hull/decide/branch_order.h"
 #include "taut/hull/decide/branches.h"
@@ -76,16 +78,17 @@ class Decider {
         view_(pieces_, noise_units * geometry.scene().content().rounding),
         domination_(pieces_.budget_left() * options.resolution),
         index_(pieces_, options.resolution),
-        concavity_(pieces_, options.resolution) {}
+        concavity_(pieces_, options.resolution),
+        differences_(pieces_, view_, branches_, cover_share * options.resolution) {}
 
   DirectionMap run() {
     std::vector<int> all;
     for (const MapElement& e : pieces_.elements()) {
-      if (!e.covered) all.push_back(e.root);
+      if (!e.likeness.covered) all.push_back(e.root);
     }
     const auto whole = std::make_shared<const std::vector<int>>(std::move(all));
     for (int face = 0; face < 6; ++face) {
-      waiting_.push_back({{face, 0, 0, 0, MapCellKind::undecided, {}, {}, {}}, whole, {}, {}});
+      waiting_.push_back({{face, 0, 0, 0}, whole, {}, {}});
     }
     do {
       decide_waiting();
@@ -182,14 +185,7 @@ class Decider {
              const Contact& hint) {
     const auto shared = std::make_shared<const std::vector<int>>(std::move(pieces));
     for (std::uint32_t k = 0; k < 4; ++k) {
-      waiting_.push_back({{cell.face,
-                           cell.level + 1,
-                           2 * cell.i + k / 2,
-                           2 * cell.j + k % 2,
-                           MapCellKind::undecided,
-                           {},
-                           {},
-                           {}},
+      waiting_.push_back({{cell.face, cell.level + 1, 2 * cell.i + k / 2, 2 * cell.j + k % 2},
                           shared,
                           beacons,
                           hint});
@@ -213,6 +209,7 @@ class Decider {
     beacons.push_back(support.point);
     while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
     view_.turn_to(d, support.point, beacons);
+    differences_.turn_to(axes_.first, axes_.second);
     drop_low(beacons);
     for (const int piece : *pieces) view_.look(piece);
     view_.finish();
@@ -263,12 +260,28 @@ class Decider {
     if (kind == MapCellKind::node) cell.normal = plane_of_three();
     for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
     cell.contacts.insert(cell.contacts.end(), dominated_.begin(), dominated_.end());
+    if (kind != MapCellKind::region && kind != MapCellKind::undecided) {
+      cell.translates = differences_.translates();
+      cell.rounds = differences_.rounds();
+    }
+    if (kind == MapCellKind::in_line) put_in_line(cell);
     if (kind == MapCellKind::facet || kind == MapCellKind::node) {
       nodes_.emplace(int(map_.cells.size()), Node{pieces_left(), beacons});
     }
     ++map_.statistics.of_kind[std::size_t(kind)];
     map_.statistics.deepest = std::max(map_.statistics.deepest, cell.level);
     map_.cells.push_back(std::move(cell));
+  }
+
+  void put_in_line(MapCell& cell) const {
+    const std::vector<Box> contacts = cell.contacts;
+    const std::vector<MapCell::Round> rounds = cell.rounds;
+    for (const std::size_t k : {0u, 1u, 2u}) {
+      const auto from = std::size_t((*line_)[k]);
+      cell.contacts[k] = contacts[from];
+      cell.rounds[k] = rounds[from];
+    }
+    cell.translates.clear();  // rounds tell more
   }
 
   std::optional<MapCellKind> decided(bool before_splits) {
@@ -313,19 +326,33 @@ class Decider {
 
   std::optional<MapCellKind> kind_of_branches(bool extends) {
     const std::vector<Branch>& all = branches_.all();
-    if (all.size() > 3 || !boxes_part(all)) return std::nullopt;
-    if (all.size() > 1) order_.find(view_, branches_, axes_.first, axes_.second);
-    if (all.size() == 2 && !order_.apart(0, 1)) return std::nullopt;
-    if (all.size() == 3 && !order_.go_around(0, 1, 2)) return std::nullopt;
+    const std::optional<MapCellKind> kind = kind_of_contacts(all);
+    if (!kind) return std::nullopt;
     for (const Branch& branch : all) {
-      if (!index_.is_one(view_, branches_, branch) &&
+      if (!differences_.is_round(branch) && !index_.is_one(view_, branches_, branch) &&
           !concavity_.is_one(view_, branches_, branch) &&
           !(extends && index_.is_one_of_more(view_, branches_, branch))) {
         return std::nullopt;
       }
     }
-    constexpr std::array kinds = {MapCellKind::region, MapCellKind::arc, MapCellKind::node};
-    return all.empty() ? std::nullopt : std::optional(kinds[all.size() - 1]);
+    return kind;
+  }
+
+  /// If each branch has one contact.
+  std::optional<MapCellKind> kind_of_contacts(const std::vector<Branch>& all) {
+    if (all.size() == 1) return MapCellKind::region;
+    if (all.empty() || all.size() > 3) return std::nullopt;
+    const bool part = boxes_part(all);
+    if (part) order_.find(view_, branches_, axes_.first, axes_.second);
+    if (all.size() == 2) {
+      const bool is_arc = (part && order_.apart(0, 1)) || differences_.is_arc(all[0], all[1]);
+      return is_arc ? std::optional(MapCellKind::arc) : std::nullopt;
+    }
+    if ((part && order_.go_around(0, 1, 2)) || differences_.is_node(all[0], all[1], all[2])) {
+      return MapCellKind::node;
+    }
+    line_ = differences_.line_of(all);
+    return line_ ? std::optional(MapCellKind::in_line) : std::nullopt;
   }
 
   /// A point of a contact tells by its place which of them it is of.
@@ -438,6 +465,8 @@ class Decider {
   BranchOrder order_;
   ContactIndex index_;
   NearConcavity concavity_;
+  BranchDifferences differences_;
+  std::optional<std::array<int, 3>> line_;
   FaceAxes axes_;
   DirectionMap map_;
   std::map<int, Node> nodes_;  // by cell

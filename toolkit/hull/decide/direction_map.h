@@ -18,8 +18,10 @@ enum class MapCellKind {
   facet,      ///< all lie within the resolution of one plane, whose normal is in the cell
   flat,       ///< all lie within the resolution of all the planes
   undecided,  ///< none of these is proven
+  in_line,    ///< one of three, of which the first and the last exchange with the one between only,
+              ///< along two curves that are graphs over one axis, or not
 };
-inline constexpr std::size_t map_cell_kinds = 6;
+inline constexpr std::size_t map_cell_kinds = 7;
 
 /// A cell of a quadtree over a face of the cube of directions: [i, i + 1] x [j, j + 1] in units of
 /// 2^(1 - level) from -1.
@@ -35,6 +37,20 @@ struct MapCell {
   /// Supports in the direction of the middle of the cell's corners; none if the cell was not looked
   /// at.
   Contact contact = {};
+  /// Which of the contacts, the first like it, each is a translate of, and by how much it is moved:
+  /// itself, not at all, if it is like none. Of several contacts only.
+  struct Translate {
+    int of = 0;
+    dvec3 by = dvec3(0.0);
+  };
+  std::vector<Translate> translates;
+  /// Where all contacts are of round shapes (RoundShape), and several, these: what touches a plane
+  /// across d is as high as center . d + |root d|.
+  struct Round {
+    dvec3 center;
+    dmat3 root;
+  };
+  std::vector<Round> rounds;
   /// kinds node and facet: normal of the plane that touches all of them, about, outwards.
   dvec3 normal = dvec3(0.0);
   /// kind facet: how far what touches the plane reaches from a line in it, at least.

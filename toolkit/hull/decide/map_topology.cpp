@@ -30,9 +30,9 @@ class Assembly {
         first_(first_contacts(map.cells)),
         regions_(std::size_t(first_.back())),
         clusters_(map.cells.size()),
-        arcs_(map.cells.size()),
+        arcs_(2 * map.cells.size()),
         supports_(std::size_t(first_.back()), false),
-        has_arc_(map.cells.size(), false) {}
+        has_arc_(2 * map.cells.size(), false) {}
 
   MapTopology run() {
     std::vector<CellTree::CellSide> sides;
@@ -61,15 +61,21 @@ class Assembly {
   }
 
   const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
+  /// Beside the contacts that are told apart others all but support.
+  bool has_more(int k) const {
+    return cell(k).kind == MapCellKind::arc && cell(k).contacts.size() > 2;
+  }
+
   /// Of those one cannot tell from their border what is inside.
   bool is_open(int k) const {
-    return merges_[std::size_t(k)] ||
-           (cell(k).kind != MapCellKind::region && cell(k).kind != MapCellKind::arc);
+    if (merges_[std::size_t(k)] || has_more(k)) return true;
+    const MapCellKind kind = cell(k).kind;
+    return kind != MapCellKind::region && kind != MapCellKind::arc && kind != MapCellKind::in_line;
   }
 
   /// The cell tells its contacts apart.
   bool is_known(int k) const {
-    return cell(k).kind != MapCellKind::undecided && !cell(k).contacts.empty();
+    return cell(k).kind != MapCellKind::undecided && !cell(k).contacts.empty() && !has_more(k);
   }
 
   /// Two contacts that one cell tells apart are one to that beside it, within the resolution.
@@ -89,11 +95,33 @@ class Assembly {
     const std::vector<Box>& contacts = cell(k).contacts;
     const int first = first_[std::size_t(k)];
     if (contacts.size() < 2 || cell(k).kind == MapCellKind::region) return first;
+    const std::vector<MapCell::Round>& rounds = cell(k).rounds;
+    if (!rounds.empty()) {
+      const auto height = [&](const MapCell::Round& round) {
+        return glm::dot(round.center, d) + glm::length(round.root * d);
+      };
+      const auto highest =
+          std::max_element(rounds.begin(), rounds.end(),
+                           [&](const auto& a, const auto& b) { return height(a) < height(b); });
+      return first + int(highest - rounds.begin());
+    }
     const dvec3 x = point(d);
     const auto best = std::min_element(
         contacts.begin(), contacts.end(),
         [&](const Box& a, const Box& b) { return distance(a, x) < distance(b, x); });
-    return first + int(best - contacts.begin());
+    return first + farthest_translate(cell(k), int(best - contacts.begin()), d);
+  }
+
+  /// Of a contact and its translates, of which boxes may be nearly the same.
+  static int farthest_translate(const MapCell& cell, int contact, const dvec3& d) {
+    const std::vector<MapCell::Translate>& all = cell.translates;
+    if (contact >= int(all.size())) return contact;
+    int best = contact;
+    for (int k = 0; k < int(all.size()); ++k) {
+      if (all[std::size_t(k)].of != all[std::size_t(contact)].of) continue;
+      if (glm::dot(all[std::size_t(k)].by - all[std::size_t(best)].by, d) > 0) best = k;
+    }
+    return best;
   }
 
   /// The point that supports in a direction, which is asked for from several cells.
@@ -120,20 +148,41 @@ class Assembly {
       if (is_known(b)) supports_[std::size_t(others[end])] = true;
       if (is_known(a) && is_known(b)) regions_.unite(own[end], others[end]);
     }
-    const bool crosses_a = own[0] != own[1];
-    const bool crosses_b = others[0] != others[1];
+    const std::vector<int> crossed = arcs_between(a, own);
+    const std::vector<int> crossed_there = arcs_between(b, others);
     if (is_open(a) && is_open(b)) {
       clusters_.unite(a, b);
     } else if (is_open(a) || is_open(b)) {
-      const int closed = is_open(a) ? b : a;
-      if (closed == a ? !crosses_a : !crosses_b) return;
-      has_arc_[std::size_t(closed)] = true;
-      const auto& [from, to] = closed == a ? others : own;
-      ends_.push_back({closed, is_open(a) ? a : b, {std::min(from, to), std::max(from, to)}});
-    } else if (crosses_a && crosses_b) {
-      has_arc_[std::size_t(a)] = has_arc_[std::size_t(b)] = true;
-      arcs_.unite(a, b);
+      const bool a_is_open = is_open(a);
+      const auto& [from, to] = a_is_open ? own : others;
+      for (const int arc : a_is_open ? crossed_there : crossed) {
+        has_arc_[std::size_t(arc)] = true;
+        ends_.push_back({arc, a_is_open ? a : b, {std::min(from, to), std::max(from, to)}});
+      }
+    } else {
+      for (std::size_t k = 0; k < std::min(crossed.size(), crossed_there.size()); ++k) {
+        for (const int arc : {crossed[k], crossed_there[k]}) has_arc_[std::size_t(arc)] = true;
+        arcs_.unite(crossed[k], crossed_there[k]);
+      }
+      // The contact between two arcs.
+      if (crossed.size() > 1) supports_[std::size_t(first_[std::size_t(a)] + 1)] = true;
+      if (crossed.size() > 1 && crossed_there.size() > 1) {
+        regions_.unite(first_[std::size_t(a)] + 1, first_[std::size_t(b)] + 1);
+      }
     }
+  }
+
+  /// A cell has one arc, twice its number, or two in line. Those on the way from one of its
+  /// contacts to another.
+  std::vector<int> arcs_between(int k, const std::array<int, 2>& contacts) const {
+    if (contacts[0] == contacts[1]) return {};
+    if (cell(k).kind != MapCellKind::in_line) return {2 * k};
+    const int from = contacts[0] - first_[std::size_t(k)];
+    const int to = contacts[1] - first_[std::size_t(k)];
+    std::vector<int> arcs;
+    for (int arc = std::min(from, to); arc < std::max(from, to); ++arc) arcs.push_back(2 * k + arc);
+    if (from > to) std::reverse(arcs.begin(), arcs.end());
+    return arcs;
   }
 
   /// Cells of one facet may touch in a corner only, or have others between them. Three of its
@@ -171,8 +220,9 @@ class Assembly {
         node.cells.push_back(k);
         node.is_facet = node.is_facet || cell(k).kind == MapCellKind::facet;
       }
-      if (has_arc_[std::size_t(k)]) {
-        number(arcs, arcs_.find(k), result_.arcs).cells.push_back(k);
+      for (const int arc : {2 * k, 2 * k + 1}) {
+        if (!has_arc_[std::size_t(arc)]) continue;
+        number(arcs, arcs_.find(arc), result_.arcs).cells.push_back(k);
       }
     }
     for (const End& end : ends_) {
@@ -232,7 +282,7 @@ class Assembly {
     }
   }
 
-  /// A cell with an arc, and the open one beside it, with the numbers of the latter's contacts.
+  /// A cell's arc, and the open one beside it, with the numbers of the latter's contacts.
   struct End {
     int arc, at;
     std::pair<int, int> contacts;
@@ -245,8 +295,8 @@ class Assembly {
   std::vector<int> first_;  // contact of each cell
   DisjointSets regions_, clusters_, arcs_;
   std::vector<bool> supports_;  // by contact
-  std::vector<bool> has_arc_;
-  std::vector<bool> merges_;  // by cell: where an arc ends for want of resolution
+  std::vector<bool> has_arc_;   // by arc
+  std::vector<bool> merges_;    // by cell: where an arc ends for want of resolution
   std::vector<End> ends_;
   std::map<std::array<long long, 3>, dvec3> points_;
   Contact hint_;

@@ -13,9 +13,6 @@
 namespace taut {
 namespace {
 
-/// Places along a smooth join at which its kink is measured.
-constexpr int kink_samples = 5;
-
 /// The derivative across a side, into the patch, as a net along the side.
 std::vector<dvec4> inward_net(NetShape shape, const std::vector<dvec4>& points, Side side,
                               bool reversed) {
@@ -48,7 +45,8 @@ void even_weights(NetShape shape, std::vector<dvec4>& net) {
   }
 }
 
-MapPieces::MapPieces(const ContactGeometry& geometry, double resolution) : geometry_(geometry) {
+MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
+    : geometry_(geometry), joins_(geometry) {
   const Scene& scene = geometry.scene();
   const Model& model = scene.model();
   first_.resize(model.instances().size(), {-1, -1, -1});
@@ -61,7 +59,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution) : geome
       index_.resize(index_.size() + counts[std::size_t(kind)], -1);
       for (int k = 0; k < int(counts[std::size_t(kind)]); ++k) {
         const Contact c{i, kind, k, 0, 0};
-        if (geometry.is_repeated(c)) continue;
+        if (geometry.is_repeated(c) || joins_.passes(c)) continue;
         const std::size_t before = elements_.size();
         if (kind == SourceKind::face) {
           if (part.patches()[std::size_t(k)].repeats < 0 && !geometry.is_ruled(c)) add_face(c);
@@ -77,10 +75,17 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution) : geome
     }
   }
   find_beside();
-  const std::vector<bool> covered = covered_translates(*this, cover_share * resolution);
+  find_beyond();
+  Likenesses found = find_translates(*this, cover_share * resolution);
+  std::vector<bool> covered;
+  for (const Likeness& likeness : found.of_elements) covered.push_back(likeness.covered);
   const std::vector<bool> straight =
       nearly_straight(*this, covered, straight_budget(covered) * resolution);
-  for (std::size_t k = 0; k < covered.size(); ++k) elements_[k].covered = covered[k] || straight[k];
+  for (std::size_t k = 0; k < elements_.size(); ++k) {
+    elements_[k].likeness = std::move(found.of_elements[k]);
+    elements_[k].likeness.covered = covered[k] || straight[k];
+  }
+  rounds_ = std::move(found.rounds);
 }
 
 /// Where edges stand for others of their shape already, what these are off by counts too.
@@ -93,7 +98,7 @@ double MapPieces::straight_budget(const std::vector<bool>& covered) const {
 
 double MapPieces::budget_left() const {
   const bool any = std::any_of(elements_.begin(), elements_.end(),
-                               [](const MapElement& element) { return element.covered; });
+                               [](const MapElement& element) { return element.likeness.covered; });
   return any ? 1 - cover_share : cover_share;
 }
 
@@ -116,6 +121,25 @@ void MapPieces::find_beside() {
   }
 }
 
+void MapPieces::find_beyond() {
+  for (MapElement& element : elements_) {
+    const Contact& c = element.contact;
+    for (const Side side : all_sides) {
+      if (c.kind != SourceKind::face) break;
+      const std::optional<SmoothJoins::Side> beyond = joins_.beyond(c, side);
+      if (!beyond) continue;
+      element.kink[std::size_t(side)] = beyond->kink;
+      if (beyond->patch.instance < 0) continue;
+      element.beyond[std::size_t(side)] = {find(beyond->patch), beyond->side, beyond->reversed};
+    }
+    for (const int end : {0, 1}) {
+      if (c.kind != SourceKind::edge) break;
+      const std::optional<SmoothJoins::End> beyond = joins_.beyond(c, end);
+      if (beyond) element.next[std::size_t(end)] = {find(beyond->piece), beyond->end};
+    }
+  }
+}
+
 int MapPieces::find(const Contact& c) const {
   const int first = first_[std::size_t(c.instance)][std::size_t(c.kind)];
   return first < 0 ? -1 : index_[std::size_t(first + c.element)];
@@ -124,6 +148,13 @@ int MapPieces::find(const Contact& c) const {
 int MapPieces::find_first(const Contact& c) const {
   const Contact first = geometry_.first(c);
   return first.kind == c.kind ? find(first) : -1;
+}
+
+bool MapPieces::is_pole(const MapElement& element, Side side) const {
+  const Contact& c = element.contact;
+  const Border& border = geometry_.patch(c).borders[std::size_t(side)];
+  return border.kind == BorderKind::collapsed &&
+         (border.vertex < 0 || is_passed({c.instance, SourceKind::vertex, border.vertex, 0, 0}));
 }
 
 bool MapPieces::runs_against_first(const Contact& c) const {
@@ -174,27 +205,13 @@ std::vector<dvec4> MapPieces::placed_patch(const Contact& c, NetShape& shape) co
   return placed(c, points);
 }
 
-double MapPieces::kink(const Contact& c, Side side) const {
-  const Border& border = geometry_.patch(c).borders[std::size_t(side)];
-  if (border.kind != BorderKind::smooth) return 0;
-  double largest = 0;
-  for (int k = 0; k < kink_samples; ++k) {
-    const double t = (k + 0.5) / kink_samples;
-    const dvec3 own = unit_normal(geometry_, on_side(c.instance, c.element, side, t));
-    const dvec3 other = unit_normal(
-        geometry_,
-        on_side(c.instance, border.neighbor, border.neighbor_side, border.reversed ? 1 - t : t));
-    largest = std::max(largest, glm::length(glm::cross(own, other)));
-  }
-  return largest;
-}
-
 void MapPieces::add_face(const Contact& c) {
   NetShape shape;
   const std::vector<dvec4> points = placed_patch(c, shape);
-  MapElement element{c, !is_polynomial(points), -1, {}, {}, {}, false};
+  MapElement element;
+  element.contact = c;
+  element.rational = !is_polynomial(points);
   for (const Side side : all_sides) {
-    element.kink[std::size_t(side)] = kink(c, side);
     element.collapsed[std::size_t(side)] =
         geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
   }
@@ -214,7 +231,9 @@ void MapPieces::add_edge(const Contact& c) {
   if (is_polynomial(curve.points)) {
     for (dvec4& p : curve.points) p = homogeneous(euclidean(p));
   }
-  MapElement element{c, !is_polynomial(curve.points), -1, {}, {}, {}, false};
+  MapElement element;
+  element.contact = c;
+  element.rational = !is_polynomial(curve.points);
   MapPiece root{int(elements_.size()),
                 {0, 1},
                 {0, 0},

@@ -6,6 +6,8 @@
 
 #include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/scalar_net.h"
+#include "taut/hull/decide/round_shape.h"
+#include "taut/hull/decide/smooth_joins.h"
 
 namespace taut {
 
@@ -33,21 +35,42 @@ struct MapPiece {
 /// parameters that keep the rectangle can make them.
 void even_weights(NetShape shape, std::vector<dvec4>& net);
 
+/// What elements are to those like them.
+struct Likeness {
+  /// No contact is the element's alone: it lies in the convex hull of others.
+  bool covered = false;
+  /// The round shape that the element is part of, -1 of none.
+  int round = -1;
+  /// Translates of each other have one number and places, by which they are moved; -1 of those
+  /// that have none.
+  int group = -1;
+  dvec3 place = dvec3(0.0);
+  /// From the element to the nearest of its translates that are not covered.
+  std::vector<dvec3> to_others;
+};
+
 /// What may hold contacts of its own: a patch that is not ruled, a piece of an edge that is not
 /// straight, a vertex; of elements that coincide the first.
 struct MapElement {
   Contact contact;
   bool rational = false;
   int root = -1;
-  /// Indexed by Side, of a patch: the largest angle between the tangent planes on the two sides of
-  /// a smooth join, as measured at some places.
+  /// Indexed by Side, of a patch: what it goes on into smoothly, and the largest angle between the
+  /// tangent planes there, as measured at some places.
+  struct Beyond {
+    int element = -1;  ///< also where that holds no contacts of its own
+    Side side = Side::u0;
+    bool reversed = false;
+  };
+  std::array<Beyond, 4> beyond = {};
   std::array<double, 4> kink = {};
+  /// Of an edge, where it passes a vertex: the element and the end at which it goes on, or -1.
+  std::array<std::array<int, 2>, 2> next = {{{-1, -1}, {-1, -1}}};
   std::array<bool, 4> collapsed = {};  ///< sides that are one point
   /// Of an edge or vertex: the elements that MapPiece::inward belongs to, -1 for those without
   /// contacts of their own.
   std::vector<int> beside;
-  /// No contact is its alone (covered_translates, nearly_straight).
-  bool covered = false;
+  Likeness likeness;
 };
 
 /// The elements of a scene, in its frame, with trees of their pieces that grow as they are asked.
@@ -60,10 +83,15 @@ class MapPieces {
   const ContactGeometry& geometry() const { return geometry_; }
   const std::vector<MapElement>& elements() const { return elements_; }
   const MapElement& element(int index) const { return elements_[std::size_t(index)]; }
+  const RoundShape& round(int index) const { return rounds_[std::size_t(index)]; }
   /// Index of the element, or -1 where it holds no contacts of its own.
   int find(const Contact& c) const;
   /// Index of the first of the elements that coincide with the contact's, if it is of its kind.
   int find_first(const Contact& c) const;
+  /// The surface is smooth at the vertex, or only curves pass it: it holds no contacts of its own.
+  bool is_passed(const Contact& vertex) const { return joins_.passes(geometry_.first(vertex)); }
+  /// The side of a patch is one point at which the surface is smooth. @pre a patch
+  bool is_pole(const MapElement& element, Side side) const;
   /// A piece of an edge runs against the first of those that coincide with it.
   bool runs_against_first(const Contact& c) const;
 
@@ -88,13 +116,15 @@ class MapPieces {
   void add_edge(const Contact& c);
   void add_vertex(const Contact& c);
   void find_beside();
+  void find_beyond();
   std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
-  double kink(const Contact& c, Side side) const;
   double straight_budget(const std::vector<bool>& covered) const;
 
   const ContactGeometry& geometry_;
+  SmoothJoins joins_;
   std::vector<MapElement> elements_;
+  std::vector<RoundShape> rounds_;
   std::vector<MapPiece> pieces_;
   std::vector<dvec4> points_;
   std::vector<std::array<int, 3>> first_;  // per instance and kind, into index_

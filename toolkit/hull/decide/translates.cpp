@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
-#include <tuple>
 
 #include "taut/core/nearest_in_simplex.h"
+#include "taut/hull/decide/round_shapes.h"
 
 namespace taut {
 namespace {
@@ -15,15 +16,30 @@ namespace {
 /// Steps of the search for the nearest point of a convex hull; it ends where it gains nothing.
 constexpr int nearest_step_limit = 64;
 
+/// Translates of an element that it is compared with in cells.
+constexpr std::size_t near_translates = 4;
+
+/// Of more round shapes it is not told what is between two of them. The work grows with the square
+/// of their number times that of elements.
+constexpr std::size_t between_limit = 32;
+
 /// Tells most shapes apart by one number; across all that models are aligned with.
 const dvec3 gauge_axis = {0.5773, 0.2113, 0.7887};
 
+/// What is the same of translates: offsets of the control points from their middle, or half axes.
 struct Shape {
   dvec3 middle = dvec3(0.0);
-  std::vector<dvec3> offsets;   // of the control points from it
+  std::vector<dvec3> offsets;
   std::vector<double> weights;  // over the first one's
   double gauge = 0;             // of offsets: it changes by no more than they do
+  const RoundShape* round = nullptr;
 };
+
+double gauge_of(const std::vector<dvec3>& offsets) {
+  double sum = 0;
+  for (const dvec3& x : offsets) sum += std::abs(glm::dot(x, gauge_axis));
+  return sum / double(offsets.size());
+}
 
 Shape shape_of(const MapPieces& pieces, const MapElement& element) {
   const StoredNet& net = pieces.piece(element.root).exact;
@@ -35,11 +51,18 @@ Shape shape_of(const MapPieces& pieces, const MapElement& element) {
     shape.middle += shape.offsets.back();
   }
   shape.middle /= double(net.shape.size());
-  for (dvec3& x : shape.offsets) {
-    x -= shape.middle;
-    shape.gauge += std::abs(glm::dot(x, gauge_axis));
-  }
-  shape.gauge /= double(net.shape.size());
+  for (dvec3& x : shape.offsets) x -= shape.middle;
+  shape.gauge = gauge_of(shape.offsets);
+  return shape;
+}
+
+Shape shape_of(const RoundShape& round) {
+  Shape shape;
+  shape.middle = round.center;
+  for (int k = 0; k < 3; ++k) shape.offsets.push_back(round.root[k]);
+  shape.weights.assign(3, 1.0);
+  shape.gauge = gauge_of(shape.offsets);
+  shape.round = &round;
   return shape;
 }
 
@@ -104,24 +127,46 @@ std::optional<Mean> mean_near(const std::vector<dvec3>& points, const std::vecto
   return std::nullopt;
 }
 
-struct Group {
-  Shape shape;
+double distance_outside(const MapPieces& pieces, int element, const RoundShape& round) {
+  const StoredNet& net = pieces.piece(pieces.element(element).root).exact;
+  const auto size = std::size_t(net.shape.size());
+  return round.distances(net.shape, {pieces.points(net), size}).outwards +
+         pieces.geometry().rounding();
+}
+
+/// An element, or those of a round shape.
+struct Member {
   std::vector<int> elements;
+  Shape shape;
+};
+
+struct Group {
+  std::vector<Member> members;
   std::vector<dvec3> places;
 };
 
-/// The largest distance of an element's control points from the same mean of the others'.
+/// The largest distance of a member's control points from the same mean of the others'; of a round
+/// shape's elements from the convex hull of the others'.
 double distance(const MapPieces& pieces, const Group& group, std::size_t own, const Mean& mean) {
-  const auto points = [&](std::size_t k) {
-    return pieces.points(pieces.piece(pieces.element(group.elements[k]).root).exact);
+  const Shape& shape = group.members[own].shape;
+  const auto other = [&](int k) -> const Shape& {
+    return group.members[std::size_t(mean.of[std::size_t(k)])].shape;
   };
   double largest = 0;
-  const dvec4* x = points(own);
-  for (std::size_t i = 0; i < group.shape.offsets.size(); ++i) {
-    dvec3 off = euclidean(x[i]);
+  if (shape.round != nullptr) {
+    std::array<const RoundShape*, 4> rounds;
+    for (int k = 0; k < mean.size; ++k) rounds[std::size_t(k)] = other(k).round;
+    const auto size = std::size_t(mean.size);
+    const RoundShape hull = mean_of({rounds.data(), size}, {mean.weight.data(), size});
+    for (const int k : group.members[own].elements) {
+      largest = std::max(largest, distance_outside(pieces, k, hull));
+    }
+    return largest + hull.inside;
+  }
+  for (std::size_t i = 0; i < shape.offsets.size(); ++i) {
+    dvec3 off = shape.middle + shape.offsets[i];
     for (int k = 0; k < mean.size; ++k) {
-      const auto at = std::size_t(k);
-      off -= mean.weight[at] * euclidean(points(std::size_t(mean.of[at]))[i]);
+      off -= mean.weight[std::size_t(k)] * (other(k).middle + other(k).offsets[i]);
     }
     largest = std::max(largest, glm::length(off));
   }
@@ -145,67 +190,209 @@ std::vector<bool> covered(const MapPieces& pieces, const Group& group, double bu
   return result;
 }
 
-/// An element that goes on smoothly into one that is not covered is not either.
-void keep_neighbors(const MapPieces& pieces, std::vector<bool>& covered) {
-  const ContactGeometry& geometry = pieces.geometry();
-  const auto counts = [&](const Contact& c) {
-    const int element = pieces.find(c);
-    return element >= 0 && !covered[std::size_t(element)];
-  };
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t k = 0; k < covered.size(); ++k) {
-      if (!covered[k]) continue;
-      const Contact& c = pieces.element(int(k)).contact;
-      bool keeps = false;
-      if (c.kind == SourceKind::face) {
-        for (const Border& border : geometry.patch(c).borders) {
-          keeps = keeps || (border.kind == BorderKind::smooth &&
-                            counts({c.instance, c.kind, border.neighbor, 0, 0}));
-        }
-      } else if (c.kind == SourceKind::edge) {
-        for (const int next : geometry.piece(c).end_neighbor) {
-          keeps = keeps || (next >= 0 && counts({c.instance, c.kind, next, 0, 0}));
-        }
+/// From a member to the nearest of the others that are not covered.
+std::vector<dvec3> to_others(const Group& group, const std::vector<bool>& covered, std::size_t own,
+                             double budget) {
+  std::vector<dvec3> result;
+  for (std::size_t k = 0; k < group.places.size(); ++k) {
+    if (k == own || covered[k]) continue;
+    const dvec3 off = group.places[k] - group.places[own];
+    if (result.size() == near_translates && glm::length(off) >= glm::length(result.back()))
+      continue;
+    if (!are_translates(group.members[k].shape, group.members[own].shape, budget)) continue;
+    result.push_back(off);
+    std::sort(result.begin(), result.end(),
+              [](const dvec3& a, const dvec3& b) { return glm::length(a) < glm::length(b); });
+    if (result.size() > near_translates) result.pop_back();
+  }
+  return result;
+}
+
+class Search {
+ public:
+  Search(const MapPieces& pieces, double budget) : pieces_(pieces), budget_(budget) {}
+
+  Likenesses run() {
+    result_.resize(pieces_.elements().size());
+    held_.assign(result_.size(), false);
+    rounds_ = round_shapes(pieces_, budget_);
+    for (const RoundShape& round : rounds_) {
+      add({-1, int(round.kind), 0}, {round.elements, shape_of(round)});
+    }
+    // A round shape that is like no other counts by its elements.
+    std::vector<bool> counts_round(result_.size(), false);
+    for (auto& group : groups_) {
+      if (group.members.size() == 1) group = {};
+      for (const Member& member : group.members) {
+        for (const int k : member.elements) counts_round[std::size_t(k)] = true;
       }
-      if (!keeps) continue;
-      covered[k] = false;
-      changed = true;
+    }
+    for (int k = 0; k < int(result_.size()); ++k) {
+      if (counts_round[std::size_t(k)]) continue;
+      const MapElement& element = pieces_.element(k);
+      const NetShape net = pieces_.piece(element.root).exact.shape;
+      add({int(element.contact.kind), net.p, net.q}, {{k}, shape_of(pieces_, element)});
+    }
+    for (std::size_t k = 0; k < groups_.size(); ++k) tell(int(k));
+    hold();
+    hold_between();
+    keep_neighbors();
+    for (std::size_t k = 0; k < rounds_.size(); ++k) {
+      for (const int element : rounds_[k].elements) result_[std::size_t(element)].round = int(k);
+    }
+    return {std::move(result_), std::move(rounds_)};
+  }
+
+ private:
+  using Key = std::array<int, 3>;
+
+  void add(const Key& key, Member member) {
+    auto& alike = by_gauge_[key];
+    const double gauge = member.shape.gauge;
+    int found = -1;
+    for (auto it = alike.lower_bound(gauge - 2 * budget_);
+         it != alike.end() && it->first <= gauge + 2 * budget_ && found < 0; ++it) {
+      const Shape& first = groups_[std::size_t(it->second)].members.front().shape;
+      if (are_translates(first, member.shape, budget_)) found = it->second;
+    }
+    if (found < 0) {
+      found = int(groups_.size());
+      alike.emplace(gauge, found);
+      groups_.emplace_back();
+    }
+    groups_[std::size_t(found)].places.push_back(member.shape.middle);
+    groups_[std::size_t(found)].members.push_back(std::move(member));
+  }
+
+  void tell(int number) {
+    const Group& group = groups_[std::size_t(number)];
+    if (group.members.size() < 2 || group.members.size() > translate_limit) return;
+    const std::vector<bool> goes = covered(pieces_, group, budget_);
+    for (std::size_t k = 0; k < goes.size(); ++k) {
+      const Likeness own{goes[k], -1, number, group.places[k],
+                         goes[k] ? std::vector<dvec3>() : to_others(group, goes, k, budget_)};
+      for (const int element : group.members[k].elements) result_[std::size_t(element)] = own;
     }
   }
-}
+
+  /// What a round shape holds, the largest first, which others then hold no more.
+  void hold() {
+    std::vector<int> order(rounds_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      return rounds_[std::size_t(a)].greatest_radius() > rounds_[std::size_t(b)].greatest_radius();
+    });
+    for (const int number : order) {
+      const RoundShape& round = rounds_[std::size_t(number)];
+      if (is_covered(round)) continue;
+      for (int k = 0; k < int(result_.size()); ++k) {
+        Likeness& own = result_[std::size_t(k)];
+        if (own.covered || std::count(round.elements.begin(), round.elements.end(), k) > 0)
+          continue;
+        const StoredNet& net = pieces_.piece(pieces_.element(k).root).exact;
+        if (round.surely_misses(euclidean(*pieces_.points(net)), budget_)) continue;
+        own.covered = distance_outside(pieces_, k, round) + round.inside <= budget_;
+        held_[std::size_t(k)] = own.covered;
+      }
+    }
+  }
+
+  bool is_covered(const RoundShape& round) const {
+    return std::any_of(round.elements.begin(), round.elements.end(),
+                       [&](int k) { return result_[std::size_t(k)].covered; });
+  }
+
+  /// What the convex hull of two round shapes holds, which others then hold no more.
+  void hold_between() {
+    std::vector<const RoundShape*> left;
+    for (const RoundShape& round : rounds_) {
+      if (!is_covered(round)) left.push_back(&round);
+    }
+    if (left.size() > between_limit) return;
+    std::vector<bool> carries(result_.size(), false);
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      for (std::size_t j = i + 1; j < left.size(); ++j) {
+        const std::array<const RoundShape*, 2> two = {left[i], left[j]};
+        if (two[0]->kind != two[1]->kind || is_covered(*two[0])) continue;
+        for (int k = 0; k < int(result_.size()) && !is_covered(*two[1]); ++k) {
+          if (result_[std::size_t(k)].covered || carries[std::size_t(k)]) continue;
+          if (!holds_between(two, k)) continue;
+          result_[std::size_t(k)].covered = held_[std::size_t(k)] = true;
+          for (const RoundShape* round : two) {
+            for (const int element : round->elements) carries[std::size_t(element)] = true;
+          }
+        }
+      }
+    }
+  }
+
+  /// The mean of two shapes in whose plane, or beside whose centre, the element's middle lies holds
+  /// the element.
+  bool holds_between(const std::array<const RoundShape*, 2>& two, int element) const {
+    for (const RoundShape* round : two) {
+      if (std::count(round->elements.begin(), round->elements.end(), element) > 0) return false;
+    }
+    const dvec3 way = two[1]->center - two[0]->center;
+    const dvec3 across = two[0]->is_flat() ? two[0]->axes[2] : way;
+    const dvec3 middle = shape_of(pieces_, pieces_.element(element)).middle;
+    const double share = glm::dot(middle - two[0]->center, across) / glm::dot(way, across);
+    if (!(share > 0 && share < 1)) return false;
+    const std::array<double, 2> weights = {1 - share, share};
+    const RoundShape mean = mean_of(two, weights);
+    return distance_outside(pieces_, element, mean) + mean.inside <= budget_;
+  }
+
+  bool counts(int element) const { return element >= 0 && !result_[std::size_t(element)].covered; }
+
+  /// An element that goes on smoothly into one that is not covered is not either.
+  bool has_neighbor_that_counts(const MapElement& element) const {
+    const Contact& c = element.contact;
+    if (c.kind == SourceKind::face) {
+      return std::any_of(element.beyond.begin(), element.beyond.end(),
+                         [&](const auto& beyond) { return counts(beyond.element); });
+    }
+    if (c.kind != SourceKind::edge) return false;
+    const auto& next = pieces_.geometry().piece(c).end_neighbor;
+    return counts(element.next[0][0]) || counts(element.next[1][0]) ||
+           std::any_of(next.begin(), next.end(), [&](int piece) {
+             return piece >= 0 && counts(pieces_.find({c.instance, c.kind, piece, 0, 0}));
+           });
+  }
+
+  /// An edge that a round shape holds, but not the patch beside it, is where contacts of that end.
+  bool bounds_what_counts(const MapElement& element) const {
+    return std::any_of(element.beside.begin(), element.beside.end(),
+                       [&](int k) { return counts(k); });
+  }
+
+  void keep_neighbors() {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::size_t k = 0; k < result_.size(); ++k) {
+        const MapElement& element = pieces_.element(int(k));
+        if (!result_[k].covered) continue;
+        if (!has_neighbor_that_counts(element) && !(held_[k] && bounds_what_counts(element))) {
+          continue;
+        }
+        result_[k].covered = false;
+        changed = true;
+      }
+    }
+  }
+
+  const MapPieces& pieces_;
+  double budget_;
+  std::vector<Likeness> result_;
+  std::vector<bool> held_;  // by round shapes
+  std::vector<RoundShape> rounds_;
+  std::vector<Group> groups_;
+  std::map<Key, std::multimap<double, int>> by_gauge_;
+};
 
 }  // namespace
 
-std::vector<bool> covered_translates(const MapPieces& pieces, double budget) {
-  std::vector<Group> groups;
-  std::map<std::tuple<SourceKind, int, int>, std::multimap<double, int>> by_gauge;
-  for (int k = 0; k < int(pieces.elements().size()); ++k) {
-    const MapElement& element = pieces.element(k);
-    const NetShape net = pieces.piece(element.root).exact.shape;
-    Shape shape = shape_of(pieces, element);
-    auto& alike = by_gauge[{element.contact.kind, net.p, net.q}];
-    int found = -1;
-    for (auto it = alike.lower_bound(shape.gauge - 2 * budget);
-         it != alike.end() && it->first <= shape.gauge + 2 * budget && found < 0; ++it) {
-      if (are_translates(groups[std::size_t(it->second)].shape, shape, budget)) found = it->second;
-    }
-    if (found < 0) {
-      found = int(groups.size());
-      alike.emplace(shape.gauge, found);
-      groups.push_back({shape, {}, {}});
-    }
-    groups[std::size_t(found)].elements.push_back(k);
-    groups[std::size_t(found)].places.push_back(shape.middle);
-  }
-  std::vector<bool> result(pieces.elements().size(), false);
-  for (const Group& group : groups) {
-    if (group.elements.size() < 2 || group.elements.size() > translate_limit) continue;
-    const std::vector<bool> own = covered(pieces, group, budget);
-    for (std::size_t k = 0; k < own.size(); ++k) result[std::size_t(group.elements[k])] = own[k];
-  }
-  keep_neighbors(pieces, result);
-  return result;
+Likenesses find_translates(const MapPieces& pieces, double budget) {
+  return Search(pieces, budget).run();
 }
 
 }  // namespace taut

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "taut/bounds/contact_geometry.h"
+
+namespace taut {
+
+/// Where surfaces and curves go on smoothly: where two of them meet alone, and where nearly equal
+/// ones meet side by side, each in its own continuation. Those that miss each other by least go
+/// together.
+class SmoothJoins {
+ public:
+  /// The geometry must outlive it.
+  explicit SmoothJoins(const ContactGeometry& geometry);
+
+  /// A side of a patch that another one goes on from, and the largest angle between the tangent
+  /// planes on its two sides, as measured at some places.
+  struct Side {
+    Contact patch;  ///< of instance -1 where the other goes on into an equal of this one
+    taut::Side side = taut::Side::u0;
+    bool reversed = false;
+    double kink = 0;
+  };
+  /// What goes on beyond a side of a patch. @pre kind face
+  std::optional<Side> beyond(const Contact& face, taut::Side side) const;
+
+  /// An end of a piece, 0 or 1.
+  struct End {
+    Contact piece;
+    int end = 0;
+  };
+  /// What goes on beyond an end of a piece that is a vertex. @pre kind edge, not repeated
+  std::optional<End> beyond(const Contact& piece, int end) const;
+
+  /// All that meets in an edge's piece or a vertex goes on smoothly: contacts there are those of
+  /// patches, or of curves that pass. @pre kind edge or vertex, not repeated
+  bool passes(const Contact& c) const { return passed_.contains({c.kind, c.instance, c.element}); }
+
+ private:
+  void pair_sides(const Contact& edge);
+  void pair_ends(const Contact& vertex);
+  bool join(const Contact& vertex, const std::vector<ContactGeometry::PieceEnd>& all);
+  bool is_surrounded(const Contact& vertex) const;
+  /// A seam, or an edge that is none.
+  bool is_smooth(const Contact& piece) const {
+    return geometry_.piece(piece).edge < 0 || passes(piece);
+  }
+  double kink(const Contact& face, taut::Side side, const Border& border) const;
+
+  using Key = std::tuple<SourceKind, int, int>;
+  const ContactGeometry& geometry_;
+  std::map<std::tuple<int, int, taut::Side>, Side> sides_;
+  std::map<std::tuple<int, int, int>, End> ends_;
+  std::set<Key> passed_;
+};
+
+}  // namespace taut
