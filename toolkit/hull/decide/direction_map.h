@@ -106,11 +106,12 @@ struct DirectionMapOptions {
 ///
 /// A cell keeps the pieces of the model that may touch a plane with a normal in it: of patches
 /// those where the heights x . d grow in no one direction for all d of the cell, of edges those
-/// from which no surface rises, and none that a sampled point surpasses in all of it. Pieces that
-/// hang together are a branch; a branch has one contact for each direction by the index of the
-/// gradient of the heights, or where they are concave but for the resolution (ContactIndex,
-/// NearConcavity). All bounds are of Bernstein coefficients, for all directions of the cell at
-/// once, rounding included.
+/// from which no surface rises, and none that are below the convex hull of sampled points
+/// (BeaconEnvelope). Pieces that hang together are a branch; a branch has one contact for each
+/// direction by the index of the gradient of the heights, or where they are concave but for the
+/// resolution (ContactIndex, NearConcavity). Branches for which others stand to within the
+/// resolution are left out (BranchDomination). All bounds are of Bernstein coefficients, for all
+/// directions of the cell at once, rounding included.
 ///
 /// Ruled patches and straight edges have no contacts but at their ends.
 /// @throws Cancelled
