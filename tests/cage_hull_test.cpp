@@ -87,7 +87,7 @@ TEST(CageHull, OfCubeAndTetrahedra) {
         Case{"tetrahedron, loop", tetrahedron_cage(CageScheme::loop), 1e-6, false}}) {
     const Model model = cage_model(c.cage, c.accuracy);
     const Hull hull = whole_hull(model, c.name);
-    EXPECT_EQ(hull.statistics.map_undecided, 0) << c.name;
+    EXPECT_EQ(hull.statistics.cells_searched, 0) << c.name;
     EXPECT_EQ(hull.boundary->count(FaceKind::facet), 0) << c.name;
     EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 0) << c.name;
     EXPECT_EQ(hull.boundary->count(FaceKind::patch), int(c.cage.faces.size())) << c.name;

@@ -375,6 +375,80 @@ TEST(Cull, RefusesLevelsAndStops) {
       Cancelled);
 }
 
+/// In patches.
+double area(const std::vector<CulledCell>& cells) {
+  double sum = 0;
+  for (const CulledCell& c : cells) sum += std::exp2(-2.0 * c.cell.level);
+  return sum;
+}
+
+TEST(CellRefinement, ProvesMoreAndNothingWrong) {
+  struct Case {
+    std::string name;
+    Shape shape;
+    double most;  // area, in patches, that may stay mixed after two levels
+  };
+  const std::vector<Case> cases = {
+      {"sphere", sphere(), 0},
+      {"ellipsoid", mapped(ellipsoid(3, 2, 1), skew_rotation()), 0},
+      {"two spheres", two_spheres(1, 0.5, 3), 0.25},
+      {"torus", torus(2, 0.5), 0.55},
+      {"teapot", teapot(), 1.2},
+      {"dented ellipsoid", dented_ellipsoid(), 0.25},
+      {"blob", blob(2), 0.8},
+      {"filleted box", filleted_box(3, 2, 1, 0.25), 1.7},
+      {"sphere and a point", sphere() + Shape{{}, {}, {{0, 0, 5}}}, 0.125}};
+  for (const Case& c : cases) {
+    const Scene scene = make_scene(c.shape);
+    const Culling culling = culled(scene, 3);
+    Culling decided;
+    std::vector<CulledCell> left;
+    const auto sort = [&](const std::vector<CulledCell>& cells) {
+      left.clear();
+      for (const CulledCell& cell : cells) {
+        (cell.state == CellState::mixed ? left : decided.cells).push_back(cell);
+      }
+    };
+    CellRefinement refinement(scene);
+    sort(culling.cells);
+    sort(refinement.refined(left));
+    sort(refinement.refined(left));
+    EXPECT_NEAR(area(left) + area(decided.cells), scene.model().patch_count(), 1e-12) << c.name;
+    EXPECT_LE(area(left), c.most) << c.name;
+    expect_true(check(scene, decided, 5000), c.name);
+  }
+}
+
+TEST(CellRefinement, CountsItsQueries) {
+  const Scene scene = make_scene(teapot());
+  std::vector<CulledCell> mixed = culled(scene, 3).cells;
+  std::erase_if(mixed, [](const CulledCell& cell) { return cell.state != CellState::mixed; });
+  ASSERT_FALSE(mixed.empty());
+  CellRefinement refinement(scene);
+  const long spread = refinement.support_queries();
+  EXPECT_GE(spread, 96);
+  refinement.refined(mixed);
+  EXPECT_GT(refinement.support_queries(), spread);
+}
+
+TEST(CellRefinement, OfRandomPatches) {
+  Random random(9);
+  for (int k = 0; k < 30; ++k) {
+    const Scene scene = make_scene(split(random_patches(random, 2, 2), 0.4, 0.7));
+    Culling decided;
+    CellRefinement refinement(scene);
+    std::vector<CulledCell> cells = culled(scene, 2).cells;
+    for (int level = 0; level < 3; ++level) {
+      std::vector<CulledCell> left;
+      for (const CulledCell& cell : cells) {
+        (cell.state == CellState::mixed ? left : decided.cells).push_back(cell);
+      }
+      cells = refinement.refined(left);
+    }
+    expect_true(check(scene, decided, 500), std::to_string(k));
+  }
+}
+
 /// Contacts merge where the curvature changes sign.
 TEST(Culling, FreeEndsAreInNoCellThatIsCurvedOneWay) {
   long definite = 0;

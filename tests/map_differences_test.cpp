@@ -96,30 +96,29 @@ TEST(MapDifferences, TellAMissingDent) {
   for (const Unresolved& spot : spots) EXPECT_GT(glm::dot(spot.n, up), 0.99);
 }
 
-/// The first scroll of a hull lies where it is not.
+/// The first scroll of a hull is no more than one ruling.
 TEST(MapDifferences, TellAMissingScroll) {
   for (const char* name : {"spheres 1 and 0.5, 3 apart", "three spheres", "cylinder", "oloid"}) {
     SCOPED_TRACE(name);
     Compared own(shape_of(name));
     ASSERT_FALSE(own.boundary.arcs.empty());
+    const Ruling first = own.boundary.arcs.front().pieces.front().rulings.front();
     for (ArcPiece& piece : own.boundary.arcs.front().pieces) {
-      for (Ruling& ruling : piece.rulings) ruling.n = -ruling.n;
+      std::fill(piece.rulings.begin(), piece.rulings.end(), first);
     }
     EXPECT_FALSE(own.spots().empty());
   }
 }
 
+/// One of the discs that are spanned by the rims of a wall.
 TEST(MapDifferences, TellAMissingFacet) {
-  for (const char* name : {"torus 2, 0.5", "cylinder", "cone"}) {
-    SCOPED_TRACE(name);
-    Compared own(shape_of(name));
-    for (HullFace& face : own.boundary.faces) {
-      if (face.kind != FaceKind::facet) continue;
-      face.n = -face.n;
-      break;
-    }
-    EXPECT_FALSE(own.spots().empty());
-  }
+  Compared own(cylinder(1, 2));
+  const auto facet =
+      std::find_if(own.boundary.faces.begin(), own.boundary.faces.end(),
+                   [](const HullFace& face) { return face.kind == FaceKind::facet; });
+  ASSERT_NE(facet, own.boundary.faces.end());
+  facet->n = -facet->n;
+  EXPECT_EQ(own.spots().size(), 1U);
 }
 
 /// The region of a patch is said to be that of another, which lies inside of the hull.

@@ -16,6 +16,7 @@
 #include "boundary_checks.h"
 #include "hull_checks.h"
 #include "taut/core/error.h"
+#include "taut/hull/compare/map_differences.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/stitch/stitch.h"
@@ -375,7 +376,7 @@ TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
   EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
 }
 
-/// Those of culling, of the map of directions, of tracing and of stitching.
+/// Those of culling, of the map of directions, of tracing, of stitching and of the comparison.
 TEST(ExactBoundary, CountsAllQueries) {
   const Scene scene = make_scene(teapot());
   const GaussMap map(scene, {.threads = 1, .progress = {}});
@@ -388,9 +389,11 @@ TEST(ExactBoundary, CountsAllQueries) {
   HullStatistics decided;
   const DirectionMap directions = directions_of(geometry, options(), decided);
   EXPECT_GT(decided.support_queries, 0);
-  stitch(geometry, query,
-         trace_separating_curves(geometry, query, culling.samples, culling.cells, directions),
-         culling.cells);
+  const HullBoundary boundary = stitch(
+      geometry, query,
+      trace_separating_curves(geometry, query, culling.samples, culling.cells, {.cells = false}),
+      culling.cells);
+  map_differences(geometry, query, directions, boundary);
   EXPECT_EQ(statistics.support_queries,
             culled.support_queries + decided.support_queries + query.queries());
 }

@@ -27,11 +27,9 @@ struct Stitched {
     SupportQuery query(scene);
     const GaussMap map(scene, {.threads = 1, .progress = {}});
     const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
-    boundary = std::make_shared<const HullBoundary>(
-        stitch(geometry, query,
-               trace_separating_curves(geometry, query, culling.samples, culling.cells,
-                                       taut_test::directions_of(geometry)),
-               culling.cells));
+    boundary = std::make_shared<const HullBoundary>(stitch(
+        geometry, query, trace_separating_curves(geometry, query, culling.samples, culling.cells),
+        culling.cells));
   }
 
   /// Patches, scrolls, facets; bitangents, edges, joins, rulings.

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "direction_maps.h"
 #include "models.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/cull/culling.h"
@@ -25,8 +24,7 @@ struct TracedScene {
       : scene(make_scene(shape)), geometry(scene), query(scene) {
     const taut::GaussMap map(scene, {.threads = 1, .progress = {}});
     const taut::Culling culling = taut::cull(scene, map, {.threads = 1, .progress = {}});
-    graph = trace_separating_curves(geometry, query, culling.samples, culling.cells,
-                                    directions_of(geometry));
+    graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
     unresolved = graph.unresolved;
     regions = trim_regions(geometry, query, graph, culling.cells, unresolved);
   }

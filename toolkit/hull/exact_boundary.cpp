@@ -4,15 +4,55 @@
 #include <utility>
 
 #include "taut/core/stopwatch.h"
+#include "taut/hull/compare/map_differences.h"
 #include "taut/hull/stitch/stitch.h"
 
 namespace taut {
 namespace {
 
-/// Pieces of a model that may be looked at for its map of directions, and how many more for each of
-/// its patches: twice what decides the slowest of generic models.
+/// Pieces of a model that may be looked at for its map of directions, a second at most, and how
+/// many more for each of its patches.
 constexpr long map_candidates = 600'000;
-constexpr long map_candidates_a_patch = 5'000;
+constexpr long map_candidates_a_patch = 200;
+
+/// Spots that could not be resolved beyond which it does not help to know more.
+constexpr std::size_t few_open_spots = 16;
+
+/// Traced, with what the map tells or without, and stitched.
+HullBoundary traced(const ContactGeometry& geometry, const Culling& culling,
+                    const CurveSearch& search, const HullOptions& options,
+                    HullStatistics& statistics, const std::vector<Sample>& more) {
+  Stopwatch watch;
+  options.progress.update("trace", 0);
+  std::vector<Sample> samples = culling.samples;
+  samples.insert(samples.end(), more.begin(), more.end());
+  SupportQuery query(geometry.scene(), options.progress.stop);
+  SeparatingGraph graph =
+      trace_separating_curves(geometry, query, samples, culling.cells, search, options.progress);
+  statistics.support_queries += graph.support_queries;
+  statistics.cells_searched = graph.cells_searched;
+  statistics.newton_iterations += graph.newton_iterations;
+  statistics.seconds_trace += watch.lap();
+
+  options.progress.update("stitch", 0);
+  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
+  statistics.seconds_stitch += watch.lap();
+  statistics.support_queries += query.queries();
+  statistics.newton_iterations += query.newton_iterations();
+  return boundary;
+}
+
+MapDifferences compared(const ContactGeometry& geometry, const DirectionMap& directions,
+                        const HullBoundary& boundary, const HullOptions& options,
+                        HullStatistics& statistics) {
+  const Stopwatch watch;
+  SupportQuery query(geometry.scene(), options.progress.stop);
+  MapDifferences differences = map_differences(geometry, query, directions, boundary);
+  statistics.seconds_map += watch.seconds();
+  statistics.support_queries += query.queries();
+  statistics.newton_iterations += query.newton_iterations();
+  return differences;
+}
 
 }  // namespace
 
@@ -37,6 +77,7 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
   const Stopwatch watch;
   options.progress.update("decide", 0);
   const Scene& scene = geometry.scene();
+  if (scene.model().deviation_bound() > 0) return {};
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
   DirectionMapOptions own;
   own.resolution = scene.frame().length_to_frame(resolution.rho);
@@ -54,22 +95,33 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
                             const DirectionMap& directions, const HullOptions& options,
                             HullStatistics& statistics, const std::vector<Sample>& more) {
-  Stopwatch watch;
-  options.progress.update("trace", 0);
-  std::vector<Sample> samples = culling.samples;
-  samples.insert(samples.end(), more.begin(), more.end());
-  SupportQuery query(geometry.scene(), options.progress.stop);
-  SeparatingGraph graph = trace_separating_curves(geometry, query, samples, culling.cells,
-                                                  directions, options.progress);
-  statistics.newton_iterations += graph.newton_iterations;
-  statistics.seconds_trace += watch.lap();
-
-  options.progress.update("stitch", 0);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
-  statistics.seconds_stitch += watch.lap();
-  statistics.support_queries += query.queries();
-  statistics.newton_iterations += query.newton_iterations();
-  return boundary;
+  if (directions.cells.empty()) return traced(geometry, culling, {}, options, statistics, more);
+  // What the map decides need not be searched.
+  const auto undecided = directions.statistics.of_kind[std::size_t(MapCellKind::undecided)];
+  HullBoundary best =
+      traced(geometry, culling, {.cells = undecided > 0}, options, statistics, more);
+  MapDifferences differences = compared(geometry, directions, best, options, statistics);
+  for (const CurveSearch& search : {CurveSearch{}, CurveSearch{.map = &directions}}) {
+    if (differences.spots.empty() || best.exhausted || best.unresolved.size() > few_open_spots) {
+      break;
+    }
+    // The map tells more than was found: once more, with that.
+    std::vector<Sample> samples = more;
+    samples.insert(samples.end(), differences.samples.begin(), differences.samples.end());
+    HullBoundary next = traced(geometry, culling, search, options, statistics, samples);
+    MapDifferences left = compared(geometry, directions, next, options, statistics);
+    if (next.unresolved.size() + left.spots.size() <
+        best.unresolved.size() + differences.spots.size()) {
+      best = std::move(next);
+      differences = std::move(left);
+    }
+  }
+  // Of a search that was given up they tell nothing new.
+  if (!best.exhausted) {
+    best.unresolved.insert(best.unresolved.end(), differences.spots.begin(),
+                           differences.spots.end());
+  }
+  return best;
 }
 
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,

@@ -20,8 +20,9 @@ Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& o
                    HullStatistics& statistics);
 
 /// The map of a scene's directions, at the resolution that the options or the model ask for. Where
-/// contacts all but tie it costs more than models do to decide it, and it is left undecided. Adds
-/// what it took to the statistics.
+/// contacts all but tie it costs more than models do to decide it, and it is left undecided. Of
+/// models with stand-ins it is empty: what is known of their contacts is too little. Adds what it
+/// took to the statistics.
 /// @throws Cancelled
 DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
                            HullStatistics& statistics);
@@ -33,9 +34,10 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 /// more where coordinates are rounded to more (ContactGeometry::tie), by a support query each; so
 /// do the rulings of length zero in free ends, but where these are of no generic kind and
 /// extrapolated: there to within the third power of merge_distance (6e-8). Curves are sought
-/// between what culling samples and `more` samples, and where the map of directions tells them.
-/// What could not be resolved is listed (HullBoundary::unresolved); a boundary without any is
-/// closed. Same result for any number of threads.
+/// between what culling samples and `more` samples, and where the map of directions tells more
+/// (map_differences) there, too; in mixed cells where the map does not decide. What could not be
+/// resolved, or differs from the map still, is listed (HullBoundary::unresolved); a boundary
+/// without any is closed. Same result for any number of threads.
 /// @pre the culling and the map are of the geometry's scene, which spans space (tolerances.h says
 /// what is flat)
 /// @throws Cancelled

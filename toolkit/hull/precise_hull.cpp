@@ -1,7 +1,6 @@
 #include "taut/hull/precise_hull.h"
 
 #include "taut/core/stopwatch.h"
-#include "taut/hull/compare/map_differences.h"
 #include "taut/hull/cull/culling.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/mesh/boundary_mesh.h"
@@ -45,16 +44,6 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   for (int round = 0;; ++round) {
     auto boundary = std::make_shared<HullBoundary>(
         exact_boundary(geometry, culling, directions, options, statistics, found));
-    MapDifferences differences = map_differences(geometry, query, directions, *boundary);
-    if (!differences.samples.empty() && round < uncovered_rounds && wants_more(*boundary)) {
-      // The map tells more than was found: once more, with that.
-      found.insert(found.end(), differences.samples.begin(), differences.samples.end());
-      continue;
-    }
-    if (!boundary->exhausted) {
-      boundary->unresolved.insert(boundary->unresolved.end(), differences.spots.begin(),
-                                  differences.spots.end());
-    }
     std::vector<Sample> uncovered_samples;
     try {
       Hull hull = boundary_mesh(scene, geometry, boundary, options, &uncovered_samples);

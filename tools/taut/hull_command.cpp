@@ -270,7 +270,9 @@ Report make_report(Input& input, const Hull& hull, const HullArguments& argument
   report.subdivision = subdivision(input.model());
   const HullStatistics& statistics = hull.statistics;
   if (statistics.cells > 0) {
-    report.culling = {statistics.cells, statistics.cells_kept, statistics.map_undecided};
+    report.culling = {statistics.cells, statistics.cells_kept, statistics.cells_searched};
+  }
+  if (statistics.map_cells > 0) {
     report.directions = {statistics.map_cells, statistics.map_candidates, statistics.map_undecided};
   }
   report.queries = {statistics.support_queries, statistics.newton_iterations};

@@ -17,7 +17,7 @@ constexpr double chord_share = 0.25;
 /// Places looked at between two rulings; the share is wider than what is between these.
 constexpr int chord_steps = 4;
 /// Halvings of the angle between two directions until they are one.
-constexpr int parting_halvings = 50;
+constexpr int parting_halvings = 30;
 /// Spots told, at most.
 constexpr std::size_t spot_limit = 16;
 
@@ -38,7 +38,7 @@ class Comparison {
         boundary_(boundary),
         faces_(geometry, boundary),
         crossings_(map),
-        support_(geometry, query, map) {}
+        support_(geometry, query, map.contact_extent()) {}
 
   MapDifferences run() {
     for (const SeparatingArc& arc : boundary_.arcs) crossings_.add(arc);
@@ -49,7 +49,13 @@ class Comparison {
       if (cell.kind == MapCellKind::undecided) continue;
       compare_middle(cell);
       if (cell.kind == MapCellKind::arc || cell.kind == MapCellKind::node) {
-        if (!is_crossed(int(k))) compare_curves(cell);
+        // Of coarse cells those beside are too far away.
+        const std::vector<int> around =
+            cell.level < fine_level ? std::vector<int>() : crossings_.around(int(k));
+        const bool is_known = is_crossed(cell, int(k)) ||
+                              std::any_of(around.begin(), around.end(),
+                                          [&](int other) { return is_crossed(cell, other); });
+        if (!is_known) compare_curves(cell);
       } else if (cell.kind == MapCellKind::facet) {
         compare_facet(cell);
       }
@@ -83,16 +89,23 @@ class Comparison {
     }
   }
 
-  /// Both contacts of a ruling lie in one plane.
+  /// Both contacts of a ruling lie in one plane, which supports.
   void compare_rulings() {
     for (const SeparatingArc& arc : boundary_.arcs) {
       for (const ArcPiece& piece : arc.pieces) {
-        for (const Ruling& r : piece.rulings) {
-          if (std::abs(glm::dot(r.point[0] - r.point[1], r.n)) <= map_.resolution) continue;
+        for (std::size_t k = 0; k < piece.rulings.size(); ++k) {
+          const Ruling& r = piece.rulings[k];
+          const bool is_level = std::abs(glm::dot(r.point[0] - r.point[1], r.n)) <= map_.resolution;
+          if (is_level && (k != piece.rulings.size() / 2 || supports(r))) continue;
           tell({r.n, r.contact[0], r.point[0]}, "a ruling lies in no supporting plane");
         }
       }
     }
+  }
+
+  bool supports(const Ruling& r) {
+    const SupportSample s = seen(geometry_, query_, r.n, r.contact[0]);
+    return glm::dot(s.x - r.point[0], r.n) <= near * map_.resolution;
   }
 
   /// A place of the boundary's curves comes within the resolution of the plane.
@@ -148,10 +161,10 @@ class Comparison {
     });
   }
 
-  /// A curve crosses the cell, between two of its contacts.
-  bool is_crossed(int k) const {
-    const std::vector<Box>& contacts = map_.cells[std::size_t(k)].contacts;
-    const std::vector<MapCrossings::Stretch>& stretches = crossings_.of(k);
+  /// A curve between two of a cell's contacts crosses it, or another one.
+  bool is_crossed(const MapCell& cell, int crossed) const {
+    const std::vector<Box>& contacts = cell.contacts;
+    const std::vector<MapCrossings::Stretch>& stretches = crossings_.of(crossed);
     return std::any_of(stretches.begin(), stretches.end(), [&](const auto& stretch) {
       std::array<std::size_t, 2> nearest = {};
       for (const std::size_t i : {0u, 1u}) {
@@ -221,6 +234,9 @@ class Comparison {
           });
         });
     if (is_known) return;
+    // A patch may be as flat.
+    const bool is_on_patch = geometry_.canonical(cell.contact).kind == SourceKind::face;
+    if (is_on_patch && !faces_.surely_uncovered(cell.contact)) return;
     const SupportSample s = seen(geometry_, query_, cell.normal, cell.contact);
     tell(s, "a facet that the map of directions tells was not found");
   }
@@ -228,6 +244,7 @@ class Comparison {
   /// In units of the resolution: either answer is right nearer than this.
   static constexpr double near = 4;
   static constexpr double same_spot = 1e-6;
+  static constexpr int fine_level = 6;
 
   const ContactGeometry& geometry_;
   SupportQuery& query_;

@@ -20,8 +20,9 @@ struct MapDifferences {
 /// - what supports in the middle of a cell lies on a face, or some place of the boundary comes
 ///   within the resolution of its plane;
 /// - where two contacts exchange, a scroll runs between them, or a facet holds both;
-/// - where all that touches lies in one plane, a facet or a ruling does;
-/// and both contacts of a ruling lie in its plane.
+/// - where all that touches lies in one plane, a facet or a ruling does, or a patch touches it;
+/// and both contacts of a ruling lie in its plane, which supports in the middle of a curve's
+/// pieces.
 ///
 /// The map is certain to within its resolution, and so is what is told, but for what polygons
 /// through the rulings of arcs and the outlines of regions leave open.

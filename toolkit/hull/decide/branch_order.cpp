@@ -63,7 +63,10 @@ bool BranchOrder::apart(std::size_t a, std::size_t b) const {
 
 /// In axes along the line between the middles of two of them.
 bool BranchOrder::go_around(std::size_t a, std::size_t b, std::size_t c) const {
-  for (const auto& [from, to, third] : {std::array{a, b, c}, {b, c, a}, {c, a, b}}) {
+  for (const std::array<std::size_t, 3>& turn : {std::array{a, b, c}, {b, c, a}, {c, a, b}}) {
+    const std::size_t from = turn[0];
+    const std::size_t to = turn[1];
+    const std::size_t third = turn[2];
     const dvec2 own = middle(to) - middle(from);
     const dvec2 across = turned(own);
     const auto offset = [&](std::size_t branch, const dvec2& axis) {

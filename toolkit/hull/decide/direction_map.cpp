@@ -88,7 +88,9 @@ class Decider {
     }
     const auto whole = std::make_shared<const std::vector<int>>(std::move(all));
     for (int face = 0; face < 6; ++face) {
-      waiting_.push_back({{face, 0, 0, 0}, whole, {}, {}});
+      MapCell root;
+      root.face = face;
+      waiting_.push_back({std::move(root), whole, {}, {}});
     }
     do {
       decide_waiting();
@@ -185,10 +187,12 @@ class Decider {
              const Contact& hint) {
     const auto shared = std::make_shared<const std::vector<int>>(std::move(pieces));
     for (std::uint32_t k = 0; k < 4; ++k) {
-      waiting_.push_back({{cell.face, cell.level + 1, 2 * cell.i + k / 2, 2 * cell.j + k % 2},
-                          shared,
-                          beacons,
-                          hint});
+      MapCell quarter;
+      quarter.face = cell.face;
+      quarter.level = cell.level + 1;
+      quarter.i = 2 * cell.i + k / 2;
+      quarter.j = 2 * cell.j + k % 2;
+      waiting_.push_back({std::move(quarter), shared, beacons, hint});
     }
   }
 
@@ -477,6 +481,39 @@ class Decider {
 };
 
 }  // namespace
+
+namespace {
+
+/// Of a contact and its translates, of which boxes may be nearly the same.
+std::size_t farthest_translate(const std::vector<MapCell::Translate>& all, std::size_t contact,
+                               const dvec3& d) {
+  if (contact >= all.size()) return contact;
+  std::size_t best = contact;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].of == all[contact].of && glm::dot(all[k].by - all[best].by, d) > 0) best = k;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {
+  if (!rounds.empty()) {
+    const auto height = [&](const Round& round) {
+      return glm::dot(round.center, d) + glm::length(round.root * d);
+    };
+    const auto highest =
+        std::max_element(rounds.begin(), rounds.end(),
+                         [&](const Round& a, const Round& b) { return height(a) < height(b); });
+    return std::size_t(highest - rounds.begin());
+  }
+  const auto gap = [&](const Box& box) {
+    return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
+  };
+  const auto best = std::min_element(contacts.begin(), contacts.end(),
+                                     [&](const Box& a, const Box& b) { return gap(a) < gap(b); });
+  return farthest_translate(translates, std::size_t(best - contacts.begin()), d);
+}
 
 dvec3 DirectionMap::direction(int face, double s, double t) {
   const FaceAxes axes = face_axes(face);

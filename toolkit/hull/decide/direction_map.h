@@ -55,6 +55,9 @@ struct MapCell {
   dvec3 normal = dvec3(0.0);
   /// kind facet: how far what touches the plane reaches from a line in it, at least.
   double width = 0;
+
+  /// Number of the contact that supports in a direction in which x does. @pre there are contacts
+  std::size_t contact_of(const dvec3& d, const dvec3& x) const;
 };
 
 struct DirectionMapStatistics {

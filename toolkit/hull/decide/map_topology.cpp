@@ -17,10 +17,6 @@ namespace {
 /// less than cells'.
 constexpr double same_normal = 1e-6;
 
-double distance(const Box& box, const dvec3& x) {
-  return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
-}
-
 class Assembly {
  public:
   Assembly(const ContactGeometry& geometry, const DirectionMap& map, const std::stop_token& stop)
@@ -95,33 +91,7 @@ class Assembly {
     const std::vector<Box>& contacts = cell(k).contacts;
     const int first = first_[std::size_t(k)];
     if (contacts.size() < 2 || cell(k).kind == MapCellKind::region) return first;
-    const std::vector<MapCell::Round>& rounds = cell(k).rounds;
-    if (!rounds.empty()) {
-      const auto height = [&](const MapCell::Round& round) {
-        return glm::dot(round.center, d) + glm::length(round.root * d);
-      };
-      const auto highest =
-          std::max_element(rounds.begin(), rounds.end(),
-                           [&](const auto& a, const auto& b) { return height(a) < height(b); });
-      return first + int(highest - rounds.begin());
-    }
-    const dvec3 x = point(d);
-    const auto best = std::min_element(
-        contacts.begin(), contacts.end(),
-        [&](const Box& a, const Box& b) { return distance(a, x) < distance(b, x); });
-    return first + farthest_translate(cell(k), int(best - contacts.begin()), d);
-  }
-
-  /// Of a contact and its translates, of which boxes may be nearly the same.
-  static int farthest_translate(const MapCell& cell, int contact, const dvec3& d) {
-    const std::vector<MapCell::Translate>& all = cell.translates;
-    if (contact >= int(all.size())) return contact;
-    int best = contact;
-    for (int k = 0; k < int(all.size()); ++k) {
-      if (all[std::size_t(k)].of != all[std::size_t(contact)].of) continue;
-      if (glm::dot(all[std::size_t(k)].by - all[std::size_t(best)].by, d) > 0) best = k;
-    }
-    return best;
+    return first + int(cell(k).contact_of(d, point(d)));
   }
 
   /// The point that supports in a direction, which is asked for from several cells.

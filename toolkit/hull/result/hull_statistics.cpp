@@ -9,6 +9,7 @@ HullStatistics& HullStatistics::operator+=(const HullStatistics& other) {
   newton_iterations += other.newton_iterations;
   cells = std::max(cells, other.cells);
   cells_kept = std::max(cells_kept, other.cells_kept);
+  cells_searched = std::max(cells_searched, other.cells_searched);
   map_cells += other.map_cells;
   map_candidates += other.map_candidates;
   map_undecided = std::max(map_undecided, other.map_undecided);

@@ -9,6 +9,8 @@ struct HullStatistics {
   /// Cells of the CBVHs at the finest level of culling, and those that were kept.
   long cells = 0;
   long cells_kept = 0;
+  /// Finer cells for which neither a proof nor a known contact accounts (SeparatingGraph).
+  long cells_searched = 0;
   /// Cells of the map of directions, pieces of the model that were looked at in them, and those
   /// that are not decided.
   long map_cells = 0;

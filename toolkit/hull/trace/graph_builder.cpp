@@ -64,12 +64,17 @@ int GraphBuilder::add(SeparatingArc arc) {
       if (c.kind == SourceKind::face) traces_[{c.instance, c.element}].push_back({index, k, i});
     }
   }
+  crossings_.add(arc);
   graph_.arcs.push_back(std::move(arc));
   return index;
 }
 
 int GraphBuilder::add_node(const dvec3& n, FacetContacts facet) {
   const std::size_t count = facet.contacts.size();
+  for (const Contact& c : facet.contacts) crossings_.add(c);
+  for (const EdgeStretch& side : facet.sides) {
+    if (side.piece >= 0) crossings_.add(side);
+  }
   graph_.nodes.push_back({n, std::move(facet.contacts), std::move(facet.points),
                           std::move(facet.sides), std::vector<FacetNode::Slot>(count)});
   return int(graph_.nodes.size()) - 1;
@@ -521,6 +526,17 @@ bool GraphBuilder::is_reached(const FreeEnd& end) const {
     }
   }
   return false;
+}
+
+std::vector<CulledCell> GraphBuilder::uncrossed(const std::vector<CulledCell>& cells,
+                                                double margin) const {
+  std::vector<CulledCell> result;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(result), [&](const CulledCell& cell) {
+    return cell.state == CellState::mixed &&
+           !geometry_.is_repeated({cell.instance, SourceKind::face, cell.patch, 0, 0}) &&
+           !crossings_.crosses(cell, margin);
+  });
+  return result;
 }
 
 }  // namespace taut

@@ -8,6 +8,7 @@
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/cull/culling.h"
+#include "taut/hull/trace/cell_crossings.h"
 #include "taut/hull/trace/free_ends.h"
 #include "taut/hull/trace/separating_graph.h"
 #include "taut/hull/trace/surface_seeds.h"
@@ -23,7 +24,7 @@ class GraphBuilder {
 
   /// It must outlive this.
   explicit GraphBuilder(const ContactSystem& system)
-      : system_(system), geometry_(system.geometry()) {}
+      : system_(system), geometry_(system.geometry()), crossings_(geometry_) {}
 
   const SeparatingGraph& graph() const { return graph_; }
   const FacetNode& node(int k) const { return graph_.nodes[std::size_t(k)]; }
@@ -36,6 +37,8 @@ class GraphBuilder {
   int add_node(const dvec3& n, FacetContacts facet);
   /// The node at which two surfaces or curves touch, a new one if there is none yet.
   int crossing_at(const dvec3& n, const Contact& contact);
+  /// All of the stretch is in contact with a facet's plane.
+  void add_contact(const EdgeStretch& stretch) { crossings_.add(stretch); }
   /// Plugs an arc's end into the side of the node that it crosses.
   void connect(int arc, int end, int node);
   /// One spot is told once.
@@ -67,6 +70,8 @@ class GraphBuilder {
   bool is_facet(const CommonSupport& seed) const;
   /// Whether an arc ends in the free end.
   bool is_reached(const FreeEnd& end) const;
+  /// The mixed cells for which no known contact accounts, with so many of their sizes around them.
+  std::vector<CulledCell> uncrossed(const std::vector<CulledCell>& cells, double margin) const;
 
  private:
   bool lies_in_ruling(const dvec3& n, const std::vector<dvec3>& points, double turn_slack) const;
@@ -93,6 +98,7 @@ class GraphBuilder {
   const ContactSystem& system_;
   const ContactGeometry& geometry_;
   SeparatingGraph graph_;
+  CellCrossings crossings_;                                          // of all arcs and nodes
   std::map<std::pair<int, int>, std::vector<PieceContact>> traces_;  // by instance and patch
   std::vector<Box> boxes_;                                           // of the arcs' directions
 };

@@ -22,6 +22,8 @@ class MapCrossings {
   void add(const SeparatingArc& arc);
   const std::vector<Stretch>& of(int cell) const { return stretches_[std::size_t(cell)]; }
   bool crosses(int cell) const { return !of(cell).empty(); }
+  /// The cells beside a cell's sides and corners, as far as one step beyond tells.
+  std::vector<int> around(int cell) const;
 
  private:
   void add(const Stretch& stretch, const dvec3& from, const dvec3& to);

@@ -1,6 +1,5 @@
 #include "taut/hull/trace/map_support.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace taut {
@@ -9,17 +8,6 @@ namespace {
 /// Directions are told apart in steps of this: cells' corners are the same points, to rounding, for
 /// all cells that meet there.
 constexpr double corner_step = 1e-12;
-
-double distance(const Box& box, const dvec3& x) {
-  return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
-}
-
-std::size_t nearest(const std::vector<Box>& contacts, const dvec3& x) {
-  const auto best =
-      std::min_element(contacts.begin(), contacts.end(),
-                       [&](const Box& a, const Box& b) { return distance(a, x) < distance(b, x); });
-  return std::size_t(best - contacts.begin());
-}
 
 }  // namespace
 
@@ -40,7 +28,7 @@ std::vector<std::pair<SupportSample, SupportSample>> MapSupport::partings(const 
   const std::array<std::pair<std::size_t, std::size_t>, 4> sides = {
       {{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
   std::array<std::size_t, 4> winner = {};
-  for (std::size_t k = 0; k < 4; ++k) winner[k] = nearest(cell.contacts, at(d[k]).x);
+  for (std::size_t k = 0; k < 4; ++k) winner[k] = cell.contact_of(d[k], at(d[k]).x);
   std::vector<std::pair<SupportSample, SupportSample>> found;
   for (const auto& [a, b] : sides) {
     if (winner[a] == winner[b] || glm::distance(at(d[a]).x, at(d[b]).x) <= extent_) continue;

@@ -13,12 +13,12 @@ namespace taut {
 /// What supports a model at the corners of cells of its map of directions; asked once for each.
 class MapSupport {
  public:
-  /// All must outlive it.
-  MapSupport(const ContactGeometry& geometry, SupportQuery& query, const DirectionMap& map)
-      : geometry_(geometry), query_(query), extent_(map.contact_extent()) {}
+  /// `extent`: contacts no farther from each other are one. All must outlive it.
+  MapSupport(const ContactGeometry& geometry, SupportQuery& query, double extent)
+      : geometry_(geometry), query_(query), extent_(extent) {}
 
   /// The sides of a cell at the ends of which different ones of its contacts support, farther from
-  /// each other than one contact's extent.
+  /// each other than the extent.
   std::vector<std::pair<SupportSample, SupportSample>> partings(const MapCell& cell);
 
  private:

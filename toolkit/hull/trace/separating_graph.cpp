@@ -21,6 +21,7 @@
 #include "taut/hull/trace/arc_tracer.h"
 #include "taut/hull/trace/edge_stretches.h"
 #include "taut/hull/trace/edge_touches.h"
+#include "taut/hull/trace/free_end_seeds.h"
 #include "taut/hull/trace/free_ends.h"
 #include "taut/hull/trace/graph_builder.h"
 #include "taut/hull/trace/level_way.h"
@@ -43,6 +44,8 @@ constexpr double least_part = 0.05;
 constexpr double beside_plane = 1.25;
 /// Slopes of edges at vertices, which support in directions that are not level too, that are zero.
 constexpr double vertex_slope = 1e-10;
+/// Turn, in radians, from a free end to where its curve's contacts have parted.
+constexpr double end_step = 1e-3;
 /// Spots that are left unresolved before the search is given up.
 constexpr std::size_t failure_limit = 64;
 /// Cells of support queries after which it is given up, too, and how many more a sample and a
@@ -64,6 +67,29 @@ constexpr int depth_limit = 40;
 constexpr double circle_radius = 2e-4;
 constexpr int circle_samples = 64;
 constexpr int circle_halvings = 10;
+/// Levels by which mixed cells are refined that no curve crosses, at least, and at most while that
+/// leaves fewer of them.
+constexpr int least_refinements = 3;
+constexpr int most_refinements = 8;
+/// Not more than so many cells at a time.
+constexpr std::size_t refined_cells = 32768;
+/// More than so many are not refined again that a level has made this many times more: nothing
+/// decides cells along lines, of which there are twice as many a level.
+constexpr std::size_t few_cells = 2048;
+constexpr double line_growth = 1.5;
+/// Part of its size within which a curve beside a refined cell accounts for it.
+constexpr double refined_margin = 1;
+
+/// The cells that a parabolic curve may reach. Contacts merge on none of the others, nor on their
+/// borders: there the surface is curved one way, and where it is not on the far side of a join,
+/// that is another cell's.
+std::vector<CulledCell> not_definite(const std::vector<CulledCell>& cells) {
+  std::vector<CulledCell> result;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(result),
+               [](const CulledCell& cell) { return !cell.definite; });
+  return result;
+}
+
 /// The support with contacts in their canonical form, on edges and seams where they are exactly,
 /// and at vertices that its direction does not tell from where they are.
 CommonSupport settled_at_vertices(const ContactGeometry& geometry, CommonSupport s) {
@@ -100,7 +126,7 @@ class GraphTracer {
         built_(system_) {}
 
   SeparatingGraph run(const std::vector<Sample>& samples, const std::vector<CulledCell>& cells,
-                      const DirectionMap& map);
+                      const CurveSearch& search);
 
  private:
   static constexpr int no_node = -2;
@@ -118,6 +144,8 @@ class GraphTracer {
   void part_closely(const SupportSample& a, const SupportSample& b, int depth);
   void part_cells(const std::vector<CulledCell>& cells);
   void part_sides(std::span<const CulledCell> cells);
+  void part_beside(const FreeEnd& end);
+  void search_cells(const std::vector<CulledCell>& cells);
   void search_map(const DirectionMap& map);
   void trace(const CommonSupport& seed);
   void trace_both_ways(const CommonSupport& seed);
@@ -140,7 +168,9 @@ class GraphTracer {
   long jets_before_ = 0;
   long places_ = 0;  // samples and refined cells
   bool given_up_ = false;
-  bool exhausted_ = false;                 // and therefore given up
+  bool exhausted_ = false;  // and therefore given up
+  long cells_searched_ = 0;
+  long refinement_queries_ = 0;
   std::set<std::pair<int, int>> settled_;  // instances and patches
   std::vector<TouchedStretch> stretches_;
   std::vector<Landmark> landmarks_;
@@ -177,6 +207,10 @@ void GraphTracer::find_planes(const std::vector<Sample>& samples) {
       continue;
     }
     *f = with_stretches(geometry_, plane.n, *f, stretches_);
+    // All of the curves touches the plane, its outline or not.
+    for (const Contact& c : plane.pieces) {
+      built_.add_contact({c.instance, c.element, 0, 1});
+    }
     add_landmark({plane.n, *f});
   }
 }
@@ -370,20 +404,70 @@ void GraphTracer::part_sides(std::span<const CulledCell> cells) {
   }
 }
 
+/// Seeks the curve that ends in the free end: from two contacts that have parted from it, or
+/// between directions to both sides of it.
+void GraphTracer::part_beside(const FreeEnd& end) {
+  bool reached = false;
+  visit_parted(system_, query_, end, [&](const CommonSupport& seed) {
+    if (built_.is_traced(seed)) return false;
+    trace(seed);
+    reached = built_.is_reached(end);
+    return reached;
+  });
+  if (reached) return;
+  const dvec3 ahead = glm::cross(end.n, end.along);
+  for (const double sense : {1.0, -1.0}) {
+    const auto beside = [&](double side) {
+      return seen(
+          geometry_, query_,
+          glm::normalize(end.n + sense * end_step * ahead + side * end_step * end_step * end.along),
+          end.contact);
+    };
+    part(beside(1), beside(-1), 0);
+  }
+}
+
+/// Seeks what the mixed cells hide through which no curve runs: decides them further, and where
+/// that fails looks for curves across their sides, and in the end for free ends in them.
+void GraphTracer::search_cells(const std::vector<CulledCell>& cells) {
+  std::vector<CulledCell> left = built_.uncrossed(cells, 0);
+  CellRefinement refinement(geometry_.scene(), progress_.stop);
+  bool fewer = true;
+  for (int level = 1; !left.empty() && !given_up(); ++level) {
+    if (level > least_refinements && (!fewer || level > most_refinements)) break;
+    if (left.size() > refined_cells) break;
+    progress_.check();
+    const std::size_t count = left.size();
+    left = built_.uncrossed(refinement.refined(left), refined_margin);
+    places_ += long(left.size());
+    part_cells(left);
+    left = built_.uncrossed(left, refined_margin);
+    fewer = left.size() < count;
+    if (left.size() > few_cells && double(left.size()) > line_growth * double(count)) break;
+  }
+  if (!given_up()) {
+    for (const FreeEnd& end : free_ends(geometry_, query_, not_definite(left))) {
+      if (!given_up() && !built_.is_reached(end)) part_beside(end);
+    }
+  }
+  refinement_queries_ = refinement.support_queries();
+  cells_searched_ = long(built_.uncrossed(left, refined_margin).size());
+}
+
 /// Seeks the curves that the map tells and that were not met: between corners of its cells at which
 /// different contacts support.
 void GraphTracer::search_map(const DirectionMap& map) {
   MapCrossings crossings(map);
-  MapSupport support(geometry_, query_, map);
+  // About a free end, heights differ by the fourth power of how far two contacts have parted.
+  const double untold = std::sqrt(std::sqrt(geometry_.tie()));
+  MapSupport support(geometry_, query_, std::max(map.contact_extent(), untold));
   std::size_t known = 0;
   for (std::size_t k = 0; k < map.cells.size() && !given_up(); ++k) {
+    for (; known < built_.graph().arcs.size(); ++known) crossings.add(built_.graph().arcs[known]);
     const MapCell& cell = map.cells[k];
     if (cell.contacts.size() < 2 || crossings.crosses(int(k))) continue;
     progress_.check();
     for (const auto& [a, b] : support.partings(cell)) part(a, b, 0);
-    for (; known < built_.graph().arcs.size(); ++known) {
-      crossings.add(built_.graph().arcs[known]);
-    }
   }
 }
 
@@ -536,7 +620,7 @@ void GraphTracer::trace_from(int node, std::size_t side) {
 }
 
 SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
-                                 const std::vector<CulledCell>& cells, const DirectionMap& map) {
+                                 const std::vector<CulledCell>& cells, const CurveSearch& search) {
   cells_before_ = query_.cells();
   queries_before_ = query_.queries();
   jets_before_ = geometry_.evaluations();
@@ -550,11 +634,14 @@ SeparatingGraph GraphTracer::run(const std::vector<Sample>& samples,
   part_cells(cells);
   for (const SupportingPole& pole : poles_) part_about(pole);
   part_samples(samples);
-  search_map(map);
+  if (search.map != nullptr) search_map(*search.map);
+  if (search.cells) search_cells(cells);
   tell_failures();
   SeparatingGraph graph = built_.take();
+  graph.cells_searched = cells_searched_;
   graph.exhausted = exhausted_;
   graph.newton_iterations = system_.iterations();
+  graph.support_queries = refinement_queries_;
   return graph;
 }
 
@@ -584,8 +671,8 @@ void GraphTracer::tell_failures() {
 SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
                                         const std::vector<Sample>& samples,
                                         const std::vector<CulledCell>& cells,
-                                        const DirectionMap& map, const Progress& progress) {
-  return GraphTracer(geometry, query, progress).run(samples, cells, map);
+                                        const CurveSearch& search, const Progress& progress) {
+  return GraphTracer(geometry, query, progress).run(samples, cells, search);
 }
 
 }  // namespace taut
