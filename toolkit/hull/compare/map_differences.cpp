@@ -18,6 +18,8 @@ constexpr double chord_share = 0.25;
 constexpr int chord_steps = 4;
 /// Halvings of the angle between two directions until they are one.
 constexpr int parting_halvings = 30;
+/// Share of contacts' extent within which two directions are one for a first look.
+constexpr double rough_share = 0.25;
 /// Spots told, at most.
 constexpr std::size_t spot_limit = 16;
 
@@ -125,10 +127,10 @@ class Comparison {
     tell({n, c, x}, "a support point lies on no face that was found");
   }
 
-  /// The two directions next to each other, on the great arc between two of which different
-  /// contacts support, at which these exchange.
-  std::array<SupportSample, 2> exchange(SupportSample a, SupportSample b) {
-    for (int k = 0; k < parting_halvings; ++k) {
+  /// Of two directions in which different contacts support, two between them on the great arc,
+  /// nearer to each other than so much, or next to each other.
+  std::array<SupportSample, 2> exchange(SupportSample a, SupportSample b, double turn) {
+    for (int k = 0; k < parting_halvings && glm::distance(a.n, b.n) > turn; ++k) {
       const dvec3 n = unit(a.n + b.n);
       if (n == a.n || n == b.n) break;
       const SupportSample middle = seen(geometry_, query_, n, a.contact);
@@ -139,12 +141,20 @@ class Comparison {
 
   void compare_curves(const MapCell& cell) {
     for (const auto& [from, to] : support_.partings(cell)) {
-      const auto [a, b] = exchange(from, to);
-      if (glm::distance(a.x, b.x) <= map_.contact_extent()) continue;
-      if (is_on_arc(a.n, a.x, b.x)) continue;
-      if (is_in_facet(a.n, a.x, b.x)) continue;
-      tell(a, "a separating curve that the map of directions tells was not found");
-      tell(b, "a separating curve that the map of directions tells was not found");
+      // Roughly first: most are known.
+      std::array<SupportSample, 2> ends = {from, to};
+      bool is_known = false;
+      for (const double turn : {rough_share * map_.contact_extent(), 0.0}) {
+        ends = exchange(ends[0], ends[1], turn);
+        const auto& [a, b] = ends;
+        is_known = glm::distance(a.x, b.x) <= map_.contact_extent() || is_on_arc(a.n, a.x, b.x) ||
+                   is_in_facet(a.n, a.x, b.x);
+        if (is_known) break;
+      }
+      if (is_known) continue;
+      for (const SupportSample& end : ends) {
+        tell(end, "a separating curve that the map of directions tells was not found");
+      }
     }
   }
 
