@@ -61,6 +61,19 @@ bool BranchOrder::apart(std::size_t a, std::size_t b) const {
   return false;
 }
 
+std::optional<std::array<int, 3>> BranchOrder::row_of_three(std::size_t axis) const {
+  const dvec2 way = axis == 0 ? dvec2(1, 0) : dvec2(0, 1);
+  std::array<int, 3> order = {0, 1, 2};
+  std::array<Interval, 3> range;
+  for (const std::size_t b : {0u, 1u, 2u}) range[b] = along(b, way);
+  const auto of = [&](int b) -> const Interval& { return range[std::size_t(b)]; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return of(a).lower < of(b).lower; });
+  for (const std::size_t k : {0u, 1u}) {
+    if (!(of(order[k]).upper < of(order[k + 1]).lower)) return std::nullopt;
+  }
+  return order;
+}
+
 /// In axes along the line between the middles of two of them.
 bool BranchOrder::go_around(std::size_t a, std::size_t b, std::size_t c) const {
   for (const std::array<std::size_t, 3>& turn : {std::array{a, b, c}, {b, c, a}, {c, a, b}}) {

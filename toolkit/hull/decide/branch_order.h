@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
@@ -20,6 +22,8 @@ class BranchOrder {
   /// Certain: any three points of theirs go around the same way. Two differences of the three
   /// support functions have independent gradients then, and vanish together at most once.
   bool go_around(std::size_t a, std::size_t b, std::size_t c) const;
+  /// Certain: three branches follow each other along one of the axes. Their numbers in this order.
+  std::optional<std::array<int, 3>> row_of_three(std::size_t axis) const;
 
  private:
   /// Of the points of a branch.

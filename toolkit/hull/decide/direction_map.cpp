@@ -18,6 +18,7 @@
 #include "taut/hull/decide/branches.h"
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/contact_index.h"
+#include "taut/hull/decide/cell_border.h"
 #include "taut/hull/decide/near_concavity.h"
 
 namespace taut {
@@ -79,7 +80,8 @@ class Decider {
         domination_(pieces_.budget_left() * options.resolution),
         index_(pieces_, options.resolution),
         concavity_(pieces_, options.resolution),
-        differences_(pieces_, view_, branches_, cover_share * options.resolution) {}
+        differences_(pieces_, view_, branches_, cover_share * options.resolution),
+        border_(view_, branches_, query_) {}
 
   DirectionMap run() {
     std::vector<int> all;
@@ -225,6 +227,7 @@ class Decider {
     }
     if (!kind) kind = decided_last();
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
+    if (kind == MapCellKind::node) kind = kind_by_border(support.contact);
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
     split(cell, pieces_left(), beacons, support.contact);
@@ -283,7 +286,7 @@ class Decider {
     for (const std::size_t k : {0u, 1u, 2u}) {
       const auto from = std::size_t((*line_)[k]);
       cell.contacts[k] = contacts[from];
-      cell.rounds[k] = rounds[from];
+      if (!rounds.empty()) cell.rounds[k] = rounds[from];
     }
     cell.translates.clear();  // rounds tell more
   }
@@ -357,6 +360,22 @@ class Decider {
     }
     line_ = differences_.line_of(all);
     return line_ ? std::optional(MapCellKind::in_line) : std::nullopt;
+  }
+
+  /// What may be a node, or not: which it is, if the contacts are in a row.
+  MapCellKind kind_by_border(const Contact& hint) {
+    if (!dominated_.empty() || !boxes_part(branches_.all())) return MapCellKind::node;
+    order_.find(view_, branches_, axes_.first, axes_.second);
+    const std::optional<CellBorder::Found> found = border_.find(order_, hint);
+    if (!found || found->is_node) return MapCellKind::node;
+    if (found->supporting.size() == 3) {
+      std::copy_n(found->supporting.begin(), 3, line_.emplace().begin());
+      return MapCellKind::in_line;
+    }
+    std::vector<bool> left(3, false);
+    for (const int k : found->supporting) left[std::size_t(k)] = true;
+    branches_.keep(left);
+    return found->supporting.size() == 2 ? MapCellKind::arc : MapCellKind::region;
   }
 
   /// A point of a contact tells by its place which of them it is of.
@@ -470,6 +489,7 @@ class Decider {
   ContactIndex index_;
   NearConcavity concavity_;
   BranchDifferences differences_;
+  CellBorder border_;
   std::optional<std::array<int, 3>> line_;
   FaceAxes axes_;
   DirectionMap map_;
