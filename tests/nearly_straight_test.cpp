@@ -44,6 +44,18 @@ TEST(NearlyStraight, PiecesNearOneSegmentAreCovered) {
 
 TEST(NearlyStraight, PiecesFartherOffAreNot) { EXPECT_EQ(counts(bent(4 * rho)), std::pair(0, 2)); }
 
+/// Edges in a row: the ends of the inner one lie between those of the outer ones, which stand for
+/// them.
+TEST(NearlyStraight, BetweenVerticesThatAreCovered) {
+  const auto edge = [](double from, double off) {
+    return of_curve({{from, 0, 0}, {from + 0.3, off, 0}, {from + 0.6, 0, off}, {from + 1, 0, 0}});
+  };
+  EXPECT_EQ(counts(edge(0, 0.6 * rho) + edge(1.5, 0.4 * rho) + edge(3, 0.5 * rho)),
+            std::pair(3, 0));
+  EXPECT_EQ(counts(edge(0, 0.6 * rho) + edge(1.5, 4 * rho) + edge(3, 0.5 * rho)),
+            std::pair(2, 1));
+}
+
 /// Beyond its end an edge is not near the segment, straight as it is.
 TEST(NearlyStraight, AnEdgeThatTurnsBackIsNot) {
   EXPECT_EQ(counts(of_curve({{0, 0, 0}, {1, 0, 0}, {2, 0.1 * rho, 0}, {0.5, 0, 0}})),

@@ -61,21 +61,42 @@ bool BranchOrder::apart(std::size_t a, std::size_t b) const {
   return false;
 }
 
-std::optional<std::array<int, 3>> BranchOrder::row_of_three(std::size_t axis) const {
+std::optional<std::vector<int>> BranchOrder::row(std::size_t axis) const {
   const dvec2 way = axis == 0 ? dvec2(1, 0) : dvec2(0, 1);
-  std::array<int, 3> order = {0, 1, 2};
-  std::array<Interval, 3> range;
-  for (const std::size_t b : {0u, 1u, 2u}) range[b] = along(b, way);
+  std::vector<Interval> range(points_.size());
+  std::vector<int> order(points_.size());
+  for (std::size_t b = 0; b < points_.size(); ++b) {
+    range[b] = along(b, way);
+    order[b] = int(b);
+  }
   const auto of = [&](int b) -> const Interval& { return range[std::size_t(b)]; };
   std::sort(order.begin(), order.end(), [&](int a, int b) { return of(a).lower < of(b).lower; });
-  for (const std::size_t k : {0u, 1u}) {
+  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
     if (!(of(order[k]).upper < of(order[k + 1]).lower)) return std::nullopt;
   }
   return order;
 }
 
-/// In axes along the line between the middles of two of them.
+bool BranchOrder::go_around_alike(const std::vector<int>& row) const {
+  int way = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    for (std::size_t j = i + 1; j < row.size(); ++j) {
+      for (std::size_t k = j + 1; k < row.size(); ++k) {
+        const int own = turn(std::size_t(row[i]), std::size_t(row[j]), std::size_t(row[k]));
+        if (own == 0 || own == -way) return false;
+        way = own;
+      }
+    }
+  }
+  return true;
+}
+
 bool BranchOrder::go_around(std::size_t a, std::size_t b, std::size_t c) const {
+  return turn(a, b, c) != 0;
+}
+
+/// In axes along the line between the middles of two of them.
+int BranchOrder::turn(std::size_t a, std::size_t b, std::size_t c) const {
   for (const std::array<std::size_t, 3>& turn : {std::array{a, b, c}, {b, c, a}, {c, a, b}}) {
     const std::size_t from = turn[0];
     const std::size_t to = turn[1];
@@ -87,9 +108,10 @@ bool BranchOrder::go_around(std::size_t a, std::size_t b, std::size_t c) const {
     };
     const Interval p = product(offset(to, own), offset(third, across));
     const Interval q = product(offset(to, across), offset(third, own));
-    if (excludes_zero(difference(p, q))) return true;
+    const Interval area = difference(p, q);
+    if (excludes_zero(area)) return area.lower > 0 ? 1 : -1;
   }
-  return false;
+  return 0;
 }
 
 }  // namespace taut

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -22,10 +21,14 @@ class BranchOrder {
   /// Certain: any three points of theirs go around the same way. Two differences of the three
   /// support functions have independent gradients then, and vanish together at most once.
   bool go_around(std::size_t a, std::size_t b, std::size_t c) const;
-  /// Certain: three branches follow each other along one of the axes. Their numbers in this order.
-  std::optional<std::array<int, 3>> row_of_three(std::size_t axis) const;
+  /// Certain: the branches follow each other along one of the axes. Their numbers in this order.
+  std::optional<std::vector<int>> row(std::size_t axis) const;
+  /// Certain: any three of those in a row go around the same way, in its order.
+  bool go_around_alike(const std::vector<int>& row) const;
 
  private:
+  /// Which way three go around: 1, -1, or 0 if it is not certain.
+  int turn(std::size_t a, std::size_t b, std::size_t c) const;
   /// Of the points of a branch.
   Interval along(std::size_t branch, const dvec2& axis) const;
   dvec2 middle(std::size_t branch) const;

@@ -1,7 +1,10 @@
 #include "taut/hull/decide/cell_border.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <tuple>
+#include <utility>
 
 namespace taut {
 namespace {
@@ -18,8 +21,6 @@ void append(std::vector<int>& loop, const std::vector<int>& next) {
 
 }  // namespace
 
-/// Two curves of three meet in a plane that touches all three, in which the third ends as well; if
-/// there is one at most, there is none if they leave the cell as often as not.
 std::optional<CellBorder::Found> CellBorder::find(const BranchOrder& order, const Contact& hint) {
   points_.find(view_, branches_);
   for (std::size_t c = 0; c < 4; ++c) {
@@ -37,46 +38,62 @@ std::optional<CellBorder::Found> CellBorder::find(const BranchOrder& order, cons
     append(loop, *found);
   }
   while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
-  if (loop.size() < 3) return Found{std::move(loop)};
-  // How often each is passed by: by the sum of their numbers, of two that exchange the third.
-  std::array<int, 3> exchanges = {};
+  return inside(loop);
+}
+
+/// Of what follows each other around the cell.
+std::optional<CellBorder::Found> CellBorder::inside(const std::vector<int>& loop) const {
+  if (loop.size() == 1) return Found{loop};
+  std::map<std::pair<int, int>, int> exchanges;
+  std::map<int, std::set<int>> beside;
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    ++exchanges[std::size_t(3 - loop[k] - loop[(k + 1) % loop.size()])];
+    const auto [a, b] = std::minmax(loop[k], loop[(k + 1) % loop.size()]);
+    ++exchanges[{a, b}];
+    beside[a].insert(b);
+    beside[b].insert(a);
   }
-  const auto is_odd = [](int count) { return count % 2 == 1; };
-  if (std::all_of(exchanges.begin(), exchanges.end(), is_odd)) return Found{{0, 1, 2}, true};
-  // Two of a kind, twice each: those that do not exchange are the first and the last.
-  const auto never = std::find(exchanges.begin(), exchanges.end(), 0);
-  if (loop.size() != 4 || never == exchanges.end()) return std::nullopt;
-  const auto middle = int(never - exchanges.begin());
-  return Found{{(middle + 1) % 3, middle, (middle + 2) % 3}};
+  const auto odd = std::count_if(exchanges.begin(), exchanges.end(),
+                                 [](const auto& e) { return e.second % 2 == 1; });
+  if (odd == 3 && count() == 3) return Found{{0, 1, 2}, true};
+  if (odd > 0) return std::nullopt;
+  // From an end on; what branches is no line.
+  Found found;
+  int last = -1;
+  const auto end = std::find_if(beside.begin(), beside.end(),
+                                [](const auto& b) { return b.second.size() == 1; });
+  if (end == beside.end()) return std::nullopt;
+  for (int next = end->first; next >= 0;) {
+    const std::set<int>& own = beside[next];
+    if (own.size() > 2) return std::nullopt;
+    found.supporting.push_back(next);
+    const auto beyond = std::find_if(own.begin(), own.end(), [&](int b) { return b != last; });
+    last = next;
+    next = beyond == own.end() ? -1 : *beyond;
+  }
+  return found;
 }
 
 std::optional<std::vector<int>> CellBorder::along(const CellSide& side, const BranchOrder& order,
                                                   std::size_t axis) {
-  const int from = winner_[side[0]];
-  const int to = winner_[side[1]];
-  const std::optional<std::array<int, 3>> row = order.row_of_three(axis);
+  const std::optional<std::vector<int>> row = order.row(axis);
   if (!row) {
     const std::optional<int> only = winner_along(side);
     return only ? std::optional(std::vector<int>{*only}) : std::nullopt;
   }
-  const auto place = [&](int branch) { return std::find(row->begin(), row->end(), branch); };
-  if (place(to) < place(from)) return std::nullopt;  // it cannot be but for rounding
-  std::vector<int> found(place(from), place(to) + 1);
-  if (found.size() < 3) return found;
-  const std::optional<bool> middle = supports_between((*row)[1], side);
-  if (!middle) return std::nullopt;
-  if (!*middle) found.erase(found.begin() + 1);
+  std::vector<int> found = {winner_[side[0]]};
+  const bool known = add_between(*row, view_.corners()[side[0]], corner_[side[0]],
+                                 view_.corners()[side[1]], corner_[side[1]], found);
+  if (!known) return std::nullopt;
+  append(found, {winner_[side[1]]});
   return found;
 }
 
 /// The branch that supports in all directions of a side: a point of it is above all others there.
 std::optional<int> CellBorder::winner_along(const CellSide& side) const {
-  for (int branch = 0; branch < 3; ++branch) {
+  for (int branch = 0; branch < int(count()); ++branch) {
     for (const dvec3& x : points_.points(std::size_t(branch))) {
       bool is_highest = true;
-      for (int other = 0; other < 3; ++other) {
+      for (int other = 0; other < int(count()); ++other) {
         is_highest = is_highest && (other == branch || !is_above(other, x, side));
       }
       if (is_highest) return branch;
@@ -103,7 +120,7 @@ bool CellBorder::is_above(int branch, const dvec3& point, const CellSide& side) 
 int CellBorder::branch_of(const dvec3& x) const {
   int best = -1;
   double least = infinity;
-  for (int b = 0; b < 3; ++b) {
+  for (int b = 0; b < int(count()); ++b) {
     const Branch& branch = branches_.all()[std::size_t(b)];
     const dvec3 gap = glm::max(glm::max(branch.lower - x, x - branch.upper), dvec3(0.0));
     if (glm::length(gap) >= least) continue;
@@ -113,27 +130,36 @@ int CellBorder::branch_of(const dvec3& x) const {
   return best;
 }
 
-/// Whether a third one supports between those that do so at a side's ends: where the planes across
-/// which these were touched last exchange is nearer to where they do.
-std::optional<bool> CellBorder::supports_between(int branch, const CellSide& side) {
-  const dvec3 from = view_.corners()[side[0]];
-  const dvec3 to = view_.corners()[side[1]];
-  Support first = corner_[side[0]];
-  Support last = corner_[side[1]];
-  const int winner = branch_of(first.point);
+/// Adds those that support between two directions, in their order, to what is found: where the
+/// planes across which the two at the ends were touched last exchange is nearer to where they do.
+bool CellBorder::add_between(const std::vector<int>& row, const dvec3& from, const Support& first,
+                             const dvec3& to, const Support& last, std::vector<int>& found) {
+  const auto place = [&](const Support& s) {
+    return std::find(row.begin(), row.end(), branch_of(s.point)) - row.begin();
+  };
+  const std::ptrdiff_t begin = place(first);
+  const std::ptrdiff_t end = place(last);
+  if (end < begin) return false;  // it cannot be but for rounding
+  if (end - begin < 2) return true;
+  Support lower = first;
+  Support upper = last;
   for (int k = 0; k < side_query_limit; ++k) {
-    const double before = glm::dot(last.point - first.point, from);
-    const double after = glm::dot(last.point - first.point, to);
-    if (!(before < 0 && after > 0)) return std::nullopt;
+    const double before = glm::dot(upper.point - lower.point, from);
+    const double after = glm::dot(upper.point - lower.point, to);
+    if (!(before < 0 && after > 0)) return false;
     const dvec3 d = glm::mix(from, to, before / (before - after));
-    const Support between = query_(unit(d), first.contact);
-    const int holder = branch_of(between.point);
-    if (holder == branch) return true;
-    const double more = glm::dot(between.point - first.point, d);
-    if (more <= view_.noise()) return false;
-    (holder == winner ? first : last) = between;
+    const Support between = query_(unit(d), lower.contact);
+    const std::ptrdiff_t own = place(between);
+    if (own > begin && own < end) {
+      if (!add_between(row, from, first, d, between, found)) return false;
+      append(found, {row[std::size_t(own)]});
+      return add_between(row, d, between, to, last, found);
+    }
+    if (glm::dot(between.point - lower.point, d) <= view_.noise()) return true;
+    if (own != begin && own != end) return false;
+    (own == begin ? lower : upper) = between;
   }
-  return std::nullopt;
+  return false;
 }
 
 }  // namespace taut

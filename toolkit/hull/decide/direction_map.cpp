@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "taut/bounds/contact_climb.h"
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/disjoint_sets.h"
@@ -32,6 +33,12 @@ constexpr std::size_t branch_beacons = 4;
 constexpr int refinement_limit = 12;
 /// Pieces of a cell beyond which it is split rather than looked at.
 constexpr std::size_t looked_at_limit = 200;
+/// Contacts in line, at most.
+constexpr std::size_t line_limit = 8;
+/// Rounds of Newton's kind for the plane of a node: contacts of a plane, and the plane of these.
+constexpr int plane_rounds = 4;
+/// In units of the resolution over the width of facets: how far their normals may part.
+constexpr double facet_slack = 4;
 /// In units of the resolution: three points span a plane if the planes across directions of a cell
 /// part by more over the least of their distances from a line. What is thinner is near them all
 /// across it.
@@ -156,11 +163,9 @@ class Decider {
         if (!tree.side(k, number, side)) continue;
         const auto other = nodes_.find(side.other);
         if (other == nodes_.end()) continue;
-        const dvec3& own = map_.cells[std::size_t(k)].normal;
-        const dvec3& beyond = map_.cells[std::size_t(side.other)].normal;
-        if (glm::length(glm::cross(own, beyond)) <= std::ldexp(1.0, -options_.level_limit)) {
-          continue;
-        }
+        const MapCell& own = map_.cells[std::size_t(k)];
+        const MapCell& beyond = map_.cells[std::size_t(side.other)];
+        if (own.shares_plane(beyond, options_.resolution)) continue;
         for (const int cell : {k, side.other}) {
           if (map_.cells[std::size_t(cell)].level == options_.level_limit) continue;
           splits[std::size_t(cell)] = any = true;
@@ -226,8 +231,10 @@ class Decider {
       kind = decided(false);
     }
     if (!kind) kind = decided_last();
+    if (kind == MapCellKind::node || (kind == MapCellKind::in_line && line_.empty())) {
+      kind = kind_by_border(support.contact);
+    }
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
-    if (kind == MapCellKind::node) kind = kind_by_border(support.contact);
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
     split(cell, pieces_left(), beacons, support.contact);
@@ -264,8 +271,9 @@ class Decider {
       cell.normal = facet_normal_;
       cell.width = facet_width_;
     }
-    if (kind == MapCellKind::node) cell.normal = plane_of_three();
+    if (kind == MapCellKind::node) find_plane(cell);
     for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
+    cell.apart = int(cell.contacts.size());
     cell.contacts.insert(cell.contacts.end(), dominated_.begin(), dominated_.end());
     if (kind != MapCellKind::region && kind != MapCellKind::undecided) {
       cell.translates = differences_.translates();
@@ -283,12 +291,12 @@ class Decider {
   void put_in_line(MapCell& cell) const {
     const std::vector<Box> contacts = cell.contacts;
     const std::vector<MapCell::Round> rounds = cell.rounds;
-    for (const std::size_t k : {0u, 1u, 2u}) {
-      const auto from = std::size_t((*line_)[k]);
+    for (std::size_t k = 0; k < line_.size(); ++k) {
+      const auto from = std::size_t(line_[k]);
       cell.contacts[k] = contacts[from];
       if (!rounds.empty()) cell.rounds[k] = rounds[from];
     }
-    cell.translates.clear();  // rounds tell more
+    cell.translates.clear();  // rounds, and boxes that part, tell more
   }
 
   std::optional<MapCellKind> decided(bool before_splits) {
@@ -348,34 +356,51 @@ class Decider {
   /// If each branch has one contact.
   std::optional<MapCellKind> kind_of_contacts(const std::vector<Branch>& all) {
     if (all.size() == 1) return MapCellKind::region;
-    if (all.empty() || all.size() > 3) return std::nullopt;
+    if (all.empty() || all.size() > line_limit) return std::nullopt;
+    line_.clear();
     const bool part = boxes_part(all);
     if (part) order_.find(view_, branches_, axes_.first, axes_.second);
     if (all.size() == 2) {
       const bool is_arc = (part && order_.apart(0, 1)) || differences_.is_arc(all[0], all[1]);
       return is_arc ? std::optional(MapCellKind::arc) : std::nullopt;
     }
+    if (all.size() > 3) {
+      return part && follow_each_other() ? std::optional(MapCellKind::in_line) : std::nullopt;
+    }
     if ((part && order_.go_around(0, 1, 2)) || differences_.is_node(all[0], all[1], all[2])) {
       return MapCellKind::node;
     }
-    line_ = differences_.line_of(all);
-    return line_ ? std::optional(MapCellKind::in_line) : std::nullopt;
+    const std::optional<std::array<int, 3>> line = differences_.line_of(all);
+    if (!line) return std::nullopt;
+    line_.assign(line->begin(), line->end());
+    return MapCellKind::in_line;
   }
 
-  /// What may be a node, or not: which it is, if the contacts are in a row.
-  MapCellKind kind_by_border(const Contact& hint) {
-    if (!dominated_.empty() || !boxes_part(branches_.all())) return MapCellKind::node;
+  /// Along one of the axes, with all between on one side of lines from one to another.
+  bool follow_each_other() const {
+    for (const std::size_t axis : {0u, 1u}) {
+      const std::optional<std::vector<int>> row = order_.row(axis);
+      if (row && order_.go_around_alike(*row)) return true;
+    }
+    return false;
+  }
+
+  /// Of what may be a node, or not, and of what may be in line.
+  std::optional<MapCellKind> kind_by_border(const Contact& hint) {
+    const std::vector<Branch>& all = branches_.all();
+    const auto open = all.size() == 3 ? std::optional(MapCellKind::node) : std::nullopt;
+    // Of what is dominated it is not told where it supports.
+    if (!dominated_.empty() || !boxes_part(all)) return open;
     order_.find(view_, branches_, axes_.first, axes_.second);
     const std::optional<CellBorder::Found> found = border_.find(order_, hint);
-    if (!found || found->is_node) return MapCellKind::node;
-    if (found->supporting.size() == 3) {
-      std::copy_n(found->supporting.begin(), 3, line_.emplace().begin());
-      return MapCellKind::in_line;
-    }
-    std::vector<bool> left(3, false);
+    if (!found || found->is_node) return open;
+    std::vector<bool> left(all.size(), false);
     for (const int k : found->supporting) left[std::size_t(k)] = true;
+    line_ = found->supporting;
+    for (int& k : line_) k = int(std::count(left.begin(), left.begin() + k, true));
     branches_.keep(left);
-    return found->supporting.size() == 2 ? MapCellKind::arc : MapCellKind::region;
+    constexpr std::array kinds = {MapCellKind::region, MapCellKind::arc};
+    return line_.size() <= kinds.size() ? kinds[line_.size() - 1] : MapCellKind::in_line;
   }
 
   /// A point of a contact tells by its place which of them it is of.
@@ -464,11 +489,36 @@ class Decider {
     return true;
   }
 
-  /// Outward normal of the plane through the middles of three branches.
-  dvec3 plane_of_three() const {
+  /// The plane that touches three branches, from that through their middles on.
+  void find_plane(MapCell& cell) const {
+    const ContactGeometry& geometry = pieces_.geometry();
     const std::vector<Branch>& all = branches_.all();
-    const auto middle = [&](std::size_t k) { return 0.5 * (all[k].lower + all[k].upper); };
-    return aligned(unit(glm::cross(middle(1) - middle(0), middle(2) - middle(0))), axes_.own);
+    std::array<dvec3, 3> x;
+    std::array<Contact, 3> contact;
+    for (const std::size_t k : {0u, 1u, 2u}) {
+      const MapPiece& piece =
+          pieces_.piece(view_.seen()[std::size_t(branches_.chart(all[k].charts[0]).pieces[0])].piece);
+      contact[k] = pieces_.element_of(piece).contact;
+      contact[k].u = 0.5 * (piece.u.lower + piece.u.upper);
+      contact[k].v = 0.5 * (piece.v.lower + piece.v.upper);
+      x[k] = 0.5 * (all[k].lower + all[k].upper);
+    }
+    const auto normal = [&] {
+      return aligned(unit(glm::cross(x[1] - x[0], x[2] - x[0])), axes_.own);
+    };
+    cell.normal = normal();
+    for (int round = 0; round < plane_rounds; ++round) {
+      for (const std::size_t k : {0u, 1u, 2u}) {
+        const ClimbedContact top = climb(geometry, contact[k], cell.normal);
+        // Beyond the branch is another contact.
+        const dvec3 off = glm::max(all[k].lower - top.x, top.x - all[k].upper);
+        if (std::max({off.x, off.y, off.z}) <= options_.resolution) x[k] = top.x;
+      }
+      cell.normal = normal();
+    }
+    const double longest = std::max({glm::distance(x[0], x[1]), glm::distance(x[1], x[2]),
+                                     glm::distance(x[2], x[0])});
+    cell.width = glm::length(glm::cross(x[1] - x[0], x[2] - x[0])) / longest;
   }
 
   /// What a node's cell is split with.
@@ -490,7 +540,7 @@ class Decider {
   NearConcavity concavity_;
   BranchDifferences differences_;
   CellBorder border_;
-  std::optional<std::array<int, 3>> line_;
+  std::vector<int> line_;  ///< numbers of branches that are in line
   FaceAxes axes_;
   DirectionMap map_;
   std::map<int, Node> nodes_;  // by cell
@@ -516,6 +566,12 @@ std::size_t farthest_translate(const std::vector<MapCell::Translate>& all, std::
 }
 
 }  // namespace
+
+bool MapCell::shares_plane(const MapCell& other, double resolution) const {
+  const double slack = facet_slack * resolution / std::min(width, other.width);
+  return glm::dot(normal, other.normal) > 0 &&
+         glm::length(glm::cross(normal, other.normal)) <= slack;
+}
 
 std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {
   if (!rounds.empty()) {

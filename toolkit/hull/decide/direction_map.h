@@ -18,8 +18,8 @@ enum class MapCellKind {
   facet,      ///< all lie within the resolution of one plane, whose normal is in the cell
   flat,       ///< all lie within the resolution of all the planes
   undecided,  ///< none of these is proven
-  in_line,    ///< one of three, of which the first and the last exchange with the one between only,
-              ///< along two curves that are graphs over one axis, or not
+  in_line,    ///< one of several, of which each exchanges with the next only, along curves that
+              ///< are graphs over one axis, or not
 };
 inline constexpr std::size_t map_cell_kinds = 7;
 
@@ -34,6 +34,7 @@ struct MapCell {
   /// behind them those of what is above their convex hull by no more than the resolution, if at
   /// all; none where there was too much to look at.
   std::vector<Box> contacts;
+  int apart = 0;  ///< contacts that are told apart
   /// Supports in the direction of the middle of the cell's corners; none if the cell was not looked
   /// at.
   Contact contact = {};
@@ -51,11 +52,13 @@ struct MapCell {
     dmat3 root;
   };
   std::vector<Round> rounds;
-  /// kinds node and facet: normal of the plane that touches all of them, about, outwards.
+  /// kinds node and facet: normal of the plane that touches all of them, outwards.
   dvec3 normal = dvec3(0.0);
-  /// kind facet: how far what touches the plane reaches from a line in it, at least.
+  /// Of these: how far what touches the plane reaches from a line in it, at least.
   double width = 0;
 
+  /// Of kinds node and facet: their planes may be one, at this resolution.
+  bool shares_plane(const MapCell& other, double resolution) const;
   /// Number of the contact that supports in a direction in which x does. @pre there are contacts
   std::size_t contact_of(const dvec3& d, const dvec3& x) const;
 };
@@ -99,7 +102,7 @@ struct DirectionMapOptions {
   double resolution = 0;
   /// Levels of cells, cells, and pieces of the model looked at in them, after which what is left
   /// stays undecided.
-  int level_limit = 20;
+  int level_limit = 30;
   long cell_limit = 1'000'000;
   long candidate_limit = 1'000'000'000;
   std::stop_token stop;

@@ -13,9 +13,8 @@
 namespace taut {
 namespace {
 
-/// Normals of facets that differ by less, in radians, are one: of more extent than rounding's, and
-/// less than cells'.
-constexpr double same_normal = 1e-6;
+/// Curves that a cell may hold, at most.
+constexpr int arcs_a_cell = 8;
 
 class Assembly {
  public:
@@ -26,9 +25,9 @@ class Assembly {
         first_(first_contacts(map.cells)),
         regions_(std::size_t(first_.back())),
         clusters_(map.cells.size()),
-        arcs_(2 * map.cells.size()),
+        arcs_(arcs_a_cell * map.cells.size()),
         supports_(std::size_t(first_.back()), false),
-        has_arc_(2 * map.cells.size(), false) {}
+        has_arc_(arcs_a_cell * map.cells.size(), false) {}
 
   MapTopology run() {
     std::vector<CellTree::CellSide> sides;
@@ -59,7 +58,9 @@ class Assembly {
   const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
   /// Beside the contacts that are told apart others all but support.
   bool has_more(int k) const {
-    return cell(k).kind == MapCellKind::arc && cell(k).contacts.size() > 2;
+    const MapCell& c = cell(k);
+    return (c.kind == MapCellKind::arc || c.kind == MapCellKind::in_line) &&
+           c.contacts.size() > std::size_t(c.apart);
   }
 
   /// Of those one cannot tell from their border what is inside.
@@ -134,25 +135,56 @@ class Assembly {
         for (const int arc : {crossed[k], crossed_there[k]}) has_arc_[std::size_t(arc)] = true;
         arcs_.unite(crossed[k], crossed_there[k]);
       }
-      // The contact between two arcs.
-      if (crossed.size() > 1) supports_[std::size_t(first_[std::size_t(a)] + 1)] = true;
-      if (crossed.size() > 1 && crossed_there.size() > 1) {
-        regions_.unite(first_[std::size_t(a)] + 1, first_[std::size_t(b)] + 1);
-      }
+    }
+    join_between(a, own, b);
+    join_between(b, others, a);
+  }
+
+  /// The contacts between arcs that cross a side go on beyond it.
+  void join_between(int k, const std::array<int, 2>& contacts, int beyond) {
+    for (const int contact : contacts_between(k, contacts)) {
+      supports_[std::size_t(contact)] = true;
+      const int there = is_known(beyond) ? contact_like(k, contact, beyond) : -1;
+      if (there >= 0) regions_.unite(contact, there);
     }
   }
 
-  /// A cell has one arc, twice its number, or two in line. Those on the way from one of its
-  /// contacts to another.
+  /// Number of the only contact of a cell that may be one of another cell, -1 if there is none.
+  int contact_like(int k, int contact, int other) const {
+    const Box& own = cell(k).contacts[std::size_t(contact - first_[std::size_t(k)])];
+    int found = -1;
+    const std::vector<Box>& contacts = cell(other).contacts;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      const dvec3 gap = glm::max(contacts[c].lower - own.upper, own.lower - contacts[c].upper);
+      if (std::max({gap.x, gap.y, gap.z}) > map_.resolution) continue;
+      if (found >= 0) return -1;
+      found = first_[std::size_t(other)] + int(c);
+    }
+    return found;
+  }
+
+  /// A cell has one arc, or several in line. Those on the way from one of its contacts to another.
   std::vector<int> arcs_between(int k, const std::array<int, 2>& contacts) const {
     if (contacts[0] == contacts[1]) return {};
-    if (cell(k).kind != MapCellKind::in_line) return {2 * k};
+    if (cell(k).kind != MapCellKind::in_line) return {arcs_a_cell * k};
     const int from = contacts[0] - first_[std::size_t(k)];
     const int to = contacts[1] - first_[std::size_t(k)];
     std::vector<int> arcs;
-    for (int arc = std::min(from, to); arc < std::max(from, to); ++arc) arcs.push_back(2 * k + arc);
+    for (int arc = std::min(from, to); arc < std::max(from, to); ++arc) {
+      arcs.push_back(arcs_a_cell * k + arc);
+    }
     if (from > to) std::reverse(arcs.begin(), arcs.end());
     return arcs;
+  }
+
+  /// Contacts of a cell that are in line between two of its contacts.
+  std::vector<int> contacts_between(int k, const std::array<int, 2>& contacts) const {
+    std::vector<int> between;
+    if (cell(k).kind != MapCellKind::in_line) return between;
+    const auto [from, to] = std::minmax(contacts[0], contacts[1]);
+    for (int contact = from + 1; contact < to; ++contact) between.push_back(contact);
+    if (contacts[0] > contacts[1]) std::reverse(between.begin(), between.end());
+    return between;
   }
 
   /// Cells of one facet may touch in a corner only, or have others between them. Three of its
@@ -167,11 +199,7 @@ class Assembly {
     }
     for (const int facet : facets) {
       for (const int other : others) {
-        const dvec3& a = cell(facet).normal;
-        const dvec3& b = cell(other).normal;
-        if (glm::dot(a, b) > 0 && glm::length(glm::cross(a, b)) <= same_normal) {
-          clusters_.unite(facet, other);
-        }
+        if (cell(facet).shares_plane(cell(other), map_.resolution)) clusters_.unite(facet, other);
       }
     }
   }
@@ -190,7 +218,7 @@ class Assembly {
         node.cells.push_back(k);
         node.is_facet = node.is_facet || cell(k).kind == MapCellKind::facet;
       }
-      for (const int arc : {2 * k, 2 * k + 1}) {
+      for (int arc = arcs_a_cell * k; arc < arcs_a_cell * (k + 1); ++arc) {
         if (!has_arc_[std::size_t(arc)]) continue;
         number(arcs, arcs_.find(arc), result_.arcs).cells.push_back(k);
       }

@@ -1,6 +1,8 @@
 #include "taut/hull/decide/nearly_straight.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace taut {
 namespace {
@@ -58,12 +60,45 @@ double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
   return glm::length(x - a - t * along);
 }
 
-bool is_nearly_straight(const MapPieces& pieces, const Chain& chain, double budget) {
-  const auto place = [&](int vertex) {
-    return euclidean(*pieces.points(pieces.piece(pieces.element(vertex).root).exact));
-  };
-  const dvec3 a = place(chain.start());
-  const dvec3 b = place(chain.end());
+dvec3 place(const MapPieces& pieces, int vertex) {
+  return euclidean(*pieces.points(pieces.piece(pieces.element(vertex).root).exact));
+}
+
+/// The vertices that are not covered farthest along a line to either side, of those near it: within
+/// the budget where that of two points on it leaves the line itself.
+std::array<dvec3, 2> ends_of_line(const MapPieces& pieces, const std::vector<int>& vertices,
+                                  const dvec3& a, const dvec3& b, double budget) {
+  const dvec3 along = b - a;
+  std::array<dvec3, 2> ends = {a, a};
+  std::array<double, 2> range = {infinity, -infinity};
+  for (const int v : vertices) {
+    const dvec3 x = place(pieces, v);
+    const double t = glm::dot(x - a, along) / glm::dot(along, along);
+    const double off = glm::distance(x, a + t * along);
+    if (off > budget * (1 + std::abs(t))) continue;
+    if (t < range[0]) {
+      range[0] = t;
+      ends[0] = x;
+    }
+    if (t > range[1]) {
+      range[1] = t;
+      ends[1] = x;
+    }
+  }
+  return ends;
+}
+
+/// Of a chain between covered vertices those that stand for them may lie beyond.
+bool is_nearly_straight(const MapPieces& pieces, const Chain& chain,
+                        const std::vector<int>& vertices, double budget) {
+  dvec3 a = place(pieces, chain.start());
+  dvec3 b = place(pieces, chain.end());
+  const auto is_covered = [&](int vertex) { return pieces.element(vertex).likeness.covered; };
+  if (is_covered(chain.start()) || is_covered(chain.end())) {
+    const auto [first, last] = ends_of_line(pieces, vertices, a, b, budget);
+    a = first;
+    b = last;
+  }
   return std::all_of(chain.elements().begin(), chain.elements().end(), [&](int k) {
     const StoredNet& net = pieces.piece(pieces.element(k).root).exact;
     const dvec4* p = pieces.points(net);
@@ -75,18 +110,20 @@ bool is_nearly_straight(const MapPieces& pieces, const Chain& chain, double budg
 
 }  // namespace
 
-std::vector<bool> nearly_straight(const MapPieces& pieces, const std::vector<bool>& covered,
-                                  double budget) {
+std::vector<bool> nearly_straight(const MapPieces& pieces, double budget) {
   std::vector<bool> result(pieces.elements().size(), false);
+  std::vector<int> vertices;
+  for (int k = 0; k < int(result.size()); ++k) {
+    const MapElement& element = pieces.element(k);
+    const bool is_vertex = element.contact.kind == SourceKind::vertex;
+    if (is_vertex && !element.likeness.covered) vertices.push_back(k);
+  }
   for (int k = 0; k < int(result.size()); ++k) {
     const Contact& c = pieces.element(k).contact;
     if (c.kind != SourceKind::edge || result[std::size_t(k)]) continue;
     for (const int end : {0, 1}) {
       const Chain chain(pieces, c, end);
-      if (!chain.is_whole() || covered[std::size_t(chain.start())] ||
-          covered[std::size_t(chain.end())] || !is_nearly_straight(pieces, chain, budget)) {
-        continue;
-      }
+      if (!chain.is_whole() || !is_nearly_straight(pieces, chain, vertices, budget)) continue;
       for (const int element : chain.elements()) result[std::size_t(element)] = true;
     }
   }

@@ -6,12 +6,10 @@
 
 namespace taut {
 
-/// Which pieces of edges lie within `budget` of the straight segment between two vertices, together
-/// with all that they go on into on the way: edges that were straight before their numbers were
-/// rounded. They support together with a vertex, if at all.
-///
-/// `covered`: elements that others stand for; such vertices do not count.
-std::vector<bool> nearly_straight(const MapPieces& pieces, const std::vector<bool>& covered,
-                                  double budget);
+/// Which pieces of edges lie within `budget` of the straight segment between two vertices that
+/// support by themselves, together with all that they go on into up to the vertices where they end:
+/// edges that were straight before their numbers were rounded. They support together with a vertex,
+/// if at all.
+std::vector<bool> nearly_straight(const MapPieces& pieces, double budget);
 
 }  // namespace taut

@@ -77,23 +77,28 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
   find_beside();
   find_beyond();
   Likenesses found = find_translates(*this, cover_share * resolution);
-  std::vector<bool> covered;
-  for (const Likeness& likeness : found.of_elements) covered.push_back(likeness.covered);
-  const std::vector<bool> straight =
-      nearly_straight(*this, covered, straight_budget(covered) * resolution);
   for (std::size_t k = 0; k < elements_.size(); ++k) {
     elements_[k].likeness = std::move(found.of_elements[k]);
-    elements_[k].likeness.covered = covered[k] || straight[k];
   }
   rounds_ = std::move(found.rounds);
+  cover_straight(resolution);
 }
 
-/// Where edges stand for others of their shape already, what these are off by counts too.
-double MapPieces::straight_budget(const std::vector<bool>& covered) const {
-  for (std::size_t k = 0; k < covered.size(); ++k) {
-    if (covered[k] && elements_[k].contact.kind == SourceKind::edge) return 1 - cover_share;
+/// Of edges. What straight ones stand for is off by what these are off by too, if it is not
+/// straight itself.
+void MapPieces::cover_straight(double resolution) {
+  const std::vector<bool> straight = nearly_straight(*this, cover_share * resolution);
+  std::set<int> others;  // groups
+  for (std::size_t k = 0; k < elements_.size(); ++k) {
+    const Likeness& likeness = elements_[k].likeness;
+    if (likeness.covered && !straight[k]) others.insert(likeness.group);
   }
-  return cover_share;
+  const std::vector<bool> very = nearly_straight(*this, (1 - cover_share) * resolution);
+  for (std::size_t k = 0; k < elements_.size(); ++k) {
+    Likeness& likeness = elements_[k].likeness;
+    const bool stands_for_others = likeness.group >= 0 && others.count(likeness.group) > 0;
+    if (stands_for_others ? very[k] : straight[k]) likeness.covered = true;
+  }
 }
 
 double MapPieces::budget_left() const {

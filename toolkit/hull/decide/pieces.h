@@ -119,7 +119,7 @@ class MapPieces {
   void find_beyond();
   std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
-  double straight_budget(const std::vector<bool>& covered) const;
+  void cover_straight(double resolution);
 
   const ContactGeometry& geometry_;
   SmoothJoins joins_;
