@@ -204,6 +204,10 @@ Shape radii_at(double off) { return cylinder(1, 2) + shifted(cylinder(1 + off, 2
 Shape overlapping_radii_at(double off) {
   return cylinder(1, 2) + mapped(cylinder(1 + off, 2), turn_about_z(0.5), {0, 0, 1});
 }
+Shape filleted_boxes_at(double off) {
+  const Shape one = filleted_box(4, 3, 2, 0.5);
+  return one + shifted(one, off * unit({3, 2, 1}));
+}
 
 /// What is nearer than an eighth of the resolution is one; what is eight times as far is told
 /// apart, or where edges would be joined what is eight times as far as that.
@@ -217,6 +221,7 @@ TEST(DirectionMap, TellsNeighborsApart) {
        8 * taut::resolution_floor,
        {2, 1, 2},
        {3, 2, 2}},
+      {"filleted_boxes", filleted_boxes_at, 1e-5, {8, 12, 6}, {14, 24, 12}},
   };
   for (const Neighbors& neighbors : all) {
     SCOPED_TRACE(neighbors.name);
@@ -286,18 +291,18 @@ Shape dented(double depth) {
 /// Whatever takes a branch for one contact leaves a dent that is deeper than the resolution: where
 /// it is shallow it is told from its ends, or left open.
 TEST(DirectionMap, DentsStayApart) {
-  constexpr double rho = 1e-6;
-  for (const double depth : {4 * rho, 64 * rho, 1e-3}) {
+  constexpr double rho = 1e-5;
+  for (const double depth : {4 * rho, 64 * rho, 1000 * rho}) {
     SCOPED_TRACE(depth);
     const dmat3 rotation = skew_rotation();
     const Scene scene = make_scene(mapped(dented(depth), rotation));
     const DirectionMap map = map_at(scene, rho);
     const MapCell& cell = cell_at(map, rotation * dvec3(0, 0, 1));
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
     if (depth < 100 * rho) {
       EXPECT_NE(cell.kind, MapCellKind::region);
     } else {
       EXPECT_EQ(cell.kind, MapCellKind::arc);
-      EXPECT_EQ(count(map, MapCellKind::undecided), 0);
     }
   }
 }
@@ -332,8 +337,9 @@ TEST(DirectionMap, DomesOnStraightSidesAreDecided) {
   for (const Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
     SCOPED_TRACE(name_of(variant));
     const Mapped mapped(placed({{{spline(rows)}, {}, {}}}, variant, random).shape);
-    // At most where one of the tips of the sheet's region is.
-    EXPECT_LE(count(mapped.map, MapCellKind::undecided), 4);
+    EXPECT_EQ(count(mapped.map, MapCellKind::undecided), 0);
+    // Where the sheet's region is a narrow tip between two corners' cells need not be as narrow.
+    EXPECT_LE(mapped.map.statistics.cells, 4000);
   }
 }
 

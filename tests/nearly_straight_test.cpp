@@ -52,8 +52,7 @@ TEST(NearlyStraight, BetweenVerticesThatAreCovered) {
   };
   EXPECT_EQ(counts(edge(0, 0.6 * rho) + edge(1.5, 0.4 * rho) + edge(3, 0.5 * rho)),
             std::pair(3, 0));
-  EXPECT_EQ(counts(edge(0, 0.6 * rho) + edge(1.5, 4 * rho) + edge(3, 0.5 * rho)),
-            std::pair(2, 1));
+  EXPECT_EQ(counts(edge(0, 0.6 * rho) + edge(1.5, 4 * rho) + edge(3, 0.5 * rho)), std::pair(2, 1));
 }
 
 /// Beyond its end an edge is not near the segment, straight as it is.

@@ -29,9 +29,10 @@ std::optional<CellBorder::Found> CellBorder::find(const BranchOrder& order, cons
   }
   // Corners are (0, 0), (0, 1), (1, 0), (1, 1).
   std::vector<int> loop;
-  for (const auto& [side, axis, backwards] :
-       {std::tuple(CellSide{0, 2}, 0u, false), {CellSide{2, 3}, 1u, false},
-        {CellSide{1, 3}, 0u, true}, {CellSide{0, 1}, 1u, true}}) {
+  for (const auto& [side, axis, backwards] : {std::tuple(CellSide{0, 2}, 0u, false),
+                                              {CellSide{2, 3}, 1u, false},
+                                              {CellSide{1, 3}, 0u, true},
+                                              {CellSide{0, 1}, 1u, true}}) {
     std::optional<std::vector<int>> found = along(side, order, axis);
     if (!found) return std::nullopt;
     if (backwards) std::reverse(found->begin(), found->end());

@@ -17,9 +17,9 @@
 #include "taut/hull/decide/branch_domination.h"
 #include "taut/hull/decide/branch_order.h"
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/cell_border.h"
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/contact_index.h"
-#include "taut/hull/decide/cell_border.h"
 #include "taut/hull/decide/near_concavity.h"
 
 namespace taut {
@@ -33,6 +33,8 @@ constexpr std::size_t branch_beacons = 4;
 constexpr int refinement_limit = 12;
 /// Pieces of a cell beyond which it is split rather than looked at.
 constexpr std::size_t looked_at_limit = 200;
+/// Of directions to points of a cube of two units a side.
+constexpr double longest_direction = 1.7320508075688772;
 /// Contacts in line, at most.
 constexpr std::size_t line_limit = 8;
 /// Rounds of Newton's kind for the plane of a node: contacts of a plane, and the plane of these.
@@ -217,7 +219,7 @@ class Decider {
     const std::array<dvec3, 4> d = DirectionMap::corners(cell);
     const Support support = query_(unit(d[0] + d[3]), hint);
     cell.contact = support.contact;
-    beacons.push_back(support.point);
+    beacons.push_back(beacon(support));
     while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
     view_.turn_to(d, support.point, beacons);
     differences_.turn_to(axes_.first, axes_.second);
@@ -238,6 +240,14 @@ class Decider {
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
     split(cell, pieces_left(), beacons, support.contact);
+  }
+
+  /// A point that supports, or one below it: what stands for the element that it is of may be lower
+  /// by as much as the resolution, and counts.
+  dvec3 beacon(const Support& support) const {
+    const int element = pieces_.find(support.contact);
+    if (element >= 0 && !pieces_.element(element).likeness.covered) return support.point;
+    return support.point - longest_direction * options_.resolution * axes_.own;
   }
 
   /// Points that are nowhere the highest in a cell are so nowhere in its quarters.
@@ -496,8 +506,8 @@ class Decider {
     std::array<dvec3, 3> x;
     std::array<Contact, 3> contact;
     for (const std::size_t k : {0u, 1u, 2u}) {
-      const MapPiece& piece =
-          pieces_.piece(view_.seen()[std::size_t(branches_.chart(all[k].charts[0]).pieces[0])].piece);
+      const MapPiece& piece = pieces_.piece(
+          view_.seen()[std::size_t(branches_.chart(all[k].charts[0]).pieces[0])].piece);
       contact[k] = pieces_.element_of(piece).contact;
       contact[k].u = 0.5 * (piece.u.lower + piece.u.upper);
       contact[k].v = 0.5 * (piece.v.lower + piece.v.upper);
@@ -516,8 +526,8 @@ class Decider {
       }
       cell.normal = normal();
     }
-    const double longest = std::max({glm::distance(x[0], x[1]), glm::distance(x[1], x[2]),
-                                     glm::distance(x[2], x[0])});
+    const double longest =
+        std::max({glm::distance(x[0], x[1]), glm::distance(x[1], x[2]), glm::distance(x[2], x[0])});
     cell.width = glm::length(glm::cross(x[1] - x[0], x[2] - x[0])) / longest;
   }
 

@@ -70,9 +70,11 @@ class Assembly {
     return kind != MapCellKind::region && kind != MapCellKind::arc && kind != MapCellKind::in_line;
   }
 
-  /// The cell tells its contacts apart.
+  /// The cell tells its contacts apart. (What hangs together around a facet are several.)
   bool is_known(int k) const {
-    return cell(k).kind != MapCellKind::undecided && !cell(k).contacts.empty() && !has_more(k);
+    const MapCellKind kind = cell(k).kind;
+    if (kind == MapCellKind::facet) return cell(k).contacts.size() > 1;
+    return kind != MapCellKind::undecided && !has_more(k);
   }
 
   /// Two contacts that one cell tells apart are one to that beside it, within the resolution.
@@ -187,12 +189,19 @@ class Assembly {
     return between;
   }
 
+  /// More than three contacts touch the plane.
+  bool is_of_facet(int k) const {
+    return cell(k).kind == MapCellKind::facet ||
+           (cell(k).kind == MapCellKind::node &&
+            cell(k).contacts.size() > std::size_t(cell(k).apart));
+  }
+
   /// Cells of one facet may touch in a corner only, or have others between them. Three of its
-  /// contacts may make a node beside it.
+  /// contacts may make a node beside it, or be told apart from the others, which all but support.
   void join_facets() {
     std::vector<int> facets, others;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
-      if (cell(k).kind == MapCellKind::facet) facets.push_back(k);
+      if (is_of_facet(k)) facets.push_back(k);
       if (cell(k).kind == MapCellKind::facet || cell(k).kind == MapCellKind::node) {
         others.push_back(k);
       }
@@ -216,7 +225,7 @@ class Assembly {
       if (is_open(k)) {
         MapNode& node = number(nodes, clusters_.find(k), result_.nodes);
         node.cells.push_back(k);
-        node.is_facet = node.is_facet || cell(k).kind == MapCellKind::facet;
+        node.is_facet = node.is_facet || is_of_facet(k);
       }
       for (int arc = arcs_a_cell * k; arc < arcs_a_cell * (k + 1); ++arc) {
         if (!has_arc_[std::size_t(arc)]) continue;
