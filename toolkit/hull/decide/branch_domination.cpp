@@ -39,6 +39,43 @@ void BranchPoints::find(const CellView& view, const Branches& branches) {
   }
 }
 
+namespace {
+
+Corners tops(const CellView& view, const Branches& branches, std::size_t branch) {
+  Corners result;
+  result.fill(-infinity);
+  for (const int chart : branches.all()[branch].charts) {
+    for (const int k : branches.chart(chart).pieces) {
+      const Corners& top = view.seen()[std::size_t(k)].top;
+      for (std::size_t c = 0; c < 4; ++c) result[c] = std::max(result[c], top[c]);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+/// By the point of the branch that is the highest over them at the lowest.
+bool stands_out(const CellView& view, const BranchPoints& points, const Branches& branches,
+                std::size_t branch, std::size_t first, std::size_t second) {
+  const auto middle = [&](std::size_t b) {
+    const Branch& own = branches.all()[b];
+    return 0.5 * (own.lower + own.upper);
+  };
+  const dvec3 way = middle(second) - middle(first);
+  const double share =
+      std::clamp(glm::dot(middle(branch) - middle(first), way) / glm::dot(way, way), 0.0, 1.0);
+  const Corners a = tops(view, branches, first);
+  const Corners b = tops(view, branches, second);
+  const auto& heights = points.heights(branch);
+  return std::any_of(heights.begin(), heights.end(), [&](const Corners& own) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!(own[c] - (1 - share) * a[c] - share * b[c] > view.noise())) return false;
+    }
+    return true;
+  });
+}
+
 std::vector<bool> BranchDomination::left(const CellView& view, const BranchPoints& points,
                                          const Branches& branches) {
   std::vector<bool> left(branches.all().size(), true);

@@ -21,6 +21,11 @@ class BranchPoints {
   std::vector<std::array<Corners, 4>> heights_;
 };
 
+/// Certain: for each direction of the cell a branch is higher than the means of two others, with
+/// weights that are the same for all: where these are as high as each other they do not support.
+bool stands_out(const CellView& view, const BranchPoints& points, const Branches& branches,
+                std::size_t branch, std::size_t first, std::size_t second);
+
 /// Branches that are nowhere more than a budget above the convex hull of the others: they have no
 /// contacts of their own to within it.
 class BranchDomination {

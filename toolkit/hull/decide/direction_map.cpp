@@ -375,24 +375,34 @@ class Decider {
       return is_arc ? std::optional(MapCellKind::arc) : std::nullopt;
     }
     if (all.size() > 3) {
-      return part && follow_each_other() ? std::optional(MapCellKind::in_line) : std::nullopt;
+      return part ? kind_of_row() : std::nullopt;
     }
     if ((part && order_.go_around(0, 1, 2)) || differences_.is_node(all[0], all[1], all[2])) {
       return MapCellKind::node;
     }
     const std::optional<std::array<int, 3>> line = differences_.line_of(all);
-    if (!line) return std::nullopt;
+    if (!line) return part ? kind_of_row() : std::nullopt;
     line_.assign(line->begin(), line->end());
     return MapCellKind::in_line;
   }
 
-  /// Along one of the axes, with all between on one side of lines from one to another.
-  bool follow_each_other() const {
+  /// Along one of the axes: each stands out from those beside it, so that no others exchange; or all
+  /// between are on one side of lines from one to another, and the border tells.
+  std::optional<MapCellKind> kind_of_row() {
     for (const std::size_t axis : {0u, 1u}) {
       const std::optional<std::vector<int>> row = order_.row(axis);
-      if (row && order_.go_around_alike(*row)) return true;
+      if (!row) continue;
+      branch_points_.find(view_, branches_);
+      bool all_stand_out = true;
+      for (std::size_t k = 1; k + 1 < row->size() && all_stand_out; ++k) {
+        all_stand_out =
+            stands_out(view_, branch_points_, branches_, std::size_t((*row)[k]),
+                       std::size_t((*row)[k - 1]), std::size_t((*row)[k + 1]));
+      }
+      if (all_stand_out) line_ = *row;
+      if (all_stand_out || order_.go_around_alike(*row)) return MapCellKind::in_line;
     }
-    return false;
+    return std::nullopt;
   }
 
   /// Of what may be a node, or not, and of what may be in line.
