@@ -79,16 +79,27 @@ std::vector<Claim> asked_of(std::vector<Claim> claims, Random& random) {
   return claims;
 }
 
+/// The direction of a great arc, shorter than half of a circle, that is nearest to another.
+dvec3 nearest_on_arc(const dvec3& from, const dvec3& to, const dvec3& n) {
+  const dvec3 pole = glm::cross(from, to);
+  const double square = glm::dot(pole, pole);
+  if (square > 0) {
+    const dvec3 within = n - glm::dot(n, pole) / square * pole;
+    if (glm::dot(glm::cross(from, within), pole) >= 0 &&
+        glm::dot(glm::cross(within, to), pole) >= 0) {
+      return unit(within);
+    }
+  }
+  return glm::distance(n, from) <= glm::distance(n, to) ? from : to;
+}
+
 /// The highest value to which a way leads from points of claims about the direction: from the
 /// highest of them.
 double climbed_from_claims(const std::vector<Claim>& claims, const SupportReference& reference,
                            const dvec3& n, double aside) {
   std::vector<dvec3> from;
   for (const Claim& claim : claims) {
-    const dvec3 way = claim.next_n - claim.n;
-    const double square = glm::dot(way, way);
-    const double t = square > 0 ? std::clamp(glm::dot(n - claim.n, way) / square, 0.0, 1.0) : 0;
-    if (glm::distance(unit(claim.n + t * way), n) > 3 * aside) continue;
+    if (glm::distance(nearest_on_arc(claim.n, claim.next_n, n), n) > 3 * aside) continue;
     from.insert(from.end(), claim.points.begin(), claim.points.end());
   }
   std::sort(from.begin(), from.end(),

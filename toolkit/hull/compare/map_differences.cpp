@@ -50,7 +50,8 @@ class Comparison {
       const MapCell& cell = map_.cells[k];
       if (cell.kind == MapCellKind::undecided) continue;
       compare_middle(cell);
-      if (cell.kind == MapCellKind::arc || cell.kind == MapCellKind::node) {
+      if (cell.kind == MapCellKind::arc || cell.kind == MapCellKind::node ||
+          cell.kind == MapCellKind::in_line) {
         // Of coarse cells those beside are too far away.
         const std::vector<int> around =
             cell.level < fine_level ? std::vector<int>() : crossings_.around(int(k));
