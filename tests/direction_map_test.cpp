@@ -264,7 +264,7 @@ const MapCell& cell_at(const DirectionMap& map, const dvec3& n) {
     const dvec3 off = n * (glm::dot(d[0], glm::cross(d[1] - d[0], d[2] - d[0])) / height) - d[0];
     const double s = glm::dot(off, d[2] - d[0]) / glm::dot(d[2] - d[0], d[2] - d[0]);
     const double t = glm::dot(off, d[1] - d[0]) / glm::dot(d[1] - d[0], d[1] - d[0]);
-    return glm::dot(n, d[0]) > 0 && s >= 0 && s <= 1 && t >= 0 && t <= 1;
+    return glm::dot(n, d[0] + d[3]) > 0 && s >= 0 && s <= 1 && t >= 0 && t <= 1;
   };
   return *std::find_if(map.cells.begin(), map.cells.end(), holds);
 }
@@ -305,6 +305,111 @@ TEST(DirectionMap, DentsStayApart) {
       EXPECT_EQ(cell.kind, MapCellKind::arc);
     }
   }
+}
+
+/// A curve or sheet in Bezier form whose numbers of control points are its degrees plus one.
+NurbsCurve one_piece(const std::vector<dvec3>& points) {
+  return spline(points, int(points.size()) - 1);
+}
+
+/// Two arcs that meet in a notch as deep as told, with what closes the hull below.
+Shape notched(double depth) {
+  Shape shape;
+  shape.curves = {one_piece({{-1, -0.5, 0}, {-0.5, 2 * depth, 0}, {0, 0, 0}}),
+                  one_piece({{0, 0, 0}, {0.5, 2.002 * depth, 0.3 * depth}, {1, -0.5, 0}})};
+  shape.points = {{0, -3, 1}, {0, -3, -1}};
+  return shape;
+}
+
+/// From a vertex both edges that end there may rise, though each is concave.
+TEST(DirectionMap, NotchesStayApart) {
+  taut_test::Random random(1);
+  for (const double depth : {0.1, 0.02, 1e-3}) {
+    for (int k = 0; k < 20; ++k) {
+      SCOPED_TRACE(depth);
+      const dmat3 rotation = random_rotation(random);
+      const Mapped mapped(taut_test::mapped(notched(depth), rotation));
+      const MapCell& cell = cell_at(mapped.map, rotation * dvec3(0, 1, 0));
+      // The notch is over a chord of length 0.6 and more.
+      const bool is_one = cell.kind == MapCellKind::region &&
+                          taut::diagonal(cell.contacts.front()) > 0.5 * std::sqrt(depth);
+      EXPECT_FALSE(is_one) << k;
+    }
+  }
+}
+
+/// Sheets side by side along x, from one place to the next with a height in the middle of their
+/// control points, that fall to both sides in y.
+struct Strip {
+  double from, to;
+  std::array<double, 3> heights;
+};
+
+Shape strips(const std::vector<Strip>& all) {
+  Shape shape;
+  for (const Strip& strip : all) {
+    std::vector<std::vector<dvec3>> rows;
+    for (int i = 0; i <= 2; ++i) {
+      std::vector<dvec3> row;
+      for (int j = 0; j <= 2; ++j) {
+        row.emplace_back(strip.from + 0.5 * i * (strip.to - strip.from), j - 1,
+                         strip.heights[std::size_t(i)] + (j == 1 ? 0.1 : -0.1));
+      }
+      rows.push_back(row);
+    }
+    shape.surfaces.push_back(spline(rows, 2, 2));
+  }
+  return shape;
+}
+
+/// Two crests, and between them a groove with a fillet so small that it is flat to within rho.
+Shape grooved(double half_width, double rho) {
+  const double slope = 1.5 * rho / half_width;
+  const double z = 0.5 * slope * half_width;
+  const double length = 1 - half_width;
+  const double top = z + 0.5 * slope * length;
+  const double end = z + 0.1 * slope * length;
+  return strips({{-1, -half_width, {end, top, z}},
+                 {-half_width, half_width, {z, -z, z}},
+                 {half_width, 1, {z, top, end}}});
+}
+
+/// The same with a kink instead.
+Shape kinked(double kink) {
+  return strips({{-1, 0, {0.05 * kink, 0.25 * kink, 0}}, {0, 1, {0, 0.25 * kink, 0.05 * kink}}});
+}
+
+/// Slopes may grow from one nearly concave sheet to the next.
+TEST(DirectionMap, GroovesStayApart) {
+  taut_test::Random random(2);
+  std::vector<Shape> all;
+  for (const double half_width : {1e-2, 1e-3, 1e-4}) all.push_back(grooved(half_width, 3e-8));
+  for (const double kink : {9.9e-4, 1e-4, 1e-5}) all.push_back(kinked(kink));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (const bool turned : {false, true}) {
+      SCOPED_TRACE(k);
+      const dmat3 rotation = turned ? random_rotation(random) : dmat3(1.0);
+      const Scene scene = make_scene(mapped(all[k], rotation));
+      const DirectionMap map = map_at(scene, 1e-8 * scene.diagonal());
+      EXPECT_NE(cell_at(map, rotation * dvec3(0, 0, 1)).kind, MapCellKind::region);
+    }
+  }
+}
+
+/// Kinks of which each is nothing make a dent together.
+TEST(DirectionMap, ManyKinksMakeADent) {
+  constexpr int count = 64;
+  constexpr double rho = 2.8e-6;
+  std::vector<Strip> all;
+  for (int k = 0; k < count; ++k) {
+    const auto height = [&](double x) { return 0.3 * rho * count / 4 * x * x; };
+    const double from = -1 + 2.0 * k / count;
+    const double to = from + 2.0 / count;
+    const double middle = 0.5 * (height(from) + height(to)) + 1e-5 * rho;
+    all.push_back({from, to, {height(from), middle, height(to)}});
+  }
+  const Scene scene = make_scene(strips(all));
+  EXPECT_NE(cell_at(map_at(scene, rho), {0, 0, 1}).kind, MapCellKind::region);
 }
 
 /// A point a little off the middle of two others may be left out, but not one far enough.

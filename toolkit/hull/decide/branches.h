@@ -88,6 +88,10 @@ class Branches {
 std::optional<Box> translation(const MapPieces& pieces, const Branches& branches,
                                const Branch& from, const Branch& to, double tolerance);
 
+/// In units of the resolution: what the kinks of a branch that may have one contact amount to over
+/// its extent, together. A dent that they make is as deep as a quarter of that.
+inline constexpr double kink_share = 2;
+
 /// The interval of a side's free parameter that a chart spans.
 const Interval& along(const Chart& chart, Side side);
 /// The chart reaches the side of its patch.

@@ -278,9 +278,13 @@ bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
 bool ContactIndex::is_cap(const CellView& view, const Branches& branches, const Branch& branch) {
   if (!is_disc(branches, branch)) return false;
   const double size = glm::distance(branch.lower, branch.upper);
+  double kinks = 0;
   for (const int g : branch.glues) {
-    if (!(kink(branches.glue(g)) * size <= rho_)) return false;
+    const double own = kink(branches.glue(g));
+    kinks += own;
+    if (!(own * size <= rho_)) return false;
   }
+  if (!(kinks * size <= kink_share * rho_)) return false;
   tilt_ = 0;
   const bool curved = std::all_of(branch.charts.begin(), branch.charts.end(),
                                   [&](int k) { return is_curved(view, branches.chart(k)); });

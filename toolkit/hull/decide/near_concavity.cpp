@@ -52,8 +52,9 @@ dvec3 inwards(const ContactJet& j, Side side) {
 }  // namespace
 
 /// Along any chord of the rectangle second derivatives are at most 8 rho over its length's square:
-/// then the middle of two near-maxima falls short of them by rho at most.
-bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) {
+/// then the middle of two near-maxima falls short of them by rho at most. Where several charts make
+/// a branch, slopes may grow from one to the next, and chords of the size of the branch count.
+bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, double size) {
   if (chart.kind == SourceKind::vertex) return true;
   const MapElement& element = pieces_.element(chart.element);
   pieces_.restricted(chart.element, chart.u, chart.v, net_);
@@ -74,6 +75,17 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
   }
   const int row = shape.q + 1;
   const auto at = [&](int i, int j) -> const dvec4& { return net_[std::size_t(i * row + j)]; };
+  const auto chord = [&](double extent) { return std::max(1.0, size / extent); };
+  double along_u = infinity;
+  double along_v = infinity;
+  for (int j = 0; j <= shape.q; ++j) {
+    along_u = std::min(along_u, glm::distance(euclidean(at(0, j)), euclidean(at(shape.p, j))));
+  }
+  for (int i = 0; i <= shape.p; ++i) {
+    along_v = std::min(along_v, glm::distance(euclidean(at(i, 0)), euclidean(at(i, shape.q))));
+  }
+  const double m = size > 0 && shape.p > 0 ? chord(along_u) : 1;
+  const double n = size > 0 && shape.q > 0 ? chord(along_v) : 1;
   const double p = shape.p;
   const double q = shape.q;
   uu_.assign(net_.size(), dvec4(0.0));
@@ -89,8 +101,8 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
       }
     }
   }
-  for (int n = std::max(0, shape.p - 2); shape.p >= 2 && n < shape.p; ++n) elevate_u(uu_, n, shape);
-  for (int n = std::max(0, shape.q - 2); shape.q >= 2 && n < shape.q; ++n) elevate_v(vv_, n, shape);
+  for (int k = std::max(0, shape.p - 2); shape.p >= 2 && k < shape.p; ++k) elevate_u(uu_, k, shape);
+  for (int k = std::max(0, shape.q - 2); shape.q >= 2 && k < shape.q; ++k) elevate_v(vv_, k, shape);
   if (shape.p > 0 && shape.q > 0) {
     elevate_u(uv_, shape.p - 1, shape);
     elevate_v(uv_, shape.q - 1, shape);
@@ -103,7 +115,10 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
       const double b = glm::dot(dvec3(uv_[k]), d);
       const double e = glm::dot(dvec3(vv_[k]), d);
       for (const double h : {low[c], top[c]}) {
-        if (largest(a - h * uu_[k].w, b - h * uv_[k].w, e - h * vv_[k].w) > limit) return false;
+        const double uu = m * m * (a - h * uu_[k].w);
+        const double uv = m * n * (b - h * uv_[k].w);
+        const double vv = n * n * (e - h * vv_[k].w);
+        if (!(largest(uu, uv, vv) <= limit)) return false;
         if (!element.rational) break;
       }
     }
@@ -116,9 +131,8 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart) 
 /// leads from there into the two sides is opposite: it is the highest of the one they fall into.
 bool NearConcavity::meet_once(const CellView& view, const Branches& branches, const Branch& branch,
                               const Glue& glue) const {
-  if (glue.kind == Glue::Kind::edges) return true;  // they share a point
+  if (!spans(branches, glue, true)) return false;
   const Interval& common = along(branches.chart(glue.a), Side(glue.at_a));
-  const Interval& other = along(branches.chart(glue.b), Side(glue.at_b));
   const double size = glm::distance(branch.lower, branch.upper);
   for (const bool upper : {false, true}) {
     const double t = upper ? common.upper : common.lower;
@@ -126,10 +140,11 @@ bool NearConcavity::meet_once(const CellView& view, const Branches& branches, co
     const dvec3 outwards =
         (upper ? 1.0 : -1.0) * (along_v(Side(glue.at_a)) ? own.dx[1] : own.dx[0]);
     const auto& d = view.corners();
-    if (std::all_of(d.begin(), d.end(), [&](const dvec3& n) { return glm::dot(outwards, n) <= 0; }))
+    // No slope at all may be one of the parameters.
+    if (outwards != dvec3(0.0) &&
+        std::all_of(d.begin(), d.end(), [&](const dvec3& n) { return glm::dot(outwards, n) <= 0; }))
       continue;
     const double there = glue.reversed ? 1 - t : t;
-    if (there != (upper != glue.reversed ? other.upper : other.lower)) return false;
     const ContactJet beyond = jet_at(branches, glue.b, Side(glue.at_b), there);
     const dvec3 both = inwards(own, Side(glue.at_a)) + inwards(beyond, Side(glue.at_b));
     for (const dvec3& n : d) {
@@ -139,39 +154,83 @@ bool NearConcavity::meet_once(const CellView& view, const Branches& branches, co
   return true;
 }
 
+/// From the point that two edges share, for some direction of the cell, by more than a kink that
+/// amounts to the resolution over the branch.
+bool NearConcavity::both_rise(const CellView& view, const Branches& branches, const Branch& branch,
+                              const Glue& glue) const {
+  const auto leaving = [&](int chart, int end) {
+    const StoredNet& net = pieces_.piece(pieces_.element(branches.chart(chart).element).root).exact;
+    const dvec4* p = pieces_.points(net);
+    const int last = net.shape.p;
+    const dvec3 own = euclidean(p[end == 0 ? 0 : last]);
+    dvec3 way(0.0);
+    for (int k = 1; k <= last && way == dvec3(0.0); ++k) {
+      way = euclidean(p[end == 0 ? k : last - k]) - own;
+    }
+    return unit(way);
+  };
+  const dvec3 both = leaving(glue.a, glue.at_a) + leaving(glue.b, glue.at_b);
+  const double size = glm::distance(branch.lower, branch.upper);
+  return std::any_of(view.corners().begin(), view.corners().end(),
+                     [&](const dvec3& n) { return !(glm::dot(both, n) * size <= rho_); });
+}
+
 ContactJet NearConcavity::jet_at(const Branches& branches, int chart, Side side, double t) const {
   const Contact& c = pieces_.element(branches.chart(chart).element).contact;
   const dvec2 uv = on_side(side, t);
   return pieces_.geometry().jet({c.instance, c.kind, c.element, uv.x, uv.y});
 }
 
+/// The charts span the same stretch of what they share; or the second one no more of it than the
+/// first.
+bool NearConcavity::spans(const Branches& branches, const Glue& glue, bool same) {
+  if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::face_edge) return true;
+  const Chart& other = branches.chart(glue.b);
+  const Interval& own = along(branches.chart(glue.a), Side(glue.at_a));
+  const Interval& b = glue.kind == Glue::Kind::faces ? along(other, Side(glue.at_b)) : other.u;
+  const Interval there = glue.reversed ? Interval{1 - b.upper, 1 - b.lower} : b;
+  return same ? own.lower == there.lower && own.upper == there.upper
+              : own.lower <= there.lower && there.upper <= own.upper;
+}
+
+/// An edge in a patch, or a vertex in a patch or an edge, adds nothing to it, and nothing hangs
+/// together by it: from a vertex between two edges both may rise. What hangs together goes on into
+/// each other smoothly. From a chart that meets two others in what is highest of it both would have
+/// to rise, against slopes that are the same on the two sides; what slopes may grow by between them
+/// counts over the branch.
 bool NearConcavity::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
   DisjointSets sets(branches.charts().size());
-  std::vector<int> holders(branches.charts().size(), 0);
+  std::vector<bool> held(branches.charts().size(), false);
+  double kinks = 0;
   const double size = glm::distance(branch.lower, branch.upper);
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
-    const bool smooth = glue.kind == Glue::Kind::faces || glue.kind == Glue::Kind::edges;
-    if (!smooth) {
-      // An edge lies in a patch; a vertex in a patch, or else in an edge.
-      if (glue.kind != Glue::Kind::edge_vertex || holders[std::size_t(glue.b)] == 0) {
-        ++holders[std::size_t(glue.b)];
-      }
-      sets.unite(glue.a, glue.b);
+    if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::edges) {
+      if (spans(branches, glue, false)) held[std::size_t(glue.b)] = true;
+      continue;
+    }
+    if (glue.kind == Glue::Kind::edges) {
+      if (!both_rise(view, branches, branch, glue)) sets.unite(glue.a, glue.b);
       continue;
     }
     const MapElement& element = pieces_.element(branches.chart(glue.a).element);
-    if (glue.kind == Glue::Kind::faces && !(element.kink[std::size_t(glue.at_a)] * size <= rho_)) {
-      continue;
-    }
+    const double kink = element.kink[std::size_t(glue.at_a)];
+    kinks += kink;
+    if (!(kink * size <= rho_)) continue;
     if (meet_once(view, branches, branch, glue)) sets.unite(glue.a, glue.b);
   }
+  if (!(kinks * size <= kink_share * rho_)) return false;
+  int first = -1;
+  int count = 0;
   for (const int k : branch.charts) {
-    if (sets.find(k) != sets.find(branch.charts.front())) return false;
-    if (holders[std::size_t(k)] > 1) return false;
+    if (held[std::size_t(k)]) continue;
+    ++count;
+    if (first < 0) first = k;
+    if (sets.find(k) != sets.find(first)) return false;
   }
-  return std::all_of(branch.charts.begin(), branch.charts.end(),
-                     [&](int k) { return is_nearly_concave(view, branches.chart(k)); });
+  return std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
+    return held[std::size_t(k)] || is_nearly_concave(view, branches.chart(k), count > 1 ? size : 0);
+  });
 }
 
 }  // namespace taut

@@ -17,8 +17,11 @@ class NearConcavity {
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
 
  private:
-  bool is_nearly_concave(const CellView& view, const Chart& chart);
+  bool is_nearly_concave(const CellView& view, const Chart& chart, double size);
+  static bool spans(const Branches& branches, const Glue& glue, bool same);
   bool meet_once(const CellView& view, const Branches& branches, const Branch& branch,
+                 const Glue& glue) const;
+  bool both_rise(const CellView& view, const Branches& branches, const Branch& branch,
                  const Glue& glue) const;
   ContactJet jet_at(const Branches& branches, int chart, Side side, double t) const;
 
