@@ -412,6 +412,55 @@ TEST(DirectionMap, ManyKinksMakeADent) {
   EXPECT_NE(cell_at(map_at(scene, rho), {0, 0, 1}).kind, MapCellKind::region);
 }
 
+/// Two crests with a kink between them of this size at y = 0, which vanishes at five places along
+/// it; the sheets are highest about y = 0.03.
+Shape with_a_kink_that_vanishes(double kink) {
+  const auto product = [](const std::vector<double>& own, double root) {
+    std::vector<double> result(own.size() + 1, 0.0);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      result[i] += own[i];
+      result[i + 1] -= own[i] / root;
+    }
+    return result;
+  };
+  std::vector<double> slope = {0.5 * kink};
+  for (const double root : {0.1, 0.3, 0.5, 0.7, 0.9}) slope = product(slope, root);
+  const std::vector<double> height = {-5 * 0.03 * 0.03, 10 * 0.03, -5, 0, 0, 0};
+  // Powers of y as means of them in Bernstein form.
+  const auto coefficient = [](const std::vector<double>& powers, int j) {
+    double sum = 0;
+    double share = 1;
+    for (int i = 0; i <= j; ++i) {
+      sum += share * powers[std::size_t(i)];
+      share *= double(j - i) / (5 - i);
+    }
+    return sum;
+  };
+  Shape shape;
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<std::vector<dvec3>> rows;
+    for (int i = 0; i <= 2; ++i) {
+      std::vector<dvec3> row;
+      for (int j = 0; j <= 5; ++j) {
+        const double z = coefficient(height, j) + 0.5 * i * coefficient(slope, j);
+        row.emplace_back(0.5 * i * side, 0.2 * j, z - (i == 2 ? 0.275 * kink : 0));
+      }
+      rows.push_back(row);
+    }
+    shape.surfaces.push_back(spline(rows, 2, 5));
+  }
+  return shape;
+}
+
+TEST(DirectionMap, KinksAreMeasuredAllAlong) {
+  for (const double kink : {9.9e-4, 1e-4}) {
+    SCOPED_TRACE(kink);
+    const Scene scene = make_scene(with_a_kink_that_vanishes(kink));
+    const DirectionMap map = map_at(scene, 1e-8 * scene.diagonal());
+    EXPECT_NE(cell_at(map, {0, 0, 1}).kind, MapCellKind::region);
+  }
+}
+
 /// A point a little off the middle of two others may be left out, but not one far enough.
 TEST(DirectionMap, PointsBesideASegment) {
   constexpr double rho = 1e-6;
@@ -481,6 +530,37 @@ void expect_holds(const Shape& shape) {
       highest = std::max(highest, glm::dot(corner, n));
     }
     EXPECT_GE(highest, glm::dot(x, n) - rho) << k << " level " << cell.level;
+  }
+}
+
+/// In a direction the support function is attained, within the resolution, where its cell says.
+void expect_attained(const Scene& scene, const DirectionMap& map, const SupportReference& reference,
+                     const dvec3& n, double rho) {
+  const MapCell& cell = cell_at(map, n);
+  if (cell.kind == MapCellKind::undecided) return;
+  double highest = -taut::infinity;
+  for (const taut::Box& box : cell.contacts) {
+    dvec3 corner;
+    for (int i = 0; i < 3; ++i) corner[i] = n[i] > 0 ? box.upper[i] : box.lower[i];
+    highest = std::max(highest, glm::dot(corner, n));
+  }
+  const dvec3 x = scene.frame().to_frame(reference(n).x);
+  EXPECT_GE(highest, glm::dot(x, n) - scene.frame().length_to_frame(rho))
+      << n.x << " " << n.y << " " << n.z << " level " << cell.level;
+}
+
+/// A plane that touches in a kink belongs to neither side of it, on edges as on surfaces.
+TEST(DirectionMap, KinksSupport) {
+  constexpr double kink = 9.9e-4;
+  const Shape shape = kinked(kink);
+  const Scene scene = make_scene(shape);
+  const double rho = 1e-8 * scene.diagonal();
+  const DirectionMap map = map_at(scene, rho);
+  const SupportReference reference(shape);
+  for (int k = -8; k <= 8; ++k) {
+    for (const double y : {-0.3, 0.0, 0.2}) {
+      expect_attained(scene, map, reference, unit({k * kink / 18, y, -1}), rho);
+    }
   }
 }
 

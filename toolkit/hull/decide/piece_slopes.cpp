@@ -82,7 +82,8 @@ bool PieceSlopes::surely_rise() const {
 
 /// Along a collapsed side slopes vanish. Beside it they are the distance from it, a factor that is
 /// taken out, times a function. Towards a join with a kink, what is beyond may fall though this
-/// side rises.
+/// side rises: by the kink times the longest step, which for weights that change is that of the
+/// points of the piece.
 bool PieceSlopes::rise_along(Direction direction) const {
   const bool of_u = direction == Direction::u;
   const int step = of_u ? q() + 1 : 1;
@@ -95,6 +96,8 @@ bool PieceSlopes::rise_along(Direction direction) const {
   const bool upper = is_at(upper_side) && element_.collapsed[std::size_t(upper_side)];
   Range range;
   double longest = 0;
+  const dvec3 center = piece_.box.center();
+  const double reach = 0.5 * diagonal(piece_.box);
   for (int j = lower ? 1 : 0; j <= degree - (upper ? 1 : 0); ++j) {
     const double factor =
         (lower ? double(degree) / j : 1) * (upper ? double(degree) / (degree - j) : 1);
@@ -106,7 +109,9 @@ bool PieceSlopes::rise_along(Direction direction) const {
         range.include(factor * (slope - seen_.low[c] * dw));
         range.include(factor * (slope - seen_.top[c] * dw));
       }
-      longest = std::max(longest, glm::length(dvec3(points_[k + step] - points_[k])));
+      const dvec4 off = points_[k + step] - points_[k];
+      longest =
+          std::max(longest, glm::length(dvec3(off) - off.w * center) + reach * std::abs(off.w));
     }
     if (range.has_zero(noise_)) return false;
   }

@@ -141,6 +141,7 @@ void MapPieces::find_beyond() {
       if (c.kind != SourceKind::edge) break;
       const std::optional<SmoothJoins::End> beyond = joins_.beyond(c, end);
       if (beyond) element.next[std::size_t(end)] = {find(beyond->piece), beyond->end};
+      element.kink[std::size_t(end)] = joins_.kink(c, end);
     }
   }
 }

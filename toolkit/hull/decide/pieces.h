@@ -56,7 +56,8 @@ struct MapElement {
   bool rational = false;
   int root = -1;
   /// Indexed by Side, of a patch: what it goes on into smoothly, and the largest angle between the
-  /// tangent planes there, as measured at some places.
+  /// tangent planes there, as measured at some places; of an edge, at ends 0 and 1, between the
+  /// tangents.
   struct Beyond {
     int element = -1;  ///< also where that holds no contacts of its own
     Side side = Side::u0;

@@ -7,6 +7,7 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/side_joins.h"
 
 namespace taut {
 namespace {
@@ -248,10 +249,18 @@ bool SmoothJoins::is_surrounded(const Contact& vertex) const {
   return true;
 }
 
+/// At as many places as tell whether there is none (JoinSmoothness::is_smooth), the ends among
+/// them, where what vanishes at some places between is largest.
 double SmoothJoins::kink(const Contact& face, taut::Side side, const Border& border) const {
+  const Contact beyond{face.instance, face.kind, border.neighbor, 0, 0};
+  const auto degree = [&](const Contact& c, taut::Side of) {
+    const BezierPatch& patch = geometry_.patch(c).bezier;
+    return along_v(of) ? patch.degree_v : patch.degree_u;
+  };
+  const int last = 4 * std::max(degree(face, side), degree(beyond, border.neighbor_side)) - 2;
   double largest = 0;
-  for (int k = 0; k < kink_samples; ++k) {
-    const double t = sample(k);
+  for (int k = 0; k <= last; ++k) {
+    const double t = sample_parameter(k, last);
     const dvec3 own = unit_normal(geometry_, on_side(face.instance, face.element, side, t));
     const dvec3 other = unit_normal(
         geometry_,
@@ -276,6 +285,33 @@ std::optional<SmoothJoins::Side> SmoothJoins::beyond(const Contact& face, taut::
 std::optional<SmoothJoins::End> SmoothJoins::beyond(const Contact& piece, int end) const {
   const auto found = ends_.find({piece.instance, piece.element, end});
   return found == ends_.end() ? std::nullopt : std::optional(found->second);
+}
+
+double SmoothJoins::kink(const Contact& piece, int end) const {
+  const auto leaving = [&](const Contact& c, int at) {
+    std::vector<dvec4> p = geometry_.curve(c).points;
+    if (at == 1) std::reverse(p.begin(), p.end());
+    dvec3 way(0.0);
+    for (std::size_t k = 1; k < p.size() && way == dvec3(0.0); ++k) {
+      way = euclidean(p[k]) - euclidean(p[0]);
+    }
+    return unit(way);
+  };
+  const auto angle = [&](const Contact& other, int at) {
+    return glm::length(leaving(piece, end) + leaving(other, at));
+  };
+  if (const std::optional<End> other = beyond(piece, end)) return angle(other->piece, other->end);
+  const int next = geometry_.piece(piece).end_neighbor[std::size_t(end)];
+  if (next < 0) return 0;
+  // Where both its ends meet the piece, the one that goes on straighter is meant.
+  double least = infinity;
+  const Contact other{piece.instance, piece.kind, next, 0, 0};
+  for (const int far : {0, 1}) {
+    if (geometry_.piece(other).end_neighbor[std::size_t(far)] != piece.element) continue;
+    if (next == piece.element && far == end) continue;
+    least = std::min(least, angle(other, far));
+  }
+  return least < infinity ? least : 0;
 }
 
 }  // namespace taut

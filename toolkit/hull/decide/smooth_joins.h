@@ -37,6 +37,9 @@ class SmoothJoins {
   };
   /// What goes on beyond an end of a piece that is a vertex. @pre kind edge, not repeated
   std::optional<End> beyond(const Contact& piece, int end) const;
+  /// The angle between the tangents where a piece goes on beyond its end, into another one of its
+  /// edge or past a vertex; 0 where it does not. @pre kind edge, not repeated
+  double kink(const Contact& piece, int end) const;
 
   /// All that meets in an edge's piece or a vertex goes on smoothly: contacts there are those of
   /// patches, or of curves that pass. @pre kind edge or vertex, not repeated
