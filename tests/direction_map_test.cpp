@@ -564,6 +564,73 @@ TEST(DirectionMap, KinksSupport) {
   }
 }
 
+/// Two curves alike but for the weight of a control point that lies in the middle of all: the lower
+/// one may be higher elsewhere.
+Shape weighed(double weight, double up) {
+  Shape shape;
+  for (const bool second : {false, true}) {
+    NurbsCurve curve = one_piece({{-1, 0, 0}, {-0.5, 1, 0}, {0, 0.5, 0}, {0.5, 1, 0}, {1, 0, 0}});
+    for (taut::dvec4& p : curve.points) p.y += second ? up : 0;
+    if (second) curve.points[2] *= weight;
+    shape.curves.push_back(curve);
+  }
+  shape.points = {{0, -2, 1}, {0, -2, -1}};
+  return shape;
+}
+
+/// As many arcs about the origin, each higher over its chord than the turn at its ends leaves: they
+/// support, though their ends stand for them.
+Shape scallops(int count) {
+  const double bulge = 1.1 * std::pow(taut_test::pi / count, 2);
+  const auto corner = [&](int k) {
+    const double angle = 2 * taut_test::pi * (k % count) / count;
+    return dvec3(std::cos(angle), std::sin(angle), 0);
+  };
+  Shape shape;
+  for (int k = 0; k < count; ++k) {
+    const dvec3 middle = 0.5 * (corner(k) + corner(k + 1));
+    shape.curves.push_back(
+        one_piece({corner(k), middle + 2 * bulge * unit(middle), corner(k + 1)}));
+  }
+  return shape;
+}
+
+/// The resolution at which the ends of scallops stand for them.
+double scallop_resolution(int count) {
+  return 2.2 * std::pow(taut_test::pi / count, 2) / (taut::cover_share - 0.01);
+}
+
+/// What is left out because of others is not above all that is left.
+TEST(DirectionMap, WhatStandsForOthersStays) {
+  taut_test::Random random(4);
+  struct Case {
+    Shape shape;
+    double rho;
+  };
+  std::vector<Case> all;
+  for (const double weight : {0.01, 3.0, 100.0}) {
+    all.push_back({weighed(weight, 1e-2), 3e-8});
+    all.push_back({weighed(weight, 1e-4), 3e-8});
+  }
+  for (const int count : {20, 40}) {
+    const Shape ring = scallops(count);
+    all.push_back({ring, scallop_resolution(count)});
+    all.push_back({ring + shifted(ring, {0.1, 0.03, 0.5}), scallop_resolution(count)});
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(k);
+    const Scene scene = make_scene(all[k].shape);
+    taut::DirectionMapOptions options;
+    options.resolution = scene.frame().length_to_frame(all[k].rho);
+    options.cell_limit = 20'000;
+    const DirectionMap map = direction_map(ContactGeometry(scene), options);
+    const SupportReference reference(all[k].shape);
+    for (int i = 0; i < 300; ++i) {
+      expect_attained(scene, map, reference, random_direction(random), all[k].rho);
+    }
+  }
+}
+
 TEST(DirectionMap, HoldsWhatSupports) {
   expect_holds(teapot());
   expect_holds(torus(2, 0.5));

@@ -18,11 +18,16 @@ constexpr std::size_t split_piece_limit = 192;
 }  // namespace
 
 void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
-                       std::span<const dvec3> beacons) {
+                       std::span<const CellBeacon> beacons) {
   d_ = corners;
   q_ = q;
   beacons_.clear();
-  for (const dvec3& b : beacons) beacons_.push_back(heights({b, 1}, q_, d_));
+  // What stands for a covered element does not go for being below a point of that.
+  for (const CellBeacon& beacon : beacons) {
+    Corners y = heights({beacon.point, 1}, q_, d_);
+    for (std::size_t c = 0; c < 4; ++c) y[c] -= beacon.above * glm::length(d_[c]);
+    beacons_.push_back(y);
+  }
   envelope_.find(beacons_);
   seen_.clear();
   values_.clear();
@@ -46,10 +51,11 @@ bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
 }
 
 bool CellView::is_surpassed(const MapElement& element) const {
-  const std::vector<dvec3>& to_others = element.likeness.to_others;
-  return std::any_of(to_others.begin(), to_others.end(), [&](const dvec3& off) {
-    return std::all_of(d_.begin(), d_.end(),
-                       [&](const dvec3& d) { return glm::dot(off, d) > noise_; });
+  const std::vector<Likeness::Other>& others = element.likeness.to_others;
+  return std::any_of(others.begin(), others.end(), [&](const Likeness::Other& other) {
+    return std::all_of(d_.begin(), d_.end(), [&](const dvec3& d) {
+      return glm::dot(other.off, d) > noise_ + other.apart * glm::length(d);
+    });
   });
 }
 
@@ -91,9 +97,13 @@ void CellView::finish() {
 }
 
 /// A surface or an edge that ends at the piece rises from all of it, in all directions of the cell.
+/// One that is covered does not count: the piece may be what stands for it.
 bool CellView::rises_inward(const SeenPiece& seen) const {
   const MapPiece& piece = pieces_.piece(seen.piece);
+  const std::vector<int>& beside = pieces_.element_of(piece).beside;
   return std::any_of(piece.inward.begin(), piece.inward.end(), [&](const StoredNet& net) {
+    const int element = beside[std::size_t(&net - piece.inward.data())];
+    if (element >= 0 && pieces_.element(element).likeness.covered) return false;
     const dvec4* p = pieces_.points(net);
     for (int k = 0; k < net.shape.size(); ++k) {
       const Corners y = heights(p[k], q_, d_);

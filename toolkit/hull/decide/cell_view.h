@@ -10,6 +10,12 @@
 
 namespace taut {
 
+/// A point of the model, and by how much it may be above all that is not covered.
+struct CellBeacon {
+  dvec3 point = dvec3(0.0);
+  double above = 0;
+};
+
 /// The pieces of a model that may touch a supporting plane with a normal in a cell of directions.
 ///
 /// Directions d of the cell are the convex combinations of four; heights are over a point q of the
@@ -19,8 +25,9 @@ class CellView {
   /// `noise`: what rounding may do to heights and their differences. The pieces must outlive it.
   CellView(MapPieces& pieces, double noise) : pieces_(pieces), noise_(noise) {}
 
-  /// Turns to a cell. `beacons`: points of the model, of which q is one.
-  void turn_to(const std::array<dvec3, 4>& corners, const dvec3& q, std::span<const dvec3> beacons);
+  /// Turns to a cell. `beacons`: of which q is one.
+  void turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
+               std::span<const CellBeacon> beacons);
   const std::array<dvec3, 4>& corners() const { return d_; }
   const dvec3& q() const { return q_; }
 

@@ -33,8 +33,6 @@ constexpr std::size_t branch_beacons = 4;
 constexpr int refinement_limit = 12;
 /// Pieces of a cell beyond which it is split rather than looked at.
 constexpr std::size_t looked_at_limit = 200;
-/// Of directions to points of a cube of two units a side.
-constexpr double longest_direction = 1.7320508075688772;
 /// Contacts in line, at most.
 constexpr std::size_t line_limit = 8;
 /// Rounds of Newton's kind for the plane of a node: contacts of a plane, and the plane of these.
@@ -121,7 +119,7 @@ class Decider {
   struct Waiting {
     MapCell cell;
     std::shared_ptr<const std::vector<int>> pieces;
-    std::vector<dvec3> beacons;
+    std::vector<CellBeacon> beacons;
     Contact hint;
   };
 
@@ -192,7 +190,7 @@ class Decider {
     return true;
   }
 
-  void split(const MapCell& cell, std::vector<int> pieces, const std::vector<dvec3>& beacons,
+  void split(const MapCell& cell, std::vector<int> pieces, const std::vector<CellBeacon>& beacons,
              const Contact& hint) {
     const auto shared = std::make_shared<const std::vector<int>>(std::move(pieces));
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -219,7 +217,7 @@ class Decider {
     const std::array<dvec3, 4> d = DirectionMap::corners(cell);
     const Support support = query_(unit(d[0] + d[3]), hint);
     cell.contact = support.contact;
-    beacons.push_back(beacon(support));
+    beacons.push_back({support.point, pieces_.covered_above(support.contact)});
     while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
     view_.turn_to(d, support.point, beacons);
     differences_.turn_to(axes_.first, axes_.second);
@@ -242,17 +240,9 @@ class Decider {
     split(cell, pieces_left(), beacons, support.contact);
   }
 
-  /// A point that supports, or one below it: what stands for the element that it is of may be lower
-  /// by as much as the resolution, and counts.
-  dvec3 beacon(const Support& support) const {
-    const int element = pieces_.find(support.contact);
-    if (element >= 0 && !pieces_.element(element).likeness.covered) return support.point;
-    return support.point - longest_direction * options_.resolution * axes_.own;
-  }
-
   /// Points that are nowhere the highest in a cell are so nowhere in its quarters.
-  void drop_low(std::vector<dvec3>& beacons) const {
-    std::vector<dvec3> left;
+  void drop_low(std::vector<CellBeacon>& beacons) const {
+    std::vector<CellBeacon> left;
     for (std::size_t k = 0; k < beacons.size(); ++k) {
       if (view_.is_highest(k)) left.push_back(beacons[k]);
     }
@@ -260,12 +250,16 @@ class Decider {
   }
 
   /// What surpasses the rest of a branch, or of others, though it may not support itself.
-  void add_branch_points(std::vector<dvec3>& beacons) {
+  void add_branch_points(std::vector<CellBeacon>& beacons) {
     if (branches_.all().size() > branch_beacons) return;
     branch_points_.find(view_, branches_);
     for (std::size_t b = 0; b < branches_.all().size(); ++b) {
       const auto& points = branch_points_.points(b);
-      beacons.insert(beacons.end(), points.begin(), points.end());
+      double above = 0;
+      for (const int k : branches_.all()[b].charts) {
+        above = std::max(above, pieces_.covered_above(branches_.chart(k).element));
+      }
+      for (const dvec3& x : points) beacons.push_back({x, above});
     }
   }
 
@@ -275,7 +269,7 @@ class Decider {
     map_.cells.push_back(std::move(cell));
   }
 
-  void finish(MapCell& cell, MapCellKind kind, const std::vector<dvec3>& beacons) {
+  void finish(MapCell& cell, MapCellKind kind, const std::vector<CellBeacon>& beacons) {
     cell.kind = kind;
     if (kind == MapCellKind::facet) {
       cell.normal = facet_normal_;
@@ -316,6 +310,8 @@ class Decider {
       return is_facet() ? std::optional(MapCellKind::facet) : std::nullopt;
     }
     branches_.find(view_);
+    // Something supports: what is taken for granted of the model does not hold.
+    if (branches_.all().empty()) return MapCellKind::undecided;
     if (const auto kind = kind_of_branches(false)) return kind;
     // All that is near all the planes hangs together.
     const std::vector<Branch>& all = branches_.all();
@@ -386,8 +382,8 @@ class Decider {
     return MapCellKind::in_line;
   }
 
-  /// Along one of the axes: each stands out from those beside it, so that no others exchange; or all
-  /// between are on one side of lines from one to another, and the border tells.
+  /// Along one of the axes: each stands out from those beside it, so that no others exchange; or
+  /// all between are on one side of lines from one to another, and the border tells.
   std::optional<MapCellKind> kind_of_row() {
     for (const std::size_t axis : {0u, 1u}) {
       const std::optional<std::vector<int>> row = order_.row(axis);
@@ -395,9 +391,8 @@ class Decider {
       branch_points_.find(view_, branches_);
       bool all_stand_out = true;
       for (std::size_t k = 1; k + 1 < row->size() && all_stand_out; ++k) {
-        all_stand_out =
-            stands_out(view_, branch_points_, branches_, std::size_t((*row)[k]),
-                       std::size_t((*row)[k - 1]), std::size_t((*row)[k + 1]));
+        all_stand_out = stands_out(view_, branch_points_, branches_, std::size_t((*row)[k]),
+                                   std::size_t((*row)[k - 1]), std::size_t((*row)[k + 1]));
       }
       if (all_stand_out) line_ = *row;
       if (all_stand_out || order_.go_around_alike(*row)) return MapCellKind::in_line;
@@ -544,7 +539,7 @@ class Decider {
   /// What a node's cell is split with.
   struct Node {
     std::vector<int> pieces;
-    std::vector<dvec3> beacons;
+    std::vector<CellBeacon> beacons;
   };
 
   MapPieces pieces_;

@@ -46,7 +46,7 @@ void even_weights(NetShape shape, std::vector<dvec4>& net) {
 }
 
 MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
-    : geometry_(geometry), joins_(geometry) {
+    : geometry_(geometry), resolution_(resolution), joins_(geometry) {
   const Scene& scene = geometry.scene();
   const Model& model = scene.model();
   first_.resize(model.instances().size(), {-1, -1, -1});
@@ -82,6 +82,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
   }
   rounds_ = std::move(found.rounds);
   cover_straight(resolution);
+  find_what_is_beside_covered();
 }
 
 /// Of edges. What straight ones stand for is off by what these are off by too, if it is not
@@ -101,10 +102,32 @@ void MapPieces::cover_straight(double resolution) {
   }
 }
 
-double MapPieces::budget_left() const {
-  const bool any = std::any_of(elements_.begin(), elements_.end(),
-                               [](const MapElement& element) { return element.likeness.covered; });
-  return any ? 1 - cover_share : cover_share;
+/// Of vertices first, of which also what is beside their edges has to do with them.
+void MapPieces::find_what_is_beside_covered() {
+  borders_covered_.assign(elements_.size(), false);
+  for (const SourceKind kind : {SourceKind::vertex, SourceKind::edge}) {
+    for (std::size_t k = 0; k < elements_.size(); ++k) {
+      const bool is_covered = elements_[k].likeness.covered;
+      any_covered_ = any_covered_ || is_covered;
+      if (elements_[k].contact.kind != kind || (!is_covered && !borders_covered_[k])) continue;
+      for (const int beside : elements_[k].beside) {
+        if (beside >= 0) borders_covered_[std::size_t(beside)] = true;
+      }
+    }
+  }
+}
+
+double MapPieces::budget_left() const { return any_covered_ ? 1 - cover_share : cover_share; }
+
+double MapPieces::covered_above(const Contact& c) const {
+  return any_covered_ ? covered_above(find(geometry_.first(geometry_.canonical(c)))) : 0;
+}
+
+/// Of what is no element it is not asked what it borders on.
+double MapPieces::covered_above(int element) const {
+  const bool is_apart = element >= 0 && !elements_[std::size_t(element)].likeness.covered &&
+                        !borders_covered_[std::size_t(element)];
+  return is_apart || !any_covered_ ? 0 : resolution_;
 }
 
 void MapPieces::find_beside() {

@@ -45,8 +45,13 @@ struct Likeness {
   /// that have none.
   int group = -1;
   dvec3 place = dvec3(0.0);
-  /// From the element to the nearest of its translates that are not covered.
-  std::vector<dvec3> to_others;
+  /// The way from the element to another one, which moved there it is nowhere farther from.
+  struct Other {
+    dvec3 off = dvec3(0.0);
+    double apart = 0;
+  };
+  /// To the nearest of its translates that are not covered.
+  std::vector<Other> to_others;
 };
 
 /// What may hold contacts of its own: a patch that is not ruled, a piece of an edge that is not
@@ -99,6 +104,10 @@ class MapPieces {
   /// The share of the resolution by which what is left out in a cell may be above the rest: that
   /// for which others stand everywhere is above them too.
   double budget_left() const;
+  /// By how much a contact's point may be above all that is not covered, in the scene's frame.
+  double covered_above(const Contact& c) const;
+  /// The same of all of an element, -1 of what is none.
+  double covered_above(int element) const;
 
   const MapPiece& piece(int index) const { return pieces_[std::size_t(index)]; }
   const MapElement& element_of(const MapPiece& piece) const { return element(piece.element); }
@@ -121,10 +130,14 @@ class MapPieces {
   std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);
+  void find_what_is_beside_covered();
 
   const ContactGeometry& geometry_;
+  double resolution_;
   SmoothJoins joins_;
   std::vector<MapElement> elements_;
+  bool any_covered_ = false;
+  std::vector<bool> borders_covered_;  ///< by element: an edge or vertex of it is covered
   std::vector<RoundShape> rounds_;
   std::vector<MapPiece> pieces_;
   std::vector<dvec4> points_;

@@ -23,6 +23,8 @@ struct RoundShape {
   dvec3 radii = dvec3(0.0);
   /// The shape lies in the convex hull of the elements but for this distance.
   double inside = 0;
+  /// The elements lie in what the shape encloses but for this distance.
+  double outside = 0;
 
   bool is_flat() const { return kind == SourceKind::edge; }
   double greatest_radius() const { return std::max({radii.x, radii.y, radii.z}); }

@@ -250,15 +250,14 @@ std::vector<RoundShape> round_shapes(const MapPieces& pieces, double distance) {
     std::optional<RoundShape> shape = shape_near(points, kind);
     if (!shape) continue;
     shape->elements = std::move(block);
-    double outside = 0;
     for (const int element : shape->elements) {
       const RoundShape::Distances off =
           shape->distances(net_of(pieces, element).shape, points_of(pieces, element));
       shape->inside = std::max(shape->inside, off.inwards + rounding);
-      outside = std::max(outside, off.outwards + rounding);
-      if (!(std::max(shape->inside, outside) <= distance)) break;
+      shape->outside = std::max(shape->outside, off.outwards + rounding);
+      if (!(std::max(shape->inside, shape->outside) <= distance)) break;
     }
-    if (!(std::max(shape->inside, outside) <= distance)) continue;
+    if (!(std::max(shape->inside, shape->outside) <= distance)) continue;
     if (RayCount(pieces, *shape, gap).is_odd()) result.push_back(std::move(*shape));
   }
   return result;

@@ -66,14 +66,29 @@ Shape shape_of(const RoundShape& round) {
   return shape;
 }
 
-bool are_translates(const Shape& a, const Shape& b, double budget) {
+/// Upper bound of how far the points of two shapes are from each other that differ in weights only:
+/// a control point draws the others towards it.
+double apart_by_weights(const Shape& a, const Shape& b) {
+  double farthest = 0;
+  for (const dvec3& x : a.offsets) farthest = std::max(farthest, glm::length(x));
+  double largest = 0;
   for (std::size_t k = 0; k < a.offsets.size(); ++k) {
-    if (!(glm::distance(a.offsets[k], b.offsets[k]) <= budget)) return false;
     const double off = std::abs(a.weights[k] - b.weights[k]) / std::min(a.weights[k], b.weights[k]);
-    if (!(off * glm::length(a.offsets[k]) <= budget)) return false;
+    largest = std::max(largest, off * (farthest + glm::length(a.offsets[k])));
   }
-  return true;
+  return largest;
 }
+
+/// Upper bound of how far the points of two shapes are from each other, moved to one middle.
+double apart(const Shape& a, const Shape& b) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.offsets.size(); ++k) {
+    largest = std::max(largest, glm::distance(a.offsets[k], b.offsets[k]));
+  }
+  return largest + apart_by_weights(a, b);
+}
+
+bool are_translates(const Shape& a, const Shape& b, double budget) { return apart(a, b) <= budget; }
 
 /// A point of the convex hull of some points, as a mean of up to four.
 struct Mean {
@@ -170,7 +185,11 @@ double distance(const MapPieces& pieces, const Group& group, std::size_t own, co
     }
     largest = std::max(largest, glm::length(off));
   }
-  return largest;
+  double by_weights = 0;
+  for (int k = 0; k < mean.size; ++k) {
+    by_weights = std::max(by_weights, apart_by_weights(shape, other(k)));
+  }
+  return largest + by_weights;
 }
 
 /// Which of a group are covered by the ones that are left.
@@ -191,18 +210,23 @@ std::vector<bool> covered(const MapPieces& pieces, const Group& group, double bu
 }
 
 /// From a member to the nearest of the others that are not covered.
-std::vector<dvec3> to_others(const Group& group, const std::vector<bool>& covered, std::size_t own,
-                             double budget) {
-  std::vector<dvec3> result;
+std::vector<Likeness::Other> to_others(const Group& group, const std::vector<bool>& covered,
+                                       std::size_t own, double budget) {
+  std::vector<Likeness::Other> result;
   for (std::size_t k = 0; k < group.places.size(); ++k) {
     if (k == own || covered[k]) continue;
     const dvec3 off = group.places[k] - group.places[own];
-    if (result.size() == near_translates && glm::length(off) >= glm::length(result.back()))
+    if (result.size() == near_translates && glm::length(off) >= glm::length(result.back().off))
       continue;
-    if (!are_translates(group.members[k].shape, group.members[own].shape, budget)) continue;
-    result.push_back(off);
-    std::sort(result.begin(), result.end(),
-              [](const dvec3& a, const dvec3& b) { return glm::length(a) < glm::length(b); });
+    const Shape& shape = group.members[own].shape;
+    const double by = apart(group.members[k].shape, shape);
+    if (!(by <= budget)) continue;
+    const RoundShape* round = group.members[k].shape.round;
+    result.push_back(
+        {off, round == nullptr ? by : std::sqrt(3.0) * by + round->inside + shape.round->outside});
+    std::sort(result.begin(), result.end(), [](const Likeness::Other& a, const Likeness::Other& b) {
+      return glm::length(a.off) < glm::length(b.off);
+    });
     if (result.size() > near_translates) result.pop_back();
   }
   return result;
@@ -269,8 +293,9 @@ class Search {
     if (group.members.size() < 2 || group.members.size() > translate_limit) return;
     const std::vector<bool> goes = covered(pieces_, group, budget_);
     for (std::size_t k = 0; k < goes.size(); ++k) {
-      const Likeness own{goes[k], -1, number, group.places[k],
-                         goes[k] ? std::vector<dvec3>() : to_others(group, goes, k, budget_)};
+      const Likeness own{
+          goes[k], -1, number, group.places[k],
+          goes[k] ? std::vector<Likeness::Other>() : to_others(group, goes, k, budget_)};
       for (const int element : group.members[k].elements) result_[std::size_t(element)] = own;
     }
   }
