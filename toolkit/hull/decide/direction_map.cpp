@@ -255,11 +255,8 @@ class Decider {
     branch_points_.find(view_, branches_);
     for (std::size_t b = 0; b < branches_.all().size(); ++b) {
       const auto& points = branch_points_.points(b);
-      double above = 0;
-      for (const int k : branches_.all()[b].charts) {
-        above = std::max(above, pieces_.covered_above(branches_.chart(k).element));
-      }
-      for (const dvec3& x : points) beacons.push_back({x, above});
+      const auto& above = branch_points_.above(b);
+      for (std::size_t k = 0; k < points.size(); ++k) beacons.push_back({points[k], above[k]});
     }
   }
 

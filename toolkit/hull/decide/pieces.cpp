@@ -120,14 +120,18 @@ void MapPieces::find_what_is_beside_covered() {
 double MapPieces::budget_left() const { return any_covered_ ? 1 - cover_share : cover_share; }
 
 double MapPieces::covered_above(const Contact& c) const {
-  return any_covered_ ? covered_above(find(geometry_.first(geometry_.canonical(c)))) : 0;
+  if (!any_covered_) return 0;
+  const int element = find(geometry_.first(geometry_.canonical(c)));
+  return element >= 0 && !elements_[std::size_t(element)].likeness.covered ? 0 : resolution_;
 }
 
-/// Of what is no element it is not asked what it borders on.
-double MapPieces::covered_above(int element) const {
-  const bool is_apart = element >= 0 && !elements_[std::size_t(element)].likeness.covered &&
-                        !borders_covered_[std::size_t(element)];
-  return is_apart || !any_covered_ ? 0 : resolution_;
+/// Inside of an element that is not covered it stands for itself.
+double MapPieces::covered_above(const MapPiece& piece, bool upper_u, bool upper_v) const {
+  if (!borders_covered_[std::size_t(piece.element)]) return 0;
+  const auto ends = [](const Interval& t, bool upper) {
+    return upper ? t.upper == 1 : t.lower == 0;
+  };
+  return ends(piece.u, upper_u) || ends(piece.v, upper_v) ? resolution_ : 0;
 }
 
 void MapPieces::find_beside() {

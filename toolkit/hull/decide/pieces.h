@@ -106,8 +106,8 @@ class MapPieces {
   double budget_left() const;
   /// By how much a contact's point may be above all that is not covered, in the scene's frame.
   double covered_above(const Contact& c) const;
-  /// The same of all of an element, -1 of what is none.
-  double covered_above(int element) const;
+  /// The same of a corner of a piece, at the lower or upper ends of u and v.
+  double covered_above(const MapPiece& piece, bool upper_u, bool upper_v) const;
 
   const MapPiece& piece(int index) const { return pieces_[std::size_t(index)]; }
   const MapElement& element_of(const MapPiece& piece) const { return element(piece.element); }
