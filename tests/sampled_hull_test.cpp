@@ -334,6 +334,35 @@ TEST(SampledHull, FlatModelsHaveTheirKind) {
   expect_kind(HullKind::point, mapped(patch, dmat3(0.0)), "patch in a point");
 }
 
+/// Compared with places on a grid.
+TEST(SampledHull, PlanesThatFoldBeyondTheirBorders) {
+  const double x[3][3] = {{0, 0, 0}, {0.5, 3, 0.5}, {1, 1, 1}};
+  taut::BezierPatch folded{2, 2, {}};
+  for (const auto& row : x) {
+    for (int j = 0; j < 3; ++j) folded.points.emplace_back(row[j], 0.5 * j, 0, 1);
+  }
+  std::vector<dvec3> places;
+  for (int k = 0; k < 201 * 201; ++k) {
+    places.push_back(point(folded, k / 201 / 200.0, k % 201 / 200.0));
+  }
+  for (const bool solid : {false, true}) {
+    Shape shape = of_patch(folded);
+    if (solid) shape.points.push_back({0.5, 0.5, 1});
+    const Hull hull = convex_hull(make_scene(shape));
+    std::vector<dvec3> vertices;
+    for (const auto v : hull.mesh.vertices()) vertices.push_back(taut::position(hull.mesh, v));
+    const auto support = [](const std::vector<dvec3>& points, const dvec3& n) {
+      double h = -taut::infinity;
+      for (const dvec3& p : points) h = std::max(h, glm::dot(p, n));
+      return h;
+    };
+    for (int k = 0; k < 128; ++k) {
+      const dvec3 n(std::cos(k * pi / 64), std::sin(k * pi / 64), 0);
+      EXPECT_GE(support(vertices, n), support(places, n) - hull.distance_bound) << k;
+    }
+  }
+}
+
 TEST(SampledHull, OutlineOfACircleConverges) {
   const Scene scene = make_scene(
       mapped(Shape{{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})}, {}}, skew_rotation()));

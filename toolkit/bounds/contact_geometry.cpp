@@ -54,12 +54,15 @@ void collapse(BezierPatch& patch, Side side, double tie) {
   for (dvec4* p : points) *p = homogeneous(x, p->w);
 }
 
-/// Whether the control points lie on a line, to within rounding.
-bool is_segment(const BezierCurve& curve, double rounding) {
-  const dvec3 first = euclidean(curve.points.front());
-  const dvec3 along = unit(euclidean(curve.points.back()) - first);
+/// Whether the control points lie on the segment between two points, to within rounding: on the
+/// line, and not beyond an end, where a curve may turn back.
+bool is_on_segment(const BezierCurve& curve, const dvec3& from, const dvec3& to, double rounding) {
+  const dvec3 along = unit(to - from);
   return std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec4& p) {
-    return glm::length(glm::cross(euclidean(p) - first, along)) <= rounding;
+    const dvec3 off = euclidean(p) - from;
+    const double t = glm::dot(off, along);
+    return glm::length(glm::cross(off, along)) <= rounding && t >= -rounding &&
+           t <= glm::distance(from, to) + rounding;
   });
 }
 
@@ -188,7 +191,9 @@ void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
   std::vector<bool> segments;
   segments.reserve(own.pieces.size());
   for (const BezierCurve& piece : own.pieces) {
-    segments.push_back(is_segment(piece, std::max(coordinate_rounding, rounding_)));
+    segments.push_back(is_on_segment(piece, euclidean(piece.points.front()),
+                                     euclidean(piece.points.back()),
+                                     std::max(coordinate_rounding, rounding_)));
   }
   own.straight.assign(own.pieces.size(), {-1, -1});
   for (std::size_t k = 0; k < own.pieces.size(); ++k) {
@@ -196,14 +201,11 @@ void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
     const int first = last_vertex(part.pieces(), segments, int(k), 0);
     const int last = last_vertex(part.pieces(), segments, int(k), 1);
     if (first < 0 || last < 0) continue;
-    const dvec3 a = own.vertices[std::size_t(first)];
-    const dvec3 along = unit(own.vertices[std::size_t(last)] - a);
     // Joints may have kinks small enough to count as smooth.
-    const auto is_on = [&](const dvec4& p) {
-      return glm::length(glm::cross(euclidean(p) - a, along)) <= tie_;
-    };
-    const BezierCurve& piece = own.pieces[k];
-    if (is_on(piece.points.front()) && is_on(piece.points.back())) own.straight[k] = {first, last};
+    if (is_on_segment(own.pieces[k], own.vertices[std::size_t(first)],
+                      own.vertices[std::size_t(last)], tie_)) {
+      own.straight[k] = {first, last};
+    }
   }
 }
 

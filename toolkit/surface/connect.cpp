@@ -417,7 +417,7 @@ void Connector::fill_repeated() {
 void find_rulings(std::vector<Patch>& patches, const Progress& progress) {
   for (Patch& patch : patches) {
     progress.check();
-    const bool plane = is_plane(patch.bezier);
+    const bool plane = is_plane(patch.bezier) && !is_folded(patch.bezier);
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
     patch.ruled_obliquely = !patch.ruled() && is_developable(patch.bezier);

@@ -75,6 +75,33 @@ class DerivativeRounding {
   double u_, v_, uu_, uv_, vv_;
 };
 
+/// Places in each parameter, times the degree, at which a plane patch is looked at for folds.
+constexpr int fold_places = 4;
+
+/// Of a plane patch without weights: each step along u between control points turns to each along v
+/// in one sense, if at all. The coefficients of Su x Sv are sums of the products of these.
+bool steps_go_one_way_around(const BezierPatch& patch) {
+  const auto same_weight = [&](const dvec4& p) { return p.w == patch.points.front().w; };
+  if (!std::all_of(patch.points.begin(), patch.points.end(), same_weight)) return false;
+  std::vector<dvec3> along_u, along_v;
+  for (int i = 0; i <= patch.degree_u; ++i) {
+    for (int j = 0; j <= patch.degree_v; ++j) {
+      const dvec3 x(patch.at(i, j));
+      if (i < patch.degree_u) along_u.push_back(dvec3(patch.at(i + 1, j)) - x);
+      if (j < patch.degree_v) along_v.push_back(dvec3(patch.at(i, j + 1)) - x);
+    }
+  }
+  dvec3 first(0.0);
+  for (const dvec3& u : along_u) {
+    for (const dvec3& v : along_v) {
+      const dvec3 n = glm::cross(u, v);
+      if (first == dvec3(0.0)) first = n;
+      if (glm::dot(first, n) < 0) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 double largest_coordinate(const std::vector<dvec4>& points) {
@@ -108,6 +135,24 @@ bool is_ruled(const BezierPatch& patch, Direction direction) {
     }
   }
   return true;
+}
+
+bool is_folded(const BezierPatch& original) {
+  const BezierPatch patch = of_unit_size(original);
+  if (steps_go_one_way_around(patch)) return false;
+  const int mu = fold_places * patch.degree_u;
+  const int mv = fold_places * patch.degree_v;
+  std::vector<dvec3> before(to_size(mv + 1), dvec3(0.0));
+  for (int i = 0; i <= mu; ++i) {
+    for (int k = 0; k <= mv; ++k) {
+      const PatchJet1 j = jet1(patch, (i + 0.5) / (mu + 1), (k + 0.5) / (mv + 1));
+      const dvec3 n = glm::cross(j.Su, j.Sv);
+      if (i > 0 && glm::dot(n, before[to_size(k)]) < 0) return true;
+      if (k > 0 && glm::dot(n, before[to_size(k - 1)]) < 0) return true;
+      before[to_size(k)] = n;
+    }
+  }
+  return false;
 }
 
 bool is_developable(const BezierPatch& original) {

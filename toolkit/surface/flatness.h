@@ -22,6 +22,9 @@ bool is_developable(const BezierPatch& patch);
 
 /// All control points lie in one plane.
 bool is_plane(const BezierPatch& patch);
+/// The patch, which lies in a plane, turns over somewhere inside, by places on a grid: it reaches
+/// beyond its border there. @pre is_plane
+bool is_folded(const BezierPatch& patch);
 /// @}
 
 /// Control points of the curve u = s (direction u) or v = s of the patch.
