@@ -225,15 +225,15 @@ class Decider {
     for (const int piece : *pieces) view_.look(piece);
     view_.finish();
     std::optional<MapCellKind> kind = decided(true);
-    // Of three contacts one may not reach the others: finer pieces tell.
-    const auto is_settled = [&] { return kind && *kind != MapCellKind::node; };
+    // Of three contacts one may not reach the others, and of more the border is to tell: finer
+    // pieces tell more.
+    const auto is_open_row = [&] { return kind == MapCellKind::in_line && line_.empty(); };
+    const auto is_settled = [&] { return kind && *kind != MapCellKind::node && !is_open_row(); };
     for (int round = 0; round < refinement_limit && !is_settled() && view_.refine(); ++round) {
       kind = decided(false);
     }
     if (!kind) kind = decided_last();
-    if (kind == MapCellKind::node || (kind == MapCellKind::in_line && line_.empty())) {
-      kind = kind_by_border(support.contact);
-    }
+    if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border(support.contact);
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
@@ -426,11 +426,13 @@ class Decider {
     return true;
   }
 
-  /// All that is left is within the resolution of the supporting planes of all directions.
+  /// All that is left is within the resolution of the supporting planes of all directions; and what
+  /// is left for being below what others stand for no farther than that from the rest.
   bool is_flat() const {
+    const double depth = options_.resolution + pieces_.covered_above();
     return std::all_of(view_.seen().begin(), view_.seen().end(), [&](const SeenPiece& s) {
       for (std::size_t c = 0; c < 4; ++c) {
-        if (!(view_.highest()[c] - s.low[c] <= options_.resolution)) return false;
+        if (!(view_.highest()[c] - s.low[c] <= depth)) return false;
       }
       return true;
     });

@@ -104,7 +104,9 @@ class MapPieces {
   /// The share of the resolution by which what is left out in a cell may be above the rest: that
   /// for which others stand everywhere is above them too.
   double budget_left() const;
-  /// By how much a contact's point may be above all that is not covered, in the scene's frame.
+  /// By how much points may be above all that is not covered, in the scene's frame.
+  double covered_above() const { return any_covered_ ? resolution_ : 0; }
+  /// By how much a contact's point may be.
   double covered_above(const Contact& c) const;
   /// The same of a corner of a piece, at the lower or upper ends of u and v.
   double covered_above(const MapPiece& piece, bool upper_u, bool upper_v) const;
