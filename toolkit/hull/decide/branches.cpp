@@ -231,11 +231,6 @@ int Branches::chart_touching(int element, const Interval& u, const Interval& v) 
   return -1;
 }
 
-int Branches::holder(const MapPieces& pieces, const Contact& c) const {
-  const int k = chart_touching(pieces.find(c), {c.u, c.u}, {c.v, c.v});
-  return k < 0 ? -1 : charts_[std::size_t(k)].branch;
-}
-
 /// What two charts tell of each other counts once.
 void Branches::add(const Glue& glue) {
   const bool known = std::any_of(glues_.begin(), glues_.end(), [&](const Glue& g) {

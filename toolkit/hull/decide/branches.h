@@ -61,8 +61,6 @@ class Branches {
   const Chart& chart(int k) const { return charts_[std::size_t(k)]; }
   const std::vector<Chart>& charts() const { return charts_; }
   const Glue& glue(int k) const { return glues_[std::size_t(k)]; }
-  /// The branch that holds the contact; -1 if none does.
-  int holder(const MapPieces& pieces, const Contact& c) const;
 
  private:
   void make_charts(const CellView& view);

@@ -367,9 +367,7 @@ class Decider {
       const bool is_arc = (part && order_.apart(0, 1)) || differences_.is_arc(all[0], all[1]);
       return is_arc ? std::optional(MapCellKind::arc) : std::nullopt;
     }
-    if (all.size() > 3) {
-      return part ? kind_of_row() : std::nullopt;
-    }
+    if (all.size() > 3) return part ? kind_of_row() : std::nullopt;
     if ((part && order_.go_around(0, 1, 2)) || differences_.is_node(all[0], all[1], all[2])) {
       return MapCellKind::node;
     }
