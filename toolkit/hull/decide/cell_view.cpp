@@ -29,6 +29,7 @@ void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
     beacons_.push_back(y);
   }
   envelope_.find(beacons_);
+  depth_ = noise_;
   seen_.clear();
   values_.clear();
   highest_ = {};
@@ -38,13 +39,13 @@ void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
 bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
   const auto& corners = envelope_.vertices();
   for (std::size_t c = 0; c < 4; ++c) {
-    if (!(seen.top[c] < corners[c].height - noise_)) return false;
+    if (!(seen.top[c] < corners[c].height - depth_)) return false;
   }
   const dvec4* p = pieces_.points(piece.net);
   const Corners* y = values(seen);
   return std::all_of(corners.begin() + 4, corners.end(), [&](const BeaconEnvelope::Vertex& v) {
     for (int k = 0; k < piece.net.shape.size(); ++k) {
-      if (!(height_at(y[k], v.s, v.t) < (v.height - noise_) * p[k].w)) return false;
+      if (!(height_at(y[k], v.s, v.t) < (v.height - depth_) * p[k].w)) return false;
     }
     return true;
   });
@@ -92,7 +93,8 @@ void CellView::finish() {
     for (std::size_t c = 0; c < 4; ++c) highest_[c] = std::max(highest_[c], seen.top[c]);
   }
   std::erase_if(seen_, [&](const SeenPiece& seen) {
-    return PieceSlopes(pieces_, seen, values(seen), noise_).surely_rise() || rises_inward(seen);
+    const PieceSlopes slopes(pieces_, seen, values(seen), noise_);
+    return slopes.surely_rise() || slopes.surely_bend_up() || rises_inward(seen);
   });
 }
 
@@ -114,6 +116,52 @@ bool CellView::rises_inward(const SeenPiece& seen) const {
     }
     return true;
   });
+}
+
+/// Points on covered borders are lowered as beacons are.
+void CellView::add_corners(const SeenPiece& seen) {
+  const MapPiece& piece = pieces_.piece(seen.piece);
+  const int p = piece.net.shape.p;
+  const int q = piece.net.shape.q;
+  for (const bool upper_u : {false, true}) {
+    for (const bool upper_v : {false, true}) {
+      if ((upper_u && p == 0) || (upper_v && q == 0)) continue;
+      const int k = (upper_u ? p : 0) * (q + 1) + (upper_v ? q : 0);
+      Corners y = values(seen)[k];
+      const double above = pieces_.covered_above(piece, upper_u, upper_v);
+      for (std::size_t c = 0; c < 4; ++c) {
+        y[c] = y[c] / pieces_.points(piece.net)[k].w - above * glm::length(d_[c]);
+      }
+      beacons_.push_back(y);
+    }
+  }
+}
+
+bool CellView::sharpen(double depth) {
+  for (const SeenPiece& seen : seen_) add_corners(seen);
+  envelope_.find(beacons_);
+  std::size_t left = 0;
+  for (std::size_t k = 0; k < beacons_.size(); ++k) {
+    if (envelope_.is_highest(k)) beacons_[left++] = beacons_[k];
+  }
+  beacons_.resize(left);
+  depth_ = noise_ + depth * glm::length(d_[0]);
+  before_.swap(seen_);
+  seen_.clear();
+  bool any = false;
+  for (const SeenPiece& seen : before_) {
+    const std::optional<Direction> split =
+        PieceSlopes(pieces_, seen, values(seen), noise_).bends_both_ways(8 * depth);
+    if (!split) {
+      look(seen.piece);
+      continue;
+    }
+    any = true;
+    for (const int half : pieces_.halves(seen.piece, *split)) look(half);
+  }
+  any = any || seen_.size() < before_.size();
+  finish();
+  return any;
 }
 
 bool CellView::refine() {

@@ -48,6 +48,9 @@ class CellView {
 
   /// Splits pieces over which slopes change by more than over the cell. True if there were any.
   bool refine();
+  /// Splits pieces that bend up by more than `depth` in places, and drops those that are farther
+  /// than it below the convex hull of what else there is. True if there were any.
+  bool sharpen(double depth);
 
   const MapPieces& pieces() const { return pieces_; }
   double noise() const { return noise_; }
@@ -56,6 +59,7 @@ class CellView {
 
  private:
   bool is_beaten(const SeenPiece& seen, const MapPiece& piece) const;
+  void add_corners(const SeenPiece& seen);
   bool is_surpassed(const MapElement& element) const;
   bool rises_inward(const SeenPiece& seen) const;
 
@@ -65,6 +69,7 @@ class CellView {
   dvec3 q_ = dvec3(0.0);
   std::vector<Corners> beacons_;
   BeaconEnvelope envelope_;
+  double depth_ = 0;  ///< by which what is dropped is below the envelope
   std::vector<SeenPiece> seen_;
   std::vector<SeenPiece> before_;  // scratch
   std::vector<double> scratch_;

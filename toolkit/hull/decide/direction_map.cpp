@@ -31,6 +31,10 @@ constexpr std::size_t beacon_limit = 20;
 constexpr std::size_t branch_beacons = 4;
 /// Rounds of splitting pieces in a cell before it is split.
 constexpr int refinement_limit = 12;
+/// Pieces of a cell up to which those that bend both ways are split.
+constexpr std::size_t sharpened_limit = 48;
+/// What is below the convex hull of the rest by this share of the resolution is left out then.
+constexpr double sharp_share = 0.5;
 /// Pieces of a cell beyond which it is split rather than looked at.
 constexpr std::size_t looked_at_limit = 200;
 /// Contacts in line, at most.
@@ -233,6 +237,7 @@ class Decider {
       kind = decided(false);
     }
     if (!kind) kind = decided_last();
+    if (!kind) kind = decided_sharply(cell.level);
     if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border(support.contact);
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
@@ -323,6 +328,18 @@ class Decider {
     if (!is_spot() && is_facet()) return MapCellKind::facet;
     if (const auto kind = kind_of_branches(true)) return kind;
     return kind_without_dominated();
+  }
+
+  /// From what supports in the cell, or all but: pieces are split where they bend both ways, the
+  /// more often the smaller the cell has had to become.
+  std::optional<MapCellKind> decided_sharply(int level) {
+    for (int round = 1; round < level / 2; ++round) {
+      if (view_.seen().size() > sharpened_limit) return std::nullopt;
+      if (!view_.sharpen(sharp_share * options_.resolution)) return std::nullopt;
+      branches_.find(view_);
+      if (const auto kind = kind_of_branches(true)) return kind;
+    }
+    return std::nullopt;
   }
 
   /// Without the branches that others stand for to within what is left of the resolution. (The only

@@ -44,6 +44,10 @@ double largest(double a, double b, double c) {
   return std::max(at_one(a, std::abs(b), c), at_one(c, std::abs(b), a));
 }
 
+bool turns_right(const dvec2& a, const dvec2& b, const dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) < (b.y - a.y) * (c.x - a.x);
+}
+
 /// Of length one, from a side into its patch.
 dvec3 inwards(const ContactJet& j, Side side) {
   return unit((at_upper_end(side) ? -1.0 : 1.0) * (along_v(side) ? j.dx[0] : j.dx[1]));
@@ -228,9 +232,118 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
     if (first < 0) first = k;
     if (sets.find(k) != sets.find(first)) return false;
   }
-  return std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
+  const bool all = std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
     return held[std::size_t(k)] || is_nearly_concave(view, branches.chart(k), count > 1 ? size : 0);
   });
+  return all || chain_is_nearly_concave(view, branches, branch, held);
+}
+
+/// The intervals of a chart's pieces, and what is between them.
+std::vector<Interval> NearConcavity::stretches(const CellView& view, const Chart& chart) {
+  std::vector<Interval> pieces;
+  for (const int k : chart.pieces) {
+    pieces.push_back(view.pieces().piece(view.seen()[std::size_t(k)].piece).u);
+  }
+  std::sort(pieces.begin(), pieces.end(),
+            [](const Interval& a, const Interval& b) { return a.lower < b.lower; });
+  std::vector<Interval> result;
+  double end = chart.u.lower;
+  for (const Interval& t : pieces) {
+    if (t.lower > end) result.push_back({end, t.lower});
+    result.push_back(t);
+    end = std::max(end, t.upper);
+  }
+  if (end < chart.u.upper) result.push_back({end, chart.u.upper});
+  return result;
+}
+
+/// Of edges one behind the other: along them control polygons of the heights are no farther than
+/// the resolution below a concave one. Heights between the two have one near-maximum.
+bool NearConcavity::chain_is_nearly_concave(const CellView& view, const Branches& branches,
+                                            const Branch& branch, const std::vector<bool>& held) {
+  std::vector<int> left;
+  for (const int k : branch.charts) {
+    if (held[std::size_t(k)]) continue;
+    if (branches.chart(k).kind != SourceKind::edge) return false;
+    left.push_back(k);
+  }
+  const auto beyond = [&](int chart, int end) -> std::optional<std::array<int, 2>> {
+    for (const int g : branch.glues) {
+      const Glue& glue = branches.glue(g);
+      if (glue.kind != Glue::Kind::edges) continue;
+      if (glue.a == chart && glue.at_a == end) return std::array{glue.b, glue.at_b};
+      if (glue.b == chart && glue.at_b == end) return std::array{glue.a, glue.at_a};
+    }
+    return std::nullopt;
+  };
+  const auto first =
+      std::find_if(left.begin(), left.end(), [&](int k) { return !beyond(k, 0) || !beyond(k, 1); });
+  if (first == left.end()) return false;  // a ring
+  std::array<int, 2> next = {*first, beyond(*first, 0) ? 1 : 0};
+  polygon_.clear();
+  double t = 0;
+  double scale = 1;
+  dvec3 last_step(0.0);
+  for (std::size_t count = 0; count < left.size(); ++count) {
+    const auto [index, entry] = next;
+    const Chart& chart = branches.chart(index);
+    const MapElement& element = pieces_.element(chart.element);
+    if (element.rational && left.size() > 1) return false;
+    std::vector<Interval> all = stretches(view, chart);
+    if (entry == 1) std::reverse(all.begin(), all.end());
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      pieces_.restricted(chart.element, all[s], {0, 1}, net_);
+      if (entry == 1) std::reverse(net_.begin(), net_.end());
+      const double length = all[s].upper - all[s].lower;
+      const double degree = double(net_.size() - 1);
+      if (s == 0 && count > 0) {
+        const double own = glm::length(euclidean(net_[1]) - euclidean(net_[0])) * degree / length;
+        if (!(own > 0 && last_step != dvec3(0.0))) return false;
+        scale = own / glm::length(last_step);
+      }
+      for (std::size_t k = 0; k < net_.size(); ++k) {
+        polygon_.push_back({t + scale * length * double(k) / degree,
+                            dvec4(dvec3(net_[k]) - net_[k].w * view.q(), net_[k].w)});
+      }
+      t += scale * length;
+      last_step = degree / (scale * length) *
+                  (euclidean(net_[net_.size() - 1]) - euclidean(net_[net_.size() - 2]));
+    }
+    if (count + 1 == left.size()) break;
+    const auto follows = beyond(index, 1 - entry);
+    if (!follows) return false;
+    next = *follows;
+  }
+  double least = infinity;
+  for (const auto& [at, p] : polygon_) least = std::min(least, p.w);
+  for (const dvec3& d : view.corners()) {
+    double low = infinity;
+    double top = -infinity;
+    for (const auto& [at, p] : polygon_) {
+      low = std::min(low, glm::dot(dvec3(p), d) / p.w);
+      top = std::max(top, glm::dot(dvec3(p), d) / p.w);
+    }
+    for (const double h : {low, top}) {
+      hull_.clear();
+      for (const auto& [at, p] : polygon_) {
+        const dvec2 x(at, glm::dot(dvec3(p), d) - h * p.w);
+        while (hull_.size() > 1 && !turns_right(hull_[hull_.size() - 2], hull_.back(), x)) {
+          hull_.pop_back();
+        }
+        hull_.push_back(x);
+      }
+      std::size_t k = 0;
+      for (const auto& [at, p] : polygon_) {
+        while (k + 2 < hull_.size() && hull_[k + 1].x < at) ++k;
+        const dvec2& a = hull_[k];
+        const dvec2& b = hull_[k + 1];
+        const double share = b.x > a.x ? std::clamp((at - a.x) / (b.x - a.x), 0.0, 1.0) : 0;
+        const double gap = a.y + share * (b.y - a.y) - (glm::dot(dvec3(p), d) - h * p.w);
+        if (!(gap + view.noise() <= rho_ * least)) return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace taut

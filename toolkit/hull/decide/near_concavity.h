@@ -18,6 +18,9 @@ class NearConcavity {
 
  private:
   bool is_nearly_concave(const CellView& view, const Chart& chart, double size);
+  static std::vector<Interval> stretches(const CellView& view, const Chart& chart);
+  bool chain_is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch,
+                               const std::vector<bool>& held);
   static bool spans(const Branches& branches, const Glue& glue, bool same);
   bool meet_once(const CellView& view, const Branches& branches, const Branch& branch,
                  const Glue& glue) const;
@@ -27,7 +30,9 @@ class NearConcavity {
 
   const MapPieces& pieces_;
   double rho_;
-  std::vector<dvec4> net_, uu_, uv_, vv_;  // scratch
+  std::vector<dvec4> net_, uu_, uv_, vv_;          // scratch
+  std::vector<std::pair<double, dvec4>> polygon_;  // scratch
+  std::vector<dvec2> hull_;                        // scratch
 };
 
 }  // namespace taut

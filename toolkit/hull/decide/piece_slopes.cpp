@@ -12,17 +12,6 @@ constexpr double kink_reach = 4;
 /// Oblique directions count where they are this much better: rectangles fit them less.
 constexpr double oblique_worth = 4;
 
-/// Values of which a sign is sought.
-struct Range {
-  double lower = infinity;
-  double upper = -infinity;
-  void include(double x) {
-    lower = std::min(lower, x);
-    upper = std::max(upper, x);
-  }
-  bool has_zero(double noise) const { return lower <= noise && upper >= -noise; }
-};
-
 double width(const Corners& c) {
   return *std::max_element(c.begin(), c.end()) - *std::min_element(c.begin(), c.end());
 }
@@ -38,6 +27,11 @@ double mean(const Corners& c) { return 0.25 * (c[0] + c[1] + c[2] + c[3]); }
 void PieceSlopes::Change::include(double of_u, double of_v) {
   along_u = std::max(along_u, std::abs(of_u));
   along_v = std::max(along_v, std::abs(of_v));
+}
+
+void PieceSlopes::Range::include(double x) {
+  lower = std::min(lower, x);
+  upper = std::max(upper, x);
 }
 
 /// Height of a control point times its weight, over that of the piece's middle.
@@ -95,9 +89,6 @@ bool PieceSlopes::rise_along(Direction direction) const {
   const bool lower = is_at(lower_side) && element_.collapsed[std::size_t(lower_side)];
   const bool upper = is_at(upper_side) && element_.collapsed[std::size_t(upper_side)];
   Range range;
-  double longest = 0;
-  const dvec3 center = piece_.box.center();
-  const double reach = 0.5 * diagonal(piece_.box);
   for (int j = lower ? 1 : 0; j <= degree - (upper ? 1 : 0); ++j) {
     const double factor =
         (lower ? double(degree) / j : 1) * (upper ? double(degree) / (degree - j) : 1);
@@ -109,18 +100,161 @@ bool PieceSlopes::rise_along(Direction direction) const {
         range.include(factor * (slope - seen_.low[c] * dw));
         range.include(factor * (slope - seen_.top[c] * dw));
       }
-      const dvec4 off = points_[k + step] - points_[k];
-      longest =
-          std::max(longest, glm::length(dvec3(off) - off.w * center) + reach * std::abs(off.w));
     }
     if (range.has_zero(noise_)) return false;
   }
   const double margin = noise_ + (lower || upper ? pole_margin(direction, lower, upper) : 0);
+  const double longest = longest_step(direction);
   const auto beyond = [&](Side side) {
     return is_at(side) ? kink_reach * element_.kink[std::size_t(side)] * longest : 0;
   };
   return range.lower > margin + beyond(of_u ? Side::u1 : Side::v1) ||
          range.upper < -margin - beyond(of_u ? Side::u0 : Side::v0);
+}
+
+/// The longest of the control polygons, of the points over their weights.
+double PieceSlopes::longest_step(Direction direction) const {
+  const bool of_u = direction == Direction::u;
+  const int step = of_u ? q() + 1 : 1;
+  const int across = of_u ? 1 : q() + 1;
+  const dvec3 center = piece_.box.center();
+  const double reach = 0.5 * diagonal(piece_.box);
+  double longest = 0;
+  for (int j = 0; j <= (of_u ? q() : p()); ++j) {
+    for (int i = 0; i < (of_u ? p() : q()); ++i) {
+      const int k = i * step + j * across;
+      const dvec4 off = points_[k + step] - points_[k];
+      longest =
+          std::max(longest, glm::length(dvec3(off) - off.w * center) + reach * std::abs(off.w));
+    }
+  }
+  return longest;
+}
+
+/// Of the heights over one of the piece, times the weights; a part of them once one is not above
+/// `least`.
+PieceSlopes::Range PieceSlopes::second_differences(Direction direction, double least) const {
+  const bool of_u = direction == Direction::u;
+  const int step = of_u ? q() + 1 : 1;
+  const int across = of_u ? 1 : q() + 1;
+  Range range;
+  for (int j = 0; j <= (of_u ? q() : p()); ++j) {
+    for (int i = 0; i + 2 <= (of_u ? p() : q()); ++i) {
+      const int k = i * step + j * across;
+      const auto bend = [&](const auto& of) { return of(k) - 2 * of(k + step) + of(k + 2 * step); };
+      const double w = element_.rational ? bend([&](int l) { return points_[l].w; }) : 0;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double y = bend([&](int l) { return values_[l][c]; });
+        range.include(y - seen_.low[c] * w);
+        range.include(y - seen_.top[c] * w);
+        if (!(range.lower > least)) return range;
+      }
+    }
+  }
+  return range;
+}
+
+/// Of a net of the piece's degrees a coefficient of the slope in a direction, as one of the same
+/// degrees.
+template <class Of>
+double PieceSlopes::slope_at(int i, int j, double along_u, double along_v, const Of& of) const {
+  const auto row = std::size_t(q() + 1);
+  const std::size_t k = index(i, j);
+  const double own = of(k);
+  double u = 0;
+  double v = 0;
+  if (i > 0) u += i * (own - of(k - row));
+  if (i < p()) u += (p() - i) * (of(k + row) - own);
+  if (j > 0) v += j * (own - of(k - 1));
+  if (j < q()) v += (q() - j) * (of(k + 1) - own);
+  return along_u * u + along_v * v;
+}
+
+bool PieceSlopes::surely_bend_up() const {
+  if (p() > 1 && bend_up_along(Direction::u)) return true;
+  if (q() > 1 && bend_up_along(Direction::v)) return true;
+  return p() > 0 && q() > 0 && bend_up_obliquely();
+}
+
+/// At a join with a kink the heights may fall at first, by the kink: by no more than they have
+/// grown at the other end.
+bool PieceSlopes::bend_up_along(Direction direction) const {
+  const bool of_u = direction == Direction::u;
+  const double least = 2 * noise_;
+  const Range range = second_differences(direction, least);
+  if (!(range.lower > least)) return false;
+  double kink = 0;
+  for (const Side side : of_u ? std::array{Side::u0, Side::u1} : std::array{Side::v0, Side::v1}) {
+    if (is_at(side)) kink = std::max(kink, element_.kink[std::size_t(side)]);
+  }
+  const int degree = of_u ? p() : q();
+  return kink == 0 ||
+         0.5 * (degree - 1) * range.lower > least + kink_reach * kink * longest_step(direction);
+}
+
+/// Where patches twist. At a corner of the patch what is beside it may be all that is higher.
+bool PieceSlopes::bend_up_obliquely() const {
+  if ((is_at(Side::u0) || is_at(Side::u1)) && (is_at(Side::v0) || is_at(Side::v1))) return false;
+  for (const Side side : all_sides) {
+    if (!is_at(side)) continue;
+    if (element_.collapsed[std::size_t(side)] || element_.kink[std::size_t(side)] > 0) return false;
+  }
+  const std::optional<Way> way = steepest_bend();
+  return way && are_convex(*way);
+}
+
+/// In the middle, if the heights bend up there at all: as far as a parameter goes.
+std::optional<PieceSlopes::Way> PieceSlopes::steepest_bend() const {
+  const Bend b = bend();
+  const bool more_of_u = b.uu - b.vv > 0;
+  // Of a slope that does not change across it: the bend is det / vv or det / uu.
+  const double own = more_of_u ? b.vv : b.uu;
+  if (!(own < 0)) return std::nullopt;
+  const double oblique = -b.uv / own;
+  const double up = (more_of_u ? b.uu : b.vv) + oblique * b.uv;
+  if (!(up > noise_)) return std::nullopt;
+  const double scale = 1 / std::max(1.0, std::abs(oblique));
+  return more_of_u ? Way{scale, scale * oblique, scale * scale * up}
+                   : Way{scale * oblique, scale, scale * scale * up};
+}
+
+std::optional<Direction> PieceSlopes::bends_both_ways(double least) const {
+  std::optional<Direction> result;
+  for (const Direction direction : {Direction::u, Direction::v}) {
+    const int degree = direction == Direction::u ? p() : q();
+    if (degree < 2) continue;
+    const double most = degree * (degree - 1) * second_differences(direction, -infinity).upper;
+    if (!(most > least)) continue;
+    least = most;
+    result = direction;
+  }
+  if (p() == 0 || q() == 0) return result;
+  const std::optional<Way> way = steepest_bend();
+  return way && way->up > least ? changes_most(*way) : result;
+}
+
+/// The parameter with which the second derivative in a direction changes most.
+Direction PieceSlopes::changes_most(const Way& way) const {
+  std::vector<double> slopes(std::size_t(piece_.net.shape.size()));
+  std::vector<double> bends(slopes.size());
+  for (int i = 0; i <= p(); ++i) {
+    for (int j = 0; j <= q(); ++j) {
+      slopes[index(i, j)] =
+          slope_at(i, j, way.along_u, way.along_v, [&](std::size_t k) { return middle(k); });
+    }
+  }
+  double with_u = 0;
+  double with_v = 0;
+  for (int i = 0; i <= p(); ++i) {
+    for (int j = 0; j <= q(); ++j) {
+      bends[index(i, j)] =
+          slope_at(i, j, way.along_u, way.along_v, [&](std::size_t k) { return slopes[k]; });
+      const double own = bends[index(i, j)];
+      if (i > 0) with_u = std::max(with_u, p() * std::abs(own - bends[index(i - 1, j)]));
+      if (j > 0) with_v = std::max(with_v, q() * std::abs(own - bends[index(i, j - 1)]));
+    }
+  }
+  return with_u > with_v ? Direction::u : Direction::v;
 }
 
 /// Along a collapsed side weights may change. A point beside it is lower or higher than the side by
@@ -164,23 +298,43 @@ bool PieceSlopes::rise_obliquely() const {
          (b.uu != 0 && are_definite(-b.uv / b.uu, 1));
 }
 
+/// The second derivative's coefficients in a direction are positive.
+bool PieceSlopes::are_convex(const Way& way) const {
+  const auto [along_u, along_v, up] = way;
+  const double scale = std::abs(along_u) * p() + std::abs(along_v) * q();
+  const double least = 4 * scale * scale * noise_;  // each is a sum of so many coefficients
+  std::vector<std::array<double, 5>> slopes(std::size_t(piece_.net.shape.size()));
+  for (int i = 0; i <= p(); ++i) {
+    for (int j = 0; j <= q(); ++j) {
+      const auto slope = [&](const auto& of) { return slope_at(i, j, along_u, along_v, of); };
+      std::array<double, 5>& own = slopes[index(i, j)];
+      for (std::size_t c = 0; c < 4; ++c) {
+        own[c] = slope([&](std::size_t k) { return values_[k][c]; });
+      }
+      own[4] = element_.rational ? slope([&](std::size_t k) { return points_[k].w; }) : 0;
+    }
+  }
+  for (int i = 0; i <= p(); ++i) {
+    for (int j = 0; j <= q(); ++j) {
+      const auto bend = [&](std::size_t c) {
+        return slope_at(i, j, along_u, along_v, [&](std::size_t k) { return slopes[k][c]; });
+      };
+      const double w = element_.rational ? bend(4) : 0;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double y = bend(c);
+        if (!(y - seen_.low[c] * w > least) || !(y - seen_.top[c] * w > least)) return false;
+      }
+    }
+  }
+  return true;
+}
+
 /// The slope's coefficients in a direction, as those of the degree of the piece, have one sign.
 bool PieceSlopes::are_definite(double along_u, double along_v) const {
-  const auto row = std::size_t(q() + 1);
   Range range;
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
-      const std::size_t k = index(i, j);
-      const auto slope = [&](const auto& of) {
-        const double own = of(k);
-        double u = 0;
-        double v = 0;
-        if (i > 0) u += i * (own - of(k - row));
-        if (i < p()) u += (p() - i) * (of(k + row) - own);
-        if (j > 0) v += j * (own - of(k - 1));
-        if (j < q()) v += (q() - j) * (of(k + 1) - own);
-        return along_u * u + along_v * v;
-      };
+      const auto slope = [&](const auto& of) { return slope_at(i, j, along_u, along_v, of); };
       const double dw = element_.rational ? slope([&](std::size_t l) { return points_[l].w; }) : 0;
       for (std::size_t c = 0; c < 4; ++c) {
         const double dy = slope([&](std::size_t l) { return values_[l][c]; });

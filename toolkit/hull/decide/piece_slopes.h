@@ -26,6 +26,14 @@ class PieceSlopes {
   /// parameters, the same everywhere, so that no plane touches inside.
   bool surely_rise() const;
 
+  /// Certain: in each direction of the cell the heights bend up along a line of the parameters, the
+  /// same everywhere, so that no point inside is higher than all those beside it.
+  bool surely_bend_up() const;
+
+  /// The parameter along which the heights may bend up the most, if over the piece by more than
+  /// `least`, though not everywhere.
+  std::optional<Direction> bends_both_ways(double least) const;
+
   /// The parameter across which the piece is to be halved so that its slopes change over it by less
   /// than over the cell, times `share`; none if they do already.
   /// Scratch is working space.
@@ -50,7 +58,29 @@ class PieceSlopes {
   template <class Middle>
   Bend bend_at(int i, int j, const Middle& middle) const;
   Bend bend() const;
+  /// A direction in the parameters, and the second derivative in it in the middle.
+  struct Way {
+    double along_u = 0, along_v = 0;
+    double up = 0;
+  };
+  /// Of Bernstein coefficients.
+  struct Range {
+    double lower = infinity;
+    double upper = -infinity;
+    void include(double x);
+    bool has_zero(double noise) const { return lower <= noise && upper >= -noise; }
+  };
+
   bool is_at(Side side) const;
+  double longest_step(Direction direction) const;
+  Range second_differences(Direction direction, double least) const;
+  bool bend_up_along(Direction direction) const;
+  bool bend_up_obliquely() const;
+  std::optional<Way> steepest_bend() const;
+  bool are_convex(const Way& way) const;
+  Direction changes_most(const Way& way) const;
+  template <class Of>
+  double slope_at(int i, int j, double along_u, double along_v, const Of& of) const;
   bool rise_along(Direction direction) const;
   double pole_margin(Direction direction, bool lower, bool upper) const;
   bool rise_obliquely() const;
