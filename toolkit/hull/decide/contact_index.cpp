@@ -4,6 +4,7 @@
 
 #include "taut/bounds/vector_net.h"
 #include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/parameter_region.h"
 
 namespace taut {
 namespace {
@@ -73,8 +74,12 @@ bool ContactIndex::is_curved(const CellView& view, const Chart& chart) {
 /// The control points of a patch over a chart's rectangle, for side_rises().
 void ContactIndex::show(int index) {
   const Chart& chart = view_branches_->chart(index);
-  const MapElement& element = pieces_.element(chart.element);
-  pieces_.restricted(chart.element, chart.u, chart.v, net_);
+  show(chart.element, chart.u, chart.v);
+}
+
+void ContactIndex::show(int index, const Interval& u, const Interval& v) {
+  const MapElement& element = pieces_.element(index);
+  pieces_.restricted(index, u, v, net_);
   if (element.rational) even_weights(pieces_.piece(element.root).exact.shape, net_);
 }
 
@@ -85,9 +90,42 @@ bool ContactIndex::face_border_rises(const CellView& view, int index) {
   show(index);
   const int element = view_branches_->chart(index).element;
   const NetShape shape = pieces_.piece(pieces_.element(element).root).exact.shape;
+  const Chart& chart = view_branches_->chart(index);
+  const auto is_apart = [&](Side side) {
+    const std::array beside =
+        along_v(side) ? std::array{Side::v0, Side::v1} : std::array{Side::u0, Side::u1};
+    return !is_at(chart, side) && glued[std::size_t(beside[0])] < 0 &&
+           glued[std::size_t(beside[1])] < 0;
+  };
   return std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
-    return glued[std::size_t(side)] >= 0 || side_rises(view, shape, side);
+    return glued[std::size_t(side)] >= 0 || side_rises(view, shape, side) ||
+           (is_apart(side) && side_has_no_low(view, shape, side));
   });
+}
+
+/// No height along the side is lower than those on both sides of it: it is concave, or monotone.
+bool ContactIndex::side_has_no_low(const CellView& view, const NetShape& shape, Side side) const {
+  if (tilt_ > 0) return false;
+  const int degree = along_v(side) ? shape.q : shape.p;
+  const int fixed = at_upper_end(side) ? (along_v(side) ? shape.p : shape.q) : 0;
+  const auto at = [&](int along) -> const dvec4& {
+    const int i = along_v(side) ? fixed : along;
+    const int j = along_v(side) ? along : fixed;
+    return net_[std::size_t(i * (shape.q + 1) + j)];
+  };
+  Growth growth(view);
+  for (int k = 0; k <= degree; ++k) growth.include(at(k));
+  bool concave = degree > 1;
+  for (int k = 0; k + 2 <= degree && concave; ++k) {
+    concave = growth.along(2.0 * at(k + 1) - at(k) - at(k + 2));
+  }
+  bool grows = !concave;
+  bool falls = !concave;
+  for (int k = 0; k < degree; ++k) {
+    grows = grows && growth.along(at(k + 1) - at(k));
+    falls = falls && growth.along(at(k) - at(k + 1));
+  }
+  return concave || grows || falls;
 }
 
 /// Inwards, or also along the side so that the slope is much the same all over it.
@@ -343,6 +381,44 @@ bool ContactIndex::is_one_of_more(const CellView& view, const Branches& branches
     }
     if (beyond.empty()) return true;
     if (!more.extend(pieces_, beyond)) return false;
+  }
+  return false;
+}
+
+/// Beyond a side from which the heights do not grow inwards the region goes on, as far as it may.
+bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branches,
+                                    const Branch& branch) {
+  const Chart& chart = branches.chart(branch.charts.front());
+  if (branch.charts.size() > 1 || chart.kind != SourceKind::face || chart.pieces.size() < 3) {
+    return false;
+  }
+  const MapElement& element = pieces_.element(chart.element);
+  const NetShape shape = pieces_.piece(element.root).exact.shape;
+  std::vector<ParameterRegion::Cell> rectangles;
+  for (const int k : chart.pieces) {
+    const MapPiece& piece = pieces_.piece(view.seen()[std::size_t(k)].piece);
+    rectangles.push_back({piece.u, piece.v});
+    if (!regions_.are_definite(chart.element, piece.u, piece.v)) return false;
+  }
+  ParameterRegion region(rectangles);
+  tilt_ = 0;
+  for (int round = 0; round < extension_limit; ++round) {
+    if (!region.is_disc()) return false;
+    bool any = false;
+    std::vector<ParameterRegion::BorderSide> open;
+    for (const ParameterRegion::BorderSide& side : region.border()) {
+      const ParameterRegion::Cell cell = region.cell(side.i, side.j);
+      show(chart.element, cell.u, cell.v);
+      if (side_rises(view, shape, side.side)) continue;
+      if (!region.is_at_end(side) && side_has_no_low(view, shape, side.side)) {
+        open.push_back(side);
+        continue;
+      }
+      const std::optional<ParameterRegion::Cell> beyond = region.extend(side);
+      if (!beyond || !regions_.are_definite(chart.element, beyond->u, beyond->v)) return false;
+      any = true;
+    }
+    if (!any) return !region.any_meet_inwards(open);
   }
   return false;
 }

@@ -21,6 +21,11 @@ namespace taut {
 /// points. All near-maxima hang together with it: a piece of the surface above some height that
 /// does not hold it would have a maximum of its own.
 ///
+/// From parts of the border inside of patches, beyond which no plane touches, heights may fall: if
+/// along these they have no local minimum, the highest points of them, from which the heights
+/// grow outwards, count one each too (Morse theory for surfaces with borders: minima there would
+/// count minus one). So there is one contact or none.
+///
 /// Patches may be nearly flat too, or bend towards the directions a little: the heights less
 /// e times the square of the distance from a point, which is less than a quarter of the resolution
 /// over the branch, count in place of the heights.
@@ -38,6 +43,10 @@ class ContactIndex {
   /// the branch inwards: what of it planes do not touch does not matter.
   bool is_one_of_more(const CellView& view, const Branches& branches, const Branch& branch);
 
+  /// The same for a surface of one patch that is made of the branch's pieces, where their rectangle
+  /// holds much else.
+  bool is_one_of_pieces(const CellView& view, const Branches& branches, const Branch& branch);
+
  private:
   class Growth;
   /// The charts hang together to a surface of Euler characteristic one, with a border.
@@ -50,7 +59,9 @@ class ContactIndex {
   bool border_rises(const CellView& view, int chart);
   bool face_border_rises(const CellView& view, int chart);
   bool side_rises(const CellView& view, const NetShape& shape, Side side) const;
+  bool side_has_no_low(const CellView& view, const NetShape& shape, Side side) const;
   void show(int chart);
+  void show(int element, const Interval& u, const Interval& v);
   bool edge_border_rises(const CellView& view, int chart);
   bool vertex_border_rises(const CellView& view, int chart);
   bool is_beside(int chart, int element) const;

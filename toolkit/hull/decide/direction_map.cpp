@@ -237,12 +237,15 @@ class Decider {
       kind = decided(false);
     }
     if (!kind) kind = decided_last();
+    std::vector<int> left = pieces_left();
     if (!kind) kind = decided_sharply(cell.level);
     if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border(support.contact);
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
     add_branch_points(beacons);
-    split(cell, pieces_left(), beacons, support.contact);
+    // Of pieces that were split in vain there would be ever more.
+    std::vector<int> sharp = pieces_left();
+    split(cell, std::move(sharp.size() <= left.size() ? sharp : left), beacons, support.contact);
   }
 
   /// Points that are nowhere the highest in a cell are so nowhere in its quarters.
@@ -366,7 +369,8 @@ class Decider {
     for (const Branch& branch : all) {
       if (!differences_.is_round(branch) && !index_.is_one(view_, branches_, branch) &&
           !concavity_.is_one(view_, branches_, branch) &&
-          !(extends && index_.is_one_of_more(view_, branches_, branch))) {
+          !(extends && index_.is_one_of_more(view_, branches_, branch)) &&
+          !(extends && index_.is_one_of_pieces(view_, branches_, branch))) {
         return std::nullopt;
       }
     }

@@ -8,42 +8,6 @@
 namespace taut {
 namespace {
 
-/// A net of degree n in a parameter, stored as one of the shape, becomes one of degree n + 1.
-void elevate_u(std::vector<dvec4>& net, int n, NetShape shape) {
-  const int row = shape.q + 1;
-  for (int j = 0; j < row; ++j) {
-    for (int i = n + 1; i >= 0; --i) {
-      const double t = double(i) / (n + 1);
-      const dvec4 lower = i > 0 ? net[std::size_t((i - 1) * row + j)] : dvec4(0.0);
-      const dvec4 upper = i <= n ? net[std::size_t(i * row + j)] : dvec4(0.0);
-      net[std::size_t(i * row + j)] = t * lower + (1 - t) * upper;
-    }
-  }
-}
-
-void elevate_v(std::vector<dvec4>& net, int n, NetShape shape) {
-  const int row = shape.q + 1;
-  for (int i = 0; i <= shape.p; ++i) {
-    dvec4* line = net.data() + i * row;
-    for (int j = n + 1; j >= 0; --j) {
-      const double t = double(j) / (n + 1);
-      const dvec4 lower = j > 0 ? line[j - 1] : dvec4(0.0);
-      const dvec4 upper = j <= n ? line[j] : dvec4(0.0);
-      line[j] = t * lower + (1 - t) * upper;
-    }
-  }
-}
-
-/// The largest of a s^2 + 2 b s t + c t^2 over -1 <= s, t <= 1.
-double largest(double a, double b, double c) {
-  if (a <= 0 && c <= 0 && b * b <= a * c) return 0;
-  const auto at_one = [](double x, double y, double z) {  // s = 1
-    const double t = z < 0 ? std::clamp(-y / z, 0.0, 1.0) : 1;
-    return std::max(x, x + 2 * y * t + z * t * t);
-  };
-  return std::max(at_one(a, std::abs(b), c), at_one(c, std::abs(b), a));
-}
-
 bool turns_right(const dvec2& a, const dvec2& b, const dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) < (b.y - a.y) * (c.x - a.x);
 }
@@ -58,12 +22,14 @@ dvec3 inwards(const ContactJet& j, Side side) {
 /// Along any chord of the rectangle second derivatives are at most 8 rho over its length's square:
 /// then the middle of two near-maxima falls short of them by rho at most. Where several charts make
 /// a branch, slopes may grow from one to the next, and chords of the size of the branch count.
-bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, double size) {
+bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, double size,
+                                      const std::vector<dvec2>& region) {
   if (chart.kind == SourceKind::vertex) return true;
   const MapElement& element = pieces_.element(chart.element);
   pieces_.restricted(chart.element, chart.u, chart.v, net_);
   const NetShape shape = pieces_.piece(element.root).exact.shape;
-  if (element.rational) even_weights(shape, net_);
+  // What changes weights changes regions.
+  if (element.rational && region.empty()) even_weights(shape, net_);
   double least = infinity;
   Corners low, top;
   low.fill(infinity);
@@ -90,44 +56,23 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, 
   }
   const double m = size > 0 && shape.p > 0 ? chord(along_u) : 1;
   const double n = size > 0 && shape.q > 0 ? chord(along_v) : 1;
-  const double p = shape.p;
-  const double q = shape.q;
-  uu_.assign(net_.size(), dvec4(0.0));
-  uv_.assign(net_.size(), dvec4(0.0));
-  vv_.assign(net_.size(), dvec4(0.0));
-  for (int i = 0; i <= shape.p; ++i) {
-    for (int j = 0; j <= shape.q; ++j) {
-      const auto k = std::size_t(i * row + j);
-      if (i + 2 <= shape.p) uu_[k] = p * (p - 1) * (at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j));
-      if (j + 2 <= shape.q) vv_[k] = q * (q - 1) * (at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2));
-      if (i < shape.p && j < shape.q) {
-        uv_[k] = p * q * (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j));
-      }
-    }
-  }
-  for (int k = std::max(0, shape.p - 2); shape.p >= 2 && k < shape.p; ++k) elevate_u(uu_, k, shape);
-  for (int k = std::max(0, shape.q - 2); shape.q >= 2 && k < shape.q; ++k) elevate_v(vv_, k, shape);
-  if (shape.p > 0 && shape.q > 0) {
-    elevate_u(uv_, shape.p - 1, shape);
-    elevate_v(uv_, shape.q - 1, shape);
-  }
+  bends_.find(shape, net_);
   const double limit = 8 * rho_ * least;
-  for (std::size_t k = 0; k < net_.size(); ++k) {
+  const auto most = [&](std::size_t k) {
+    double result = 0;
     for (std::size_t c = 0; c < 4; ++c) {
-      const dvec3& d = view.corners()[c];
-      const double a = glm::dot(dvec3(uu_[k]), d);
-      const double b = glm::dot(dvec3(uv_[k]), d);
-      const double e = glm::dot(dvec3(vv_[k]), d);
+      const dvec4 d(view.corners()[c], 0);
       for (const double h : {low[c], top[c]}) {
-        const double uu = m * m * (a - h * uu_[k].w);
-        const double uv = m * n * (b - h * uv_[k].w);
-        const double vv = n * n * (e - h * vv_[k].w);
-        if (!(largest(uu, uv, vv) <= limit)) return false;
+        const auto over = [&](const dvec4& x) { return glm::dot(x, d) - h * x.w; };
+        result = std::max(result,
+                          largest_bend(m * m * over(bends_.uu()[k]), m * n * over(bends_.uv()[k]),
+                                       n * n * over(bends_.vv()[k])));
         if (!element.rational) break;
       }
     }
-  }
-  return true;
+    return result;
+  };
+  return bends_.are_below(most, limit, region);
 }
 
 /// The highest point of what they share is inside, where the gradient across is that of both sides,
@@ -233,9 +178,61 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
     if (sets.find(k) != sets.find(first)) return false;
   }
   const bool all = std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
-    return held[std::size_t(k)] || is_nearly_concave(view, branches.chart(k), count > 1 ? size : 0);
+    return held[std::size_t(k)] ||
+           is_nearly_concave(view, branches.chart(k), count > 1 ? size : 0, {});
   });
-  return all || chain_is_nearly_concave(view, branches, branch, held);
+  if (all || chain_is_nearly_concave(view, branches, branch, held)) return true;
+  if (count > 1 || branches.chart(first).kind != SourceKind::face) return false;
+  return is_nearly_concave(view, branches.chart(first), 0, region(view, branches, branch, first));
+}
+
+/// The convex hull in the parameters of a chart of its pieces and what else lies in it, where its
+/// rectangle is from 0 to 1.
+std::vector<dvec2> NearConcavity::region(const CellView& view, const Branches& branches,
+                                         const Branch& branch, int index) {
+  const Chart& chart = branches.chart(index);
+  std::vector<dvec2> points;
+  const auto add = [&](double u, double v) {
+    points.emplace_back((u - chart.u.lower) / (chart.u.upper - chart.u.lower),
+                        (v - chart.v.lower) / (chart.v.upper - chart.v.lower));
+  };
+  for (const int k : chart.pieces) {
+    const MapPiece& piece = view.pieces().piece(view.seen()[std::size_t(k)].piece);
+    for (const double u : {piece.u.lower, piece.u.upper}) {
+      for (const double v : {piece.v.lower, piece.v.upper}) add(u, v);
+    }
+  }
+  for (const int g : branch.glues) {
+    const Glue& glue = branches.glue(g);
+    if (glue.a != index || glue.kind == Glue::Kind::faces) continue;
+    if (glue.kind == Glue::Kind::face_vertex && glue.at_a >= 4) {  // a corner
+      const int corner = glue.at_a - 4;
+      add(corner < 2 ? 0 : 1, corner % 2);
+      continue;
+    }
+    const Interval& own = glue.kind == Glue::Kind::face_edge ? branches.chart(glue.b).u
+                                                             : along(chart, Side(glue.at_a));
+    for (const double t : {own.lower, own.upper}) {
+      const dvec2 uv = on_side(Side(glue.at_a), glue.reversed ? 1 - t : t);
+      add(uv.x, uv.y);
+    }
+  }
+  std::sort(points.begin(), points.end(),
+            [](const dvec2& a, const dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  std::vector<dvec2> hull;
+  for (const bool above : {false, true}) {
+    const std::size_t first = hull.size();
+    for (const dvec2& p : points) {
+      while (hull.size() > first + 1 && !turns_right(p, hull.back(), hull[hull.size() - 2])) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    if (!above) std::reverse(points.begin(), points.end());
+  }
+  return hull;
 }
 
 /// The intervals of a chart's pieces, and what is between them.
@@ -281,48 +278,58 @@ bool NearConcavity::chain_is_nearly_concave(const CellView& view, const Branches
   if (first == left.end()) return false;  // a ring
   std::array<int, 2> next = {*first, beyond(*first, 0) ? 1 : 0};
   polygon_.clear();
+  std::vector<dvec3> known;  // points of the edges
   double t = 0;
   double scale = 1;
-  dvec3 last_step(0.0);
+  dvec3 step(0.0);  // the last one, over the parameter
   for (std::size_t count = 0; count < left.size(); ++count) {
     const auto [index, entry] = next;
     const Chart& chart = branches.chart(index);
-    const MapElement& element = pieces_.element(chart.element);
-    if (element.rational && left.size() > 1) return false;
     std::vector<Interval> all = stretches(view, chart);
     if (entry == 1) std::reverse(all.begin(), all.end());
-    for (std::size_t s = 0; s < all.size(); ++s) {
-      pieces_.restricted(chart.element, all[s], {0, 1}, net_);
+    for (const Interval& own : all) {
+      pieces_.restricted(chart.element, own, {0, 1}, net_);
       if (entry == 1) std::reverse(net_.begin(), net_.end());
-      const double length = all[s].upper - all[s].lower;
+      const double length = own.upper - own.lower;
       const double degree = double(net_.size() - 1);
-      if (s == 0 && count > 0) {
-        const double own = glm::length(euclidean(net_[1]) - euclidean(net_[0])) * degree / length;
-        if (!(own > 0 && last_step != dvec3(0.0))) return false;
-        scale = own / glm::length(last_step);
+      const auto step_at = [&](std::size_t from, std::size_t to) {
+        const double weights = net_[to].w / net_[from].w;
+        return degree / length * weights * (euclidean(net_[to]) - euclidean(net_[from]));
+      };
+      if (count > 0 && &own == &all.front()) {
+        // It goes on at the same speed, and with the same weight.
+        const double speed = glm::length(step_at(0, 1));
+        if (!(speed > 0) || step == dvec3(0.0)) return false;
+        scale = speed / glm::length(step);
       }
+      const double weight = polygon_.empty() ? 1 : polygon_.back().second.w / net_.front().w;
       for (std::size_t k = 0; k < net_.size(); ++k) {
-        polygon_.push_back({t + scale * length * double(k) / degree,
-                            dvec4(dvec3(net_[k]) - net_[k].w * view.q(), net_[k].w)});
+        const dvec4 p = weight * net_[k];
+        polygon_.emplace_back(t + scale * length * double(k) / degree,
+                              dvec4(dvec3(p) - p.w * view.q(), p.w));
       }
+      known.push_back(euclidean(net_.front()));
+      known.push_back(euclidean(net_.back()));
       t += scale * length;
-      last_step = degree / (scale * length) *
-                  (euclidean(net_[net_.size() - 1]) - euclidean(net_[net_.size() - 2]));
+      step = -step_at(net_.size() - 1, net_.size() - 2) / scale;
     }
     if (count + 1 == left.size()) break;
     const auto follows = beyond(index, 1 - entry);
     if (!follows) return false;
     next = *follows;
   }
+  const dvec3 middle =
+      0.25 * (view.corners()[0] + view.corners()[1] + view.corners()[2] + view.corners()[3]);
+  const dvec3 high = *std::max_element(
+      known.begin(), known.end(),
+      [&](const dvec3& x, const dvec3& y) { return glm::dot(x, middle) < glm::dot(y, middle); });
   double least = infinity;
   for (const auto& [at, p] : polygon_) least = std::min(least, p.w);
   for (const dvec3& d : view.corners()) {
-    double low = infinity;
-    double top = -infinity;
-    for (const auto& [at, p] : polygon_) {
-      low = std::min(low, glm::dot(dvec3(p), d) / p.w);
-      top = std::max(top, glm::dot(dvec3(p), d) / p.w);
-    }
+    // Of the planes that touch.
+    const double low = glm::dot(high - view.q(), d);
+    double top = low;
+    for (const auto& [at, p] : polygon_) top = std::max(top, glm::dot(dvec3(p), d) / p.w);
     for (const double h : {low, top}) {
       hull_.clear();
       for (const auto& [at, p] : polygon_) {

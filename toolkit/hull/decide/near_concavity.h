@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/height_bends.h"
 
 namespace taut {
 
@@ -17,7 +18,10 @@ class NearConcavity {
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
 
  private:
-  bool is_nearly_concave(const CellView& view, const Chart& chart, double size);
+  bool is_nearly_concave(const CellView& view, const Chart& chart, double size,
+                         const std::vector<dvec2>& region);
+  static std::vector<dvec2> region(const CellView& view, const Branches& branches,
+                                   const Branch& branch, int chart);
   static std::vector<Interval> stretches(const CellView& view, const Chart& chart);
   bool chain_is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch,
                                const std::vector<bool>& held);
@@ -30,7 +34,8 @@ class NearConcavity {
 
   const MapPieces& pieces_;
   double rho_;
-  std::vector<dvec4> net_, uu_, uv_, vv_;          // scratch
+  std::vector<dvec4> net_;                         // scratch
+  NetBends bends_;                                 // scratch
   std::vector<std::pair<double, dvec4>> polygon_;  // scratch
   std::vector<dvec2> hull_;                        // scratch
 };
