@@ -99,12 +99,7 @@ class Decider {
     for (const MapElement& e : pieces_.elements()) {
       if (!e.likeness.covered) all.push_back(e.root);
     }
-    const auto whole = std::make_shared<const std::vector<int>>(std::move(all));
-    for (int face = 0; face < 6; ++face) {
-      MapCell root;
-      root.face = face;
-      waiting_.push_back({std::move(root), whole, {}, {}});
-    }
+    if (!is_needle()) split_cube(std::move(all));
     do {
       decide_waiting();
     } while (!is_spent() && split_nodes_beside_others());
@@ -116,6 +111,45 @@ class Decider {
   }
 
  private:
+  void split_cube(std::vector<int> pieces) {
+    const auto whole = std::make_shared<const std::vector<int>>(std::move(pieces));
+    for (int face = 0; face < 6; ++face) {
+      MapCell root;
+      root.face = face;
+      waiting_.push_back({std::move(root), whole, {}, {}});
+    }
+  }
+
+  /// The model is within half of the resolution of a straight segment: to within it, the ends are
+  /// all that touches, and they exchange where the segment is in the plane. What is left of slopes
+  /// and curvatures across it tells nothing.
+  bool is_needle() {
+    points_ = pieces_.control_points();
+    if (points_.empty()) return false;
+    const dvec3 first = points_.front();
+    const dvec3 a = farthest([&](const dvec3& x) { return glm::distance(x, first); });
+    const dvec3 b = farthest([&](const dvec3& x) { return glm::distance(x, a); });
+    const dvec3 along = unit(b - a);
+    std::array<Box, 2> halves;
+    for (const dvec3& x : points_) {
+      if (!(glm::length(glm::cross(x - a, along)) <= 0.5 * options_.resolution)) return false;
+      halves[glm::distance(x, a) < glm::distance(x, b) ? 0 : 1].include(x);
+    }
+    for (int face = 0; face < 6; ++face) {
+      MapCell cell;
+      cell.face = face;
+      cell.kind = MapCellKind::arc;
+      cell.contacts.assign(halves.begin(), halves.end());
+      cell.apart = 2;
+      const std::array<dvec3, 4> d = DirectionMap::corners(cell);
+      cell.contact = query_(unit(d[0] + d[3])).contact;
+      ++map_.statistics.cells;
+      ++map_.statistics.of_kind[std::size_t(cell.kind)];
+      map_.cells.push_back(std::move(cell));
+    }
+    return true;
+  }
+
   /// Heights are differences of two support values, and of sums of some coefficients.
   static constexpr double noise_units = 4;
 
@@ -239,6 +273,7 @@ class Decider {
     if (!kind) kind = decided_last();
     std::vector<int> left = pieces_left();
     if (!kind) kind = decided_sharply(cell.level);
+    if (is_open_row() && !is_spot() && is_facet()) kind = MapCellKind::facet;
     if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border(support.contact);
     if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
     if (kind) return finish(cell, *kind, beacons);
@@ -482,20 +517,26 @@ class Decider {
 
   double width() const { return glm::distance(view_.corners()[0], view_.corners()[3]); }
 
-  /// All that is left is within the resolution of one plane, with a normal in the cell.
-  bool is_facet() {
+  void collect_points() {
     points_.clear();
     for (const SeenPiece& s : view_.seen()) {
       const StoredNet& net = pieces_.piece(s.piece).net;
       const dvec4* p = pieces_.points(net);
       for (int k = 0; k < net.shape.size(); ++k) points_.push_back(euclidean(p[k]));
     }
+  }
+
+  template <class Measure>
+  dvec3 farthest(const Measure& measure) const {
+    return *std::max_element(points_.begin(), points_.end(), [&](const dvec3& a, const dvec3& b) {
+      return measure(a) < measure(b);
+    });
+  }
+
+  /// All that is left is within the resolution of one plane, with a normal in the cell.
+  bool is_facet() {
+    collect_points();
     const dvec3 o = view_.q();
-    const auto farthest = [&](const auto& measure) {
-      return *std::max_element(points_.begin(), points_.end(), [&](const dvec3& a, const dvec3& b) {
-        return measure(a) < measure(b);
-      });
-    };
     const dvec3 along = unit(farthest([&](const dvec3& x) { return glm::distance(x, o); }) - o);
     const dvec3 beside =
         farthest([&](const dvec3& x) { return glm::length(glm::cross(x - o, along)); }) - o;

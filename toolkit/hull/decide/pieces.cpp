@@ -238,6 +238,24 @@ std::vector<dvec4> MapPieces::placed_patch(const Contact& c, NetShape& shape) co
   return placed(c, points);
 }
 
+std::vector<dvec3> MapPieces::control_points() const {
+  const SceneContent& content = geometry_.scene().content();
+  std::vector<dvec3> result;
+  for (const int i : content.distinct_instances) {
+    for (const SceneElement& e : content.part_of(i).elements) {
+      std::vector<dvec4> net;
+      for (std::size_t k = 0; k < e.net.x.size(); ++k) {
+        net.emplace_back(e.net.x[k], e.net.y[k], e.net.z[k], e.net.w[k]);
+      }
+      for (const dvec4& p : placed({i, e.kind, e.index, 0, 0}, net)) result.push_back(euclidean(p));
+    }
+  }
+  for (const MapElement& e : elements_) {
+    if (e.contact.kind == SourceKind::vertex) result.push_back(geometry_.point(e.contact));
+  }
+  return result;
+}
+
 void MapPieces::add_face(const Contact& c) {
   NetShape shape;
   const std::vector<dvec4> points = placed_patch(c, shape);

@@ -111,6 +111,9 @@ class MapPieces {
   /// The same of a corner of a piece, at the lower or upper ends of u and v.
   double covered_above(const MapPiece& piece, bool upper_u, bool upper_v) const;
 
+  /// Of all there is, also of what has no contacts of its own.
+  std::vector<dvec3> control_points() const;
+
   const MapPiece& piece(int index) const { return pieces_[std::size_t(index)]; }
   const MapElement& element_of(const MapPiece& piece) const { return element(piece.element); }
   const dvec4* points(const StoredNet& net) const { return points_.data() + net.first; }
