@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cages.h"
@@ -307,6 +309,55 @@ TEST(DirectionMap, DentsStayApart) {
   }
 }
 
+/// The control values of degree four that take values at 0, 1/4, 1/2, 3/4 and 1.
+std::array<double, 5> interpolated(const std::array<double, 5>& y) {
+  return {y[0], (-13 * y[0] + 48 * y[1] - 36 * y[2] + 16 * y[3] - 3 * y[4]) / 12,
+          (13 * y[0] - 64 * y[1] + 120 * y[2] - 64 * y[3] + 13 * y[4]) / 18,
+          (-3 * y[0] + 16 * y[1] - 36 * y[2] + 48 * y[3] - 13 * y[4]) / 12, y[4]};
+}
+
+/// The same dent, turned against the parameters.
+Shape dented_obliquely(double depth, double angle) {
+  std::array<std::array<double, 5>, 5> heights;  // by x, then y
+  for (int i = 0; i <= 4; ++i) {
+    for (int j = 0; j <= 4; ++j) {
+      const double x = 0.5 * i - 1;
+      const double y = 0.5 * j - 1;
+      const double s = std::cos(angle) * x + std::sin(angle) * y;
+      const double t = std::cos(angle) * y - std::sin(angle) * x;
+      heights[std::size_t(i)][std::size_t(j)] =
+          -16 * depth * (s * s - 0.25) * (s * s - 0.25) - t * t;
+    }
+  }
+  for (auto& row : heights) row = interpolated(row);
+  std::vector<std::vector<dvec3>> rows(5);
+  for (std::size_t j = 0; j < 5; ++j) {
+    std::array<double, 5> column;
+    for (std::size_t i = 0; i < 5; ++i) column[i] = heights[i][j];
+    column = interpolated(column);
+    for (std::size_t i = 0; i < 5; ++i) {
+      rows[i].emplace_back(0.5 * double(i) - 1, 0.5 * double(j) - 1, column[i]);
+    }
+  }
+  return {{spline(rows, 4, 4)}, {}, {}};
+}
+
+TEST(DirectionMap, ObliqueDentsStayApart) {
+  constexpr double rho = 1e-5;
+  for (const double angle : {0.3, 0.7}) {
+    for (const double depth : {4 * rho, 64 * rho, 1000 * rho}) {
+      SCOPED_TRACE(depth);
+      const dmat3 rotation = skew_rotation();
+      const Scene scene = make_scene(mapped(dented_obliquely(depth, angle), rotation));
+      const DirectionMap map = map_at(scene, rho);
+      EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+      const MapCell& cell = cell_at(map, rotation * dvec3(0, 0, 1));
+      EXPECT_TRUE(cell.kind == MapCellKind::arc || depth < 100 * rho);
+      EXPECT_NE(cell.kind, MapCellKind::region);
+    }
+  }
+}
+
 /// A curve or sheet in Bezier form whose numbers of control points are its degrees plus one.
 NurbsCurve one_piece(const std::vector<dvec3>& points) {
   return spline(points, int(points.size()) - 1);
@@ -494,6 +545,66 @@ TEST(DirectionMap, DomesOnStraightSidesAreDecided) {
     EXPECT_EQ(count(mapped.map, MapCellKind::undecided), 0);
     // Where the sheet's region is a narrow tip between two corners' cells need not be as narrow.
     EXPECT_LE(mapped.map.statistics.cells, 4000);
+  }
+}
+
+DirectionMap map_of_family(const std::string& name, Variant variant) {
+  for (const FamilyGroup& group : family_groups()) {
+    for (const Family& family : group.families) {
+      if (group.name + "/" + family.name != name) continue;
+      taut_test::Random random(1);
+      return Mapped(placed(family.make(random), variant, random).shape).map;
+    }
+  }
+  throw std::invalid_argument("no family " + name);
+}
+
+/// Edges and patches that bend both ways: what bends up holds no contacts, what is left is one
+/// contact to within the resolution.
+TEST(DirectionMap, WhatBendsBothWaysIsDecided) {
+  for (const auto& [name, cells] : {std::pair{"swept/thread", 1500},
+                                    {"curves_and_points/wires", 1000},
+                                    {"sheets/terrain", 3000},
+                                    {"sheets/ship", 2500}}) {
+    for (const Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
+      SCOPED_TRACE(std::string(name) + " " + name_of(variant));
+      const DirectionMap map = map_of_family(name, variant);
+      EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+      EXPECT_LE(map.statistics.cells, cells);
+    }
+  }
+}
+
+/// Two edges of a box and two rims of a cylinder beside it in one plane.
+TEST(DirectionMap, RowsInAPlaneAreFacets) {
+  for (const Variant variant : all_variants) {
+    SCOPED_TRACE(name_of(variant));
+    const DirectionMap map = map_of_family("assemblies/box_on_cylinder", variant);
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    EXPECT_EQ(count(map, MapCellKind::facet), 10);
+  }
+}
+
+/// Thinner than the resolution, a model is its two ends.
+TEST(DirectionMap, NeedlesHaveTwoContacts) {
+  taut_test::Random random(5);
+  for (int k = 0; k < 10; ++k) {
+    Shape shape = torus(2, 0.5);
+    const dmat3 thin(dvec3(1, 0, 0), dvec3(0, 1e-10, 0), dvec3(0, 0, 1e-10));
+    const dmat3 rotation = k == 0 ? dmat3(1.0) : random_rotation(random);
+    const Mapped mapped(taut_test::mapped(shape, rotation * thin));
+    EXPECT_EQ(mapped.map.cells.size(), 6u);
+    EXPECT_EQ(count(mapped.map, MapCellKind::arc), 6);
+    const DirectionMap& map = mapped.map;
+    for (int i = 0; i < 20; ++i) {
+      const dvec3 n = random_direction(random);
+      const dvec3 end = mapped.scene.frame().to_frame(
+          rotation * dvec3(glm::dot(rotation * dvec3(1, 0, 0), n) > 0 ? 2.5 : -2.5, 0, 0));
+      const MapCell& cell = cell_at(map, n);
+      const taut::Box& box = cell.contacts[cell.contact_of(n, end)];
+      const dvec3 off = glm::max(glm::max(box.lower - end, end - box.upper), dvec3(0.0));
+      EXPECT_LE(glm::length(off), mapped.rho());
+    }
   }
 }
 
