@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "taut/hull/mesh/contact_faces.h"
 #include "taut/hull/trace/map_crossings.h"
@@ -20,6 +21,8 @@ constexpr int chord_steps = 4;
 constexpr int parting_halvings = 30;
 /// Share of contacts' extent within which two directions are one for a first look.
 constexpr double rough_share = 0.25;
+/// Places looked at between two contacts on one patch or edge, whether they are one.
+constexpr int dent_steps = 16;
 /// Spots told, at most.
 constexpr std::size_t spot_limit = 16;
 
@@ -149,7 +152,7 @@ class Comparison {
         ends = exchange(ends[0], ends[1], turn);
         const auto& [a, b] = ends;
         is_known = glm::distance(a.x, b.x) <= map_.contact_extent() || is_on_arc(a.n, a.x, b.x) ||
-                   is_in_facet(a.n, a.x, b.x);
+                   is_in_facet(a.n, a.x, b.x) || are_one(a, b);
         if (is_known) break;
       }
       if (is_known) continue;
@@ -157,6 +160,54 @@ class Comparison {
         tell(end, "a separating curve that the map of directions tells was not found");
       }
     }
+  }
+
+  /// Between two contacts on one patch or edge the dent is so shallow that they may be one.
+  bool are_one(const SupportSample& a, const SupportSample& b) const {
+    const Contact from = geometry_.canonical(a.contact);
+    const Contact to = geometry_.canonical(b.contact);
+    const std::optional<Contact> on_own =
+        from.kind <= to.kind ? beside(to, from) : beside(from, to);
+    if (!on_own) return false;
+    const Contact& other = from.kind <= to.kind ? from : to;
+    const double h = std::max(glm::dot(a.x, a.n), glm::dot(b.x, a.n));
+    for (int step = 1; step < dent_steps; ++step) {
+      const double t = double(step) / dent_steps;
+      Contact c = other;
+      c.u = glm::mix(other.u, on_own->u, t);
+      c.v = glm::mix(other.v, on_own->v, t);
+      if (glm::dot(geometry_.point(c), a.n) < h - near * map_.resolution) return false;
+    }
+    return true;
+  }
+
+  /// A contact as one of a patch or edge that it lies on or ends.
+  std::optional<Contact> beside(const Contact& c, const Contact& element) const {
+    if (c.instance != element.instance) return std::nullopt;
+    if (c.kind == element.kind) {
+      return c.element == element.element ? std::optional(c) : std::nullopt;
+    }
+    if (element.kind != SourceKind::face) return std::nullopt;
+    Contact result = element;
+    const Patch& patch = geometry_.patch(element);
+    if (c.kind == SourceKind::edge) {
+      for (const Side side : all_sides) {
+        const Border& border = patch.borders[std::size_t(side)];
+        if (border.piece != c.element) continue;
+        const dvec2 uv = on_side(side, border.piece_reversed ? 1 - c.u : c.u);
+        result.u = uv.x;
+        result.v = uv.y;
+        return result;
+      }
+      return std::nullopt;
+    }
+    for (int corner = 0; corner < 4; ++corner) {
+      if (patch.corner_vertex[std::size_t(corner)] != c.element) continue;
+      result.u = corner / 2;
+      result.v = corner % 2;
+      return result;
+    }
+    return std::nullopt;
   }
 
   /// A scroll runs over the directions and both of the places, be they inside of a ruling: contacts

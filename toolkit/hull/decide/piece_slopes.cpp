@@ -199,13 +199,12 @@ bool PieceSlopes::bend_up_obliquely() const {
     if (!is_at(side)) continue;
     if (element_.collapsed[std::size_t(side)] || element_.kink[std::size_t(side)] > 0) return false;
   }
-  const std::optional<Way> way = steepest_bend();
+  const std::optional<Way> way = steepest_bend(bend());
   return way && are_convex(*way);
 }
 
 /// In the middle, if the heights bend up there at all: as far as a parameter goes.
-std::optional<PieceSlopes::Way> PieceSlopes::steepest_bend() const {
-  const Bend b = bend();
+std::optional<PieceSlopes::Way> PieceSlopes::steepest_bend(const Bend& b) const {
   const bool more_of_u = b.uu - b.vv > 0;
   // Of a slope that does not change across it: the bend is det / vv or det / uu.
   const double own = more_of_u ? b.vv : b.uu;
@@ -229,8 +228,17 @@ std::optional<Direction> PieceSlopes::bends_both_ways(double least) const {
     result = direction;
   }
   if (p() == 0 || q() == 0) return result;
-  const std::optional<Way> way = steepest_bend();
-  return way && way->up > least ? changes_most(*way) : result;
+  std::optional<Way> most;
+  for (const int i : {0, p() - 1}) {
+    for (const int j : {0, q() - 1}) {
+      const std::optional<Way> way =
+          steepest_bend(bend_at(i, j, [&](std::size_t k) { return middle(k); }));
+      if (!way || !(way->up > least)) continue;
+      least = way->up;
+      most = way;
+    }
+  }
+  return most ? changes_most(*most) : result;
 }
 
 /// The parameter with which the second derivative in a direction changes most.

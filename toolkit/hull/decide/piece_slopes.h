@@ -76,7 +76,7 @@ class PieceSlopes {
   Range second_differences(Direction direction, double least) const;
   bool bend_up_along(Direction direction) const;
   bool bend_up_obliquely() const;
-  std::optional<Way> steepest_bend() const;
+  std::optional<Way> steepest_bend(const Bend& bend) const;
   bool are_convex(const Way& way) const;
   Direction changes_most(const Way& way) const;
   template <class Of>
