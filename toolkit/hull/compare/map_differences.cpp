@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/mesh/contact_faces.h"
 #include "taut/hull/trace/map_crossings.h"
 #include "taut/hull/trace/map_support.h"
@@ -162,7 +163,8 @@ class Comparison {
     }
   }
 
-  /// Between two contacts on one patch or edge the dent is so shallow that they may be one.
+  /// Between two contacts on one patch or edge the dent is no deeper than what must be taken for
+  /// none. (Of a deep dent some pairs of contacts have only a shallow part between them.)
   bool are_one(const SupportSample& a, const SupportSample& b) const {
     const Contact from = geometry_.canonical(a.contact);
     const Contact to = geometry_.canonical(b.contact);
@@ -176,7 +178,7 @@ class Comparison {
       Contact c = other;
       c.u = glm::mix(other.u, on_own->u, t);
       c.v = glm::mix(other.v, on_own->v, t);
-      if (glm::dot(geometry_.point(c), a.n) < h - near * map_.resolution) return false;
+      if (glm::dot(geometry_.point(c), a.n) < h - tie_share * map_.resolution) return false;
     }
     return true;
   }
