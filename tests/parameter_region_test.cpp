@@ -58,7 +58,7 @@ TEST(ParameterRegion, GrowsAcrossItsBorder) {
   }
 }
 
-/// At the inner corner of an L two sides meet from which what is inside is seen twice.
+/// At the inner corner of an L heights may fall to both sides of what is beyond it.
 TEST(ParameterRegion, InnerCorners) {
   const ParameterRegion region = region_of({{1, 1}, {2, 1}, {2, 2}});
   std::vector<ParameterRegion::BorderSide> inner, outer;
@@ -69,9 +69,9 @@ TEST(ParameterRegion, InnerCorners) {
     (lower || upper ? inner : outer).push_back(side);
   }
   ASSERT_EQ(inner.size(), 2u);
-  EXPECT_TRUE(region.any_meet_inwards(inner));
-  EXPECT_FALSE(region.any_meet_inwards({inner.front()}));
-  EXPECT_FALSE(region.any_meet_inwards(outer));
+  EXPECT_TRUE(region.any_end_inwards(inner));
+  EXPECT_TRUE(region.any_end_inwards({inner.front()}));
+  EXPECT_FALSE(region.any_end_inwards(outer));
 }
 
 }  // namespace

@@ -205,7 +205,7 @@ class Comparison {
     }
     for (int corner = 0; corner < 4; ++corner) {
       if (patch.corner_vertex[std::size_t(corner)] != c.element) continue;
-      result.u = corner / 2;
+      result.u = corner < 2 ? 0 : 1;
       result.v = corner % 2;
       return result;
     }

@@ -129,7 +129,8 @@ bool ContactIndex::side_has_no_low(const CellView& view, const NetShape& shape, 
 }
 
 /// Inwards, or also along the side so that the slope is much the same all over it.
-bool ContactIndex::side_rises(const CellView& view, const NetShape& shape, Side side) const {
+bool ContactIndex::side_rises(const CellView& view, const NetShape& shape, Side side,
+                              bool obliquely) const {
   const int degree = along_v(side) ? shape.q : shape.p;
   const int across = along_v(side) ? shape.p : shape.q;
   const auto at = [&](int along, int depth) -> const dvec4& {
@@ -150,7 +151,7 @@ bool ContactIndex::side_rises(const CellView& view, const NetShape& shape, Side 
     return true;
   };
   if (rises(0)) return true;
-  if (degree < 2) return false;
+  if (degree < 2 || !obliquely) return false;
   const auto middle = [&](const dvec4& p) {
     const Corners y = heights_in(view, p);
     return y[0] + y[1] + y[2] + y[3];
@@ -405,20 +406,22 @@ bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branch
   for (int round = 0; round < extension_limit; ++round) {
     if (!region.is_disc()) return false;
     bool any = false;
-    std::vector<ParameterRegion::BorderSide> open;
+    // Where heights grow inwards obliquely, or not at all.
+    std::vector<ParameterRegion::BorderSide> others;
     for (const ParameterRegion::BorderSide& side : region.border()) {
       const ParameterRegion::Cell cell = region.cell(side.i, side.j);
       show(chart.element, cell.u, cell.v);
-      if (side_rises(view, shape, side.side)) continue;
-      if (!region.is_at_end(side) && side_has_no_low(view, shape, side.side)) {
-        open.push_back(side);
+      if (side_rises(view, shape, side.side, false)) continue;
+      if (side_rises(view, shape, side.side, true) ||
+          (!region.is_at_end(side) && side_has_no_low(view, shape, side.side))) {
+        others.push_back(side);
         continue;
       }
       const std::optional<ParameterRegion::Cell> beyond = region.extend(side);
       if (!beyond || !regions_.are_definite(chart.element, beyond->u, beyond->v)) return false;
       any = true;
     }
-    if (!any) return !region.any_meet_inwards(open);
+    if (!any) return !region.any_end_inwards(others);
   }
   return false;
 }

@@ -58,7 +58,8 @@ class ContactIndex {
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   bool border_rises(const CellView& view, int chart);
   bool face_border_rises(const CellView& view, int chart);
-  bool side_rises(const CellView& view, const NetShape& shape, Side side) const;
+  bool side_rises(const CellView& view, const NetShape& shape, Side side,
+                  bool obliquely = true) const;
   bool side_has_no_low(const CellView& view, const NetShape& shape, Side side) const;
   void show(int chart);
   void show(int element, const Interval& u, const Interval& v);

@@ -181,7 +181,8 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
     return held[std::size_t(k)] ||
            is_nearly_concave(view, branches.chart(k), count > 1 ? size : 0, {});
   });
-  if (all || chain_is_nearly_concave(view, branches, branch, held)) return true;
+  if (all) return true;
+  if (find_chain(view, branches, branch, held)) return chain_is_nearly_concave(view);
   if (count > 1 || branches.chart(first).kind != SourceKind::face) return false;
   return is_nearly_concave(view, branches.chart(first), 0, region(view, branches, branch, first));
 }
@@ -254,10 +255,11 @@ std::vector<Interval> NearConcavity::stretches(const CellView& view, const Chart
   return result;
 }
 
-/// Of edges one behind the other: along them control polygons of the heights are no farther than
-/// the resolution below a concave one. Heights between the two have one near-maximum.
-bool NearConcavity::chain_is_nearly_concave(const CellView& view, const Branches& branches,
-                                            const Branch& branch, const std::vector<bool>& held) {
+/// Of edges one behind the other: finds their control polygon over a parameter that runs along all
+/// of them at a speed without steps, with weights that match where they meet. False if there is
+/// none.
+bool NearConcavity::find_chain(const CellView& view, const Branches& branches, const Branch& branch,
+                               const std::vector<bool>& held) {
   std::vector<int> left;
   for (const int k : branch.charts) {
     if (held[std::size_t(k)]) continue;
@@ -278,7 +280,7 @@ bool NearConcavity::chain_is_nearly_concave(const CellView& view, const Branches
   if (first == left.end()) return false;  // a ring
   std::array<int, 2> next = {*first, beyond(*first, 0) ? 1 : 0};
   polygon_.clear();
-  std::vector<dvec3> known;  // points of the edges
+  known_.clear();
   double t = 0;
   double scale = 1;
   dvec3 step(0.0);  // the last one, over the parameter
@@ -308,8 +310,8 @@ bool NearConcavity::chain_is_nearly_concave(const CellView& view, const Branches
         polygon_.emplace_back(t + scale * length * double(k) / degree,
                               dvec4(dvec3(p) - p.w * view.q(), p.w));
       }
-      known.push_back(euclidean(net_.front()));
-      known.push_back(euclidean(net_.back()));
+      known_.push_back(euclidean(net_.front()));
+      known_.push_back(euclidean(net_.back()));
       t += scale * length;
       step = -step_at(net_.size() - 1, net_.size() - 2) / scale;
     }
@@ -318,10 +320,16 @@ bool NearConcavity::chain_is_nearly_concave(const CellView& view, const Branches
     if (!follows) return false;
     next = *follows;
   }
+  return true;
+}
+
+/// Control polygons of the heights along a chain are no farther than the resolution below a concave
+/// one. Heights between the two have one near-maximum.
+bool NearConcavity::chain_is_nearly_concave(const CellView& view) {
   const dvec3 middle =
       0.25 * (view.corners()[0] + view.corners()[1] + view.corners()[2] + view.corners()[3]);
   const dvec3 high = *std::max_element(
-      known.begin(), known.end(),
+      known_.begin(), known_.end(),
       [&](const dvec3& x, const dvec3& y) { return glm::dot(x, middle) < glm::dot(y, middle); });
   double least = infinity;
   for (const auto& [at, p] : polygon_) least = std::min(least, p.w);

@@ -23,8 +23,9 @@ class NearConcavity {
   static std::vector<dvec2> region(const CellView& view, const Branches& branches,
                                    const Branch& branch, int chart);
   static std::vector<Interval> stretches(const CellView& view, const Chart& chart);
-  bool chain_is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch,
-                               const std::vector<bool>& held);
+  bool find_chain(const CellView& view, const Branches& branches, const Branch& branch,
+                  const std::vector<bool>& held);
+  bool chain_is_nearly_concave(const CellView& view);
   static bool spans(const Branches& branches, const Glue& glue, bool same);
   bool meet_once(const CellView& view, const Branches& branches, const Branch& branch,
                  const Glue& glue) const;
@@ -36,7 +37,8 @@ class NearConcavity {
   double rho_;
   std::vector<dvec4> net_;                         // scratch
   NetBends bends_;                                 // scratch
-  std::vector<std::pair<double, dvec4>> polygon_;  // scratch
+  std::vector<std::pair<double, dvec4>> polygon_;  ///< of a chain, by its parameter
+  std::vector<dvec3> known_;                       ///< points of it
   std::vector<dvec2> hull_;                        // scratch
 };
 

@@ -112,19 +112,14 @@ int ParameterRegion::cells_at(int i, int j) const {
   return has(i - 1, j - 1) + has(i - 1, j) + has(i, j - 1) + has(i, j);
 }
 
-bool ParameterRegion::any_meet_inwards(const std::vector<BorderSide>& sides) const {
-  std::vector<std::array<int, 2>> corners;
-  for (const BorderSide& side : sides) {
-    for (const int end : {0, 1}) {
-      const int across = at_upper_end(side.side) ? 1 : 0;
-      const std::array<int, 2> corner = along_v(side.side)
-                                            ? std::array{side.i + across, side.j + end}
-                                            : std::array{side.i + end, side.j + across};
-      if (cells_at(corner[0], corner[1]) == 3) corners.push_back(corner);
-    }
-  }
-  std::sort(corners.begin(), corners.end());
-  return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
+bool ParameterRegion::any_end_inwards(const std::vector<BorderSide>& sides) const {
+  return std::any_of(sides.begin(), sides.end(), [&](const BorderSide& side) {
+    const int across = at_upper_end(side.side) ? 1 : 0;
+    return along_v(side.side) ? cells_at(side.i + across, side.j) == 3 ||
+                                    cells_at(side.i + across, side.j + 1) == 3
+                              : cells_at(side.i, side.j + across) == 3 ||
+                                    cells_at(side.i + 1, side.j + across) == 3;
+  });
 }
 
 std::optional<ParameterRegion::Cell> ParameterRegion::extend(const BorderSide& side) {

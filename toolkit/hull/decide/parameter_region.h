@@ -27,8 +27,8 @@ class ParameterRegion {
   std::vector<BorderSide> border() const;
   /// The side lies on the border of the patch.
   bool is_at_end(const BorderSide& side) const;
-  /// Two of them end at a corner at which three cells of the region meet.
-  bool any_meet_inwards(const std::vector<BorderSide>& sides) const;
+  /// One of them ends at a corner at which three cells of the region meet.
+  bool any_end_inwards(const std::vector<BorderSide>& sides) const;
   Cell cell(int i, int j) const;
   /// Adds the cell beyond; none if the grid ends there.
   std::optional<Cell> extend(const BorderSide& side);

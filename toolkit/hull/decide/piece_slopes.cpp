@@ -308,7 +308,8 @@ bool PieceSlopes::rise_obliquely() const {
 
 /// The second derivative's coefficients in a direction are positive.
 bool PieceSlopes::are_convex(const Way& way) const {
-  const auto [along_u, along_v, up] = way;
+  const double along_u = way.along_u;
+  const double along_v = way.along_v;
   const double scale = std::abs(along_u) * p() + std::abs(along_v) * q();
   const double least = 4 * scale * scale * noise_;  // each is a sum of so many coefficients
   std::vector<std::array<double, 5>> slopes(std::size_t(piece_.net.shape.size()));
