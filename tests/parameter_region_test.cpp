@@ -12,6 +12,7 @@ using taut::ParameterRegion;
 /// Of squares of a quarter of the parameters, by their places.
 ParameterRegion region_of(const std::vector<std::pair<int, int>>& squares) {
   std::vector<ParameterRegion::Cell> cells;
+  cells.reserve(squares.size());
   for (const auto& [i, j] : squares) {
     cells.push_back({{0.25 * i, 0.25 * (i + 1)}, {0.25 * j, 0.25 * (j + 1)}});
   }
