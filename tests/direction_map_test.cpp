@@ -608,6 +608,15 @@ TEST(DirectionMap, NeedlesHaveTwoContacts) {
   }
 }
 
+/// A point is no needle: its ends would be one.
+TEST(DirectionMap, PointsHaveOneContact) {
+  for (const std::size_t copies : {1u, 3u}) {
+    const Scene scene = make_scene({{}, {}, std::vector<dvec3>(copies, dvec3(1, 2, 3))});
+    const DirectionMap map = map_at(scene, 1e-8);
+    EXPECT_EQ(count(map, MapCellKind::region), long(map.cells.size()));
+  }
+}
+
 /// Patches that stand for the surface about extraordinary vertices.
 TEST(DirectionMap, CagesAreDecided) {
   for (const taut::ControlCage& cage :

@@ -129,6 +129,7 @@ class Decider {
     const dvec3 first = points_.front();
     const dvec3 a = farthest([&](const dvec3& x) { return glm::distance(x, first); });
     const dvec3 b = farthest([&](const dvec3& x) { return glm::distance(x, a); });
+    if (!(glm::distance(a, b) > options_.resolution)) return false;  // it is a point
     const dvec3 along = unit(b - a);
     std::array<Box, 2> halves;
     for (const dvec3& x : points_) {

@@ -13,6 +13,14 @@
 namespace taut {
 namespace {
 
+std::vector<dvec4> points_of(const SceneNet& net) {
+  std::vector<dvec4> points;
+  for (std::size_t k = 0; k < net.x.size(); ++k) {
+    points.emplace_back(net.x[k], net.y[k], net.z[k], net.w[k]);
+  }
+  return points;
+}
+
 /// The derivative across a side, into the patch, as a net along the side.
 std::vector<dvec4> inward_net(NetShape shape, const std::vector<dvec4>& points, Side side,
                               bool reversed) {
@@ -231,11 +239,7 @@ std::vector<dvec4> MapPieces::placed_patch(const Contact& c, NetShape& shape) co
   const SceneContent& content = geometry_.scene().content();
   const SceneElement& e = content.part_of(c.instance).elements[std::size_t(content.element(c))];
   shape = e.shape;
-  std::vector<dvec4> points;
-  for (std::size_t k = 0; k < e.net.x.size(); ++k) {
-    points.emplace_back(e.net.x[k], e.net.y[k], e.net.z[k], e.net.w[k]);
-  }
-  return placed(c, points);
+  return placed(c, points_of(e.net));
 }
 
 std::vector<dvec3> MapPieces::control_points() const {
@@ -243,11 +247,8 @@ std::vector<dvec3> MapPieces::control_points() const {
   std::vector<dvec3> result;
   for (const int i : content.distinct_instances) {
     for (const SceneElement& e : content.part_of(i).elements) {
-      std::vector<dvec4> net;
-      for (std::size_t k = 0; k < e.net.x.size(); ++k) {
-        net.emplace_back(e.net.x[k], e.net.y[k], e.net.z[k], e.net.w[k]);
-      }
-      for (const dvec4& p : placed({i, e.kind, e.index, 0, 0}, net)) result.push_back(euclidean(p));
+      const std::vector<dvec4> net = placed({i, e.kind, e.index, 0, 0}, points_of(e.net));
+      for (const dvec4& p : net) result.push_back(euclidean(p));
     }
   }
   for (const MapElement& e : elements_) {
