@@ -751,6 +751,51 @@ TEST(DirectionMap, WhatStandsForOthersStays) {
   }
 }
 
+/// A patch about the segment from (-1, 0, 0) to (1, 0, 0).
+Shape sliver(int degree_v, double width, taut_test::Random& random) {
+  constexpr int degree_u = 3;
+  NurbsSurface surface;
+  surface.degree_u = degree_u;
+  surface.degree_v = degree_v;
+  surface.knots_u = {0, 0, 0, 0, 1, 1, 1, 1};
+  surface.knots_v.assign(std::size_t(degree_v) + 1, 0);
+  surface.knots_v.insert(surface.knots_v.end(), std::size_t(degree_v) + 1, 1);
+  for (int i = 0; i <= degree_u; ++i) {
+    for (int j = 0; j <= degree_v; ++j) {
+      const bool inside = i > 0 && i < degree_u;
+      const double reach = inside ? 4 * width : width;
+      surface.points.emplace_back(2.0 * i / degree_u - 1, uniform(random, -reach, reach),
+                                  uniform(random, -reach, reach), 1);
+    }
+  }
+  Shape shape;
+  shape.surfaces.push_back(surface);
+  return shape;
+}
+
+/// Of vertices and edges nearer to each other than the resolution one stands for the others, also
+/// where what is between rises from it.
+TEST(DirectionMap, SliversHoldWhatSupports) {
+  taut_test::Random random(28);
+  for (int k = 0; k < 24; ++k) {
+    SCOPED_TRACE(k);
+    const double rho = std::pow(10.0, uniform(random, -4, -2.5));
+    const double width = rho * std::pow(10.0, uniform(random, -0.7, 0.3));
+    const Shape shape = sliver(1 + k % 3, width, random);
+    const Scene scene = make_scene(shape);
+    taut::DirectionMapOptions options;
+    options.resolution = scene.frame().length_to_frame(rho);
+    options.candidate_limit = 50'000;
+    const DirectionMap map = direction_map(ContactGeometry(scene), options);
+    const SupportReference reference(shape);
+    for (int i = 0; i < 200; ++i) {
+      const double angle = uniform(random, 0, 2 * taut_test::pi);
+      const dvec3 n = unit({uniform(random, -0.04, 0.04), std::cos(angle), std::sin(angle)});
+      expect_attained(scene, map, reference, n, rho);
+    }
+  }
+}
+
 TEST(DirectionMap, HoldsWhatSupports) {
   expect_holds(teapot());
   expect_holds(torus(2, 0.5));

@@ -14,7 +14,6 @@ void BranchPoints::find(const CellView& view, const Branches& branches) {
   const MapPieces& pieces = view.pieces();
   points_.resize(branches.all().size());
   heights_.resize(branches.all().size());
-  above_.resize(branches.all().size());
   for (std::size_t b = 0; b < points_.size(); ++b) {
     Corners highest;
     highest.fill(-infinity);
@@ -33,8 +32,6 @@ void BranchPoints::find(const CellView& view, const Branches& branches) {
             highest[c] = y[c];
             points_[b][c] = euclidean(x);
             heights_[b][c] = y;
-            above_[b][c] =
-                pieces.covered_above(pieces.piece(seen.piece), corner > q, corner % (q + 1) > 0);
           }
         }
       }

@@ -15,13 +15,10 @@ class BranchPoints {
   /// Of a branch, with their heights at the cell's corners.
   const std::array<dvec3, 4>& points(std::size_t branch) const { return points_[branch]; }
   const std::array<Corners, 4>& heights(std::size_t branch) const { return heights_[branch]; }
-  /// By how much they may be above all that is not covered.
-  const std::array<double, 4>& above(std::size_t branch) const { return above_[branch]; }
 
  private:
   std::vector<std::array<dvec3, 4>> points_;
   std::vector<std::array<Corners, 4>> heights_;
-  std::vector<std::array<double, 4>> above_;
 };
 
 /// Certain: for each direction of the cell a branch is higher than the means of two others, with

@@ -18,16 +18,11 @@ constexpr std::size_t split_piece_limit = 192;
 }  // namespace
 
 void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
-                       std::span<const CellBeacon> beacons) {
+                       std::span<const dvec3> beacons) {
   d_ = corners;
   q_ = q;
   beacons_.clear();
-  // What stands for a covered element does not go for being below a point of that.
-  for (const CellBeacon& beacon : beacons) {
-    Corners y = heights({beacon.point, 1}, q_, d_);
-    for (std::size_t c = 0; c < 4; ++c) y[c] -= beacon.above * glm::length(d_[c]);
-    beacons_.push_back(y);
-  }
+  for (const dvec3& beacon : beacons) beacons_.push_back(heights({beacon, 1}, q_, d_));
   envelope_.find(beacons_);
   depth_ = noise_;
   seen_.clear();
@@ -35,20 +30,29 @@ void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
   highest_ = {};
 }
 
-/// Its control points are below the envelope of the beacons.
+/// Its control points are below the envelope of the beacons, and if it stands for others those of
+/// what it stands for.
 bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
+  const bool stands = pieces_.element_of(piece).likeness.stands_for_others;
+  const double depth = depth_ + (stands ? pieces_.covered_above() * longest_direction() : 0);
   const auto& corners = envelope_.vertices();
   for (std::size_t c = 0; c < 4; ++c) {
-    if (!(seen.top[c] < corners[c].height - depth_)) return false;
+    if (!(seen.top[c] < corners[c].height - depth)) return false;
   }
   const dvec4* p = pieces_.points(piece.net);
   const Corners* y = values(seen);
   return std::all_of(corners.begin() + 4, corners.end(), [&](const BeaconEnvelope::Vertex& v) {
     for (int k = 0; k < piece.net.shape.size(); ++k) {
-      if (!(height_at(y[k], v.s, v.t) < (v.height - depth_) * p[k].w)) return false;
+      if (!(height_at(y[k], v.s, v.t) < (v.height - depth) * p[k].w)) return false;
     }
     return true;
   });
+}
+
+double CellView::longest_direction() const {
+  double longest = 0;
+  for (const dvec3& d : d_) longest = std::max(longest, glm::length(d));
+  return longest;
 }
 
 bool CellView::is_surpassed(const MapElement& element) const {
@@ -99,13 +103,11 @@ void CellView::finish() {
 }
 
 /// A surface or an edge that ends at the piece rises from all of it, in all directions of the cell.
-/// One that is covered does not count: the piece may be what stands for it.
+/// What is higher there may be covered, and the piece what stands for it.
 bool CellView::rises_inward(const SeenPiece& seen) const {
   const MapPiece& piece = pieces_.piece(seen.piece);
-  const std::vector<int>& beside = pieces_.element_of(piece).beside;
+  if (pieces_.element_of(piece).likeness.stands_for_others) return false;
   return std::any_of(piece.inward.begin(), piece.inward.end(), [&](const StoredNet& net) {
-    const int element = beside[std::size_t(&net - piece.inward.data())];
-    if (element >= 0 && pieces_.element(element).likeness.covered) return false;
     const dvec4* p = pieces_.points(net);
     for (int k = 0; k < net.shape.size(); ++k) {
       const Corners y = heights(p[k], q_, d_);
@@ -118,7 +120,6 @@ bool CellView::rises_inward(const SeenPiece& seen) const {
   });
 }
 
-/// Points on covered borders are lowered as beacons are.
 void CellView::add_corners(const SeenPiece& seen) {
   const MapPiece& piece = pieces_.piece(seen.piece);
   const int p = piece.net.shape.p;
@@ -128,10 +129,7 @@ void CellView::add_corners(const SeenPiece& seen) {
       if ((upper_u && p == 0) || (upper_v && q == 0)) continue;
       const int k = (upper_u ? p : 0) * (q + 1) + (upper_v ? q : 0);
       Corners y = values(seen)[k];
-      const double above = pieces_.covered_above(piece, upper_u, upper_v);
-      for (std::size_t c = 0; c < 4; ++c) {
-        y[c] = y[c] / pieces_.points(piece.net)[k].w - above * glm::length(d_[c]);
-      }
+      for (double& height : y) height /= pieces_.points(piece.net)[k].w;
       beacons_.push_back(y);
     }
   }
@@ -145,7 +143,7 @@ bool CellView::sharpen(double depth) {
     if (envelope_.is_highest(k)) beacons_[left++] = beacons_[k];
   }
   beacons_.resize(left);
-  depth_ = noise_ + depth * glm::length(d_[0]);
+  depth_ = noise_ + depth * longest_direction();
   before_.swap(seen_);
   seen_.clear();
   bool any = false;

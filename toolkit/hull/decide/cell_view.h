@@ -10,12 +10,6 @@
 
 namespace taut {
 
-/// A point of the model, and by how much it may be above all that is not covered.
-struct CellBeacon {
-  dvec3 point = dvec3(0.0);
-  double above = 0;
-};
-
 /// The pieces of a model that may touch a supporting plane with a normal in a cell of directions.
 ///
 /// Directions d of the cell are the convex combinations of four; heights are over a point q of the
@@ -25,17 +19,16 @@ class CellView {
   /// `noise`: what rounding may do to heights and their differences. The pieces must outlive it.
   CellView(MapPieces& pieces, double noise) : pieces_(pieces), noise_(noise) {}
 
-  /// Turns to a cell. `beacons`: of which q is one.
-  void turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
-               std::span<const CellBeacon> beacons);
+  /// Turns to a cell. `beacons`: points of the model, of which q is one.
+  void turn_to(const std::array<dvec3, 4>& corners, const dvec3& q, std::span<const dvec3> beacons);
   const std::array<dvec3, 4>& corners() const { return d_; }
   const dvec3& q() const { return q_; }
 
   /// A beacon is the highest of them for some direction of the cell.
   bool is_highest(std::size_t beacon) const { return envelope_.is_highest(beacon); }
 
-  /// Looks at a piece: drops it if for each direction one of the beacons is above all of it, or its
-  /// element moved on to a translate is higher.
+  /// Looks at a piece: drops it if for each direction one of the beacons is above all of it, by
+  /// more than what it stands for may be, or its element moved on to a translate is higher.
   void look(int piece);
   /// Once all pieces have been looked at: drops those that no plane can touch.
   void finish();
@@ -58,6 +51,7 @@ class CellView {
   long looked() const { return looked_; }
 
  private:
+  double longest_direction() const;
   bool is_beaten(const SeenPiece& seen, const MapPiece& piece) const;
   void add_corners(const SeenPiece& seen);
   bool is_surpassed(const MapElement& element) const;

@@ -158,7 +158,7 @@ class Decider {
   struct Waiting {
     MapCell cell;
     std::shared_ptr<const std::vector<int>> pieces;
-    std::vector<CellBeacon> beacons;
+    std::vector<dvec3> beacons;
     Contact hint;
   };
 
@@ -229,7 +229,7 @@ class Decider {
     return true;
   }
 
-  void split(const MapCell& cell, std::vector<int> pieces, const std::vector<CellBeacon>& beacons,
+  void split(const MapCell& cell, std::vector<int> pieces, const std::vector<dvec3>& beacons,
              const Contact& hint) {
     const auto shared = std::make_shared<const std::vector<int>>(std::move(pieces));
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -256,7 +256,7 @@ class Decider {
     const std::array<dvec3, 4> d = DirectionMap::corners(cell);
     const Support support = query_(unit(d[0] + d[3]), hint);
     cell.contact = support.contact;
-    beacons.push_back({support.point, pieces_.covered_above(support.contact)});
+    beacons.push_back(support.point);
     while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
     view_.turn_to(d, support.point, beacons);
     differences_.turn_to(axes_.first, axes_.second);
@@ -285,8 +285,8 @@ class Decider {
   }
 
   /// Points that are nowhere the highest in a cell are so nowhere in its quarters.
-  void drop_low(std::vector<CellBeacon>& beacons) const {
-    std::vector<CellBeacon> left;
+  void drop_low(std::vector<dvec3>& beacons) const {
+    std::vector<dvec3> left;
     for (std::size_t k = 0; k < beacons.size(); ++k) {
       if (view_.is_highest(k)) left.push_back(beacons[k]);
     }
@@ -294,13 +294,12 @@ class Decider {
   }
 
   /// What surpasses the rest of a branch, or of others, though it may not support itself.
-  void add_branch_points(std::vector<CellBeacon>& beacons) {
+  void add_branch_points(std::vector<dvec3>& beacons) {
     if (branches_.all().size() > branch_beacons) return;
     branch_points_.find(view_, branches_);
     for (std::size_t b = 0; b < branches_.all().size(); ++b) {
       const auto& points = branch_points_.points(b);
-      const auto& above = branch_points_.above(b);
-      for (std::size_t k = 0; k < points.size(); ++k) beacons.push_back({points[k], above[k]});
+      beacons.insert(beacons.end(), points.begin(), points.end());
     }
   }
 
@@ -310,7 +309,7 @@ class Decider {
     map_.cells.push_back(std::move(cell));
   }
 
-  void finish(MapCell& cell, MapCellKind kind, const std::vector<CellBeacon>& beacons) {
+  void finish(MapCell& cell, MapCellKind kind, const std::vector<dvec3>& beacons) {
     cell.kind = kind;
     if (kind == MapCellKind::facet) {
       cell.normal = facet_normal_;
@@ -493,20 +492,45 @@ class Decider {
     });
   }
 
-  /// Branches that come within the resolution of each other are one.
+  /// Branches are one of which two points are within the resolution of each other: corners of their
+  /// pieces.
   bool hang_together(const std::vector<Branch>& all) const {
     DisjointSets sets(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (std::size_t j = i + 1; j < all.size(); ++j) {
-        const dvec3 gap = glm::max(
-            glm::max(all[i].lower - all[j].upper, all[j].lower - all[i].upper), dvec3(0.0));
-        if (glm::length(gap) <= options_.resolution) sets.unite(int(i), int(j));
+        if (come_near(all[i], all[j])) sets.unite(int(i), int(j));
       }
     }
     for (std::size_t i = 1; i < all.size(); ++i) {
       if (sets.find(int(i)) != sets.find(0)) return false;
     }
     return true;
+  }
+
+  bool come_near(const Branch& a, const Branch& b) const {
+    const dvec3 gap = glm::max(glm::max(a.lower - b.upper, b.lower - a.upper), dvec3(0.0));
+    if (glm::length(gap) > options_.resolution) return false;
+    const std::vector<dvec3> own = corners_of_pieces(a);
+    const std::vector<dvec3> other = corners_of_pieces(b);
+    return std::any_of(own.begin(), own.end(), [&](const dvec3& x) {
+      return std::any_of(other.begin(), other.end(), [&](const dvec3& y) {
+        return glm::distance(x, y) <= options_.resolution;
+      });
+    });
+  }
+
+  std::vector<dvec3> corners_of_pieces(const Branch& branch) const {
+    std::vector<dvec3> corners;
+    for (const int chart : branch.charts) {
+      for (const int k : branches_.chart(chart).pieces) {
+        const StoredNet& net = pieces_.piece(view_.seen()[std::size_t(k)].piece).net;
+        const int row = net.shape.q + 1;
+        for (const int corner : {0, row - 1, net.shape.p * row, net.shape.p * row + row - 1}) {
+          corners.push_back(euclidean(pieces_.points(net)[corner]));
+        }
+      }
+    }
+    return corners;
   }
 
   /// What is left is near one plane because it is small: a few levels below it is near all planes.
@@ -599,7 +623,7 @@ class Decider {
   /// What a node's cell is split with.
   struct Node {
     std::vector<int> pieces;
-    std::vector<CellBeacon> beacons;
+    std::vector<dvec3> beacons;
   };
 
   MapPieces pieces_;

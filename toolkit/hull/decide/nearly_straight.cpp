@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace taut {
 namespace {
@@ -66,10 +67,10 @@ dvec3 place(const MapPieces& pieces, int vertex) {
 
 /// The vertices that are not covered farthest along a line to either side, of those near it: within
 /// the budget where that of two points on it leaves the line itself.
-std::array<dvec3, 2> ends_of_line(const MapPieces& pieces, const std::vector<int>& vertices,
-                                  const dvec3& a, const dvec3& b, double budget) {
+std::array<int, 2> ends_of_line(const MapPieces& pieces, const std::vector<int>& vertices,
+                                const dvec3& a, const dvec3& b, double budget) {
   const dvec3 along = b - a;
-  std::array<dvec3, 2> ends = {a, a};
+  std::array<int, 2> ends = {-1, -1};
   std::array<double, 2> range = {infinity, -infinity};
   for (const int v : vertices) {
     const dvec3 x = place(pieces, v);
@@ -78,53 +79,61 @@ std::array<dvec3, 2> ends_of_line(const MapPieces& pieces, const std::vector<int
     if (off > budget * (1 + std::abs(t))) continue;
     if (t < range[0]) {
       range[0] = t;
-      ends[0] = x;
+      ends[0] = v;
     }
     if (t > range[1]) {
       range[1] = t;
-      ends[1] = x;
+      ends[1] = v;
     }
   }
   return ends;
 }
 
-/// Of a chain between covered vertices those that stand for them may lie beyond.
-bool is_nearly_straight(const MapPieces& pieces, const Chain& chain,
-                        const std::vector<int>& vertices, double budget) {
-  dvec3 a = place(pieces, chain.start());
-  dvec3 b = place(pieces, chain.end());
+/// The vertices between which a chain is straight: of one between covered vertices those that stand
+/// for them may lie beyond. None if it is not straight.
+std::optional<std::array<int, 2>> ends_if_straight(const MapPieces& pieces, const Chain& chain,
+                                                   const std::vector<int>& vertices,
+                                                   double budget) {
+  std::array<int, 2> ends = {chain.start(), chain.end()};
   const auto is_covered = [&](int vertex) { return pieces.element(vertex).likeness.covered; };
-  if (is_covered(chain.start()) || is_covered(chain.end())) {
-    const auto [first, last] = ends_of_line(pieces, vertices, a, b, budget);
-    a = first;
-    b = last;
+  if (std::any_of(ends.begin(), ends.end(), is_covered)) {
+    ends = ends_of_line(pieces, vertices, place(pieces, ends[0]), place(pieces, ends[1]), budget);
+    if (ends[0] < 0) return std::nullopt;
   }
-  return std::all_of(chain.elements().begin(), chain.elements().end(), [&](int k) {
-    const StoredNet& net = pieces.piece(pieces.element(k).root).exact;
-    const dvec4* p = pieces.points(net);
-    return std::all_of(p, p + net.shape.size(), [&](const dvec4& x) {
-      return distance_to_segment(euclidean(x), a, b) <= budget;
-    });
-  });
+  const dvec3 a = place(pieces, ends[0]);
+  const dvec3 b = place(pieces, ends[1]);
+  const bool is_straight =
+      std::all_of(chain.elements().begin(), chain.elements().end(), [&](int k) {
+        const StoredNet& net = pieces.piece(pieces.element(k).root).exact;
+        const dvec4* p = pieces.points(net);
+        return std::all_of(p, p + net.shape.size(), [&](const dvec4& x) {
+          return distance_to_segment(euclidean(x), a, b) <= budget;
+        });
+      });
+  return is_straight ? std::optional(ends) : std::nullopt;
 }
 
 }  // namespace
 
-std::vector<bool> nearly_straight(const MapPieces& pieces, double budget) {
-  std::vector<bool> result(pieces.elements().size(), false);
+NearlyStraight nearly_straight(const MapPieces& pieces, double budget) {
+  const std::size_t count = pieces.elements().size();
+  NearlyStraight result{std::vector<bool>(count, false), std::vector<bool>(count, false)};
   std::vector<int> vertices;
-  for (int k = 0; k < int(result.size()); ++k) {
+  for (int k = 0; k < int(count); ++k) {
     const MapElement& element = pieces.element(k);
     const bool is_vertex = element.contact.kind == SourceKind::vertex;
     if (is_vertex && !element.likeness.covered) vertices.push_back(k);
   }
-  for (int k = 0; k < int(result.size()); ++k) {
+  for (int k = 0; k < int(count); ++k) {
     const Contact& c = pieces.element(k).contact;
-    if (c.kind != SourceKind::edge || result[std::size_t(k)]) continue;
+    if (c.kind != SourceKind::edge || result.edges[std::size_t(k)]) continue;
     for (const int end : {0, 1}) {
       const Chain chain(pieces, c, end);
-      if (!chain.is_whole() || !is_nearly_straight(pieces, chain, vertices, budget)) continue;
-      for (const int element : chain.elements()) result[std::size_t(element)] = true;
+      if (!chain.is_whole()) continue;
+      const auto ends = ends_if_straight(pieces, chain, vertices, budget);
+      if (!ends) continue;
+      for (const int element : chain.elements()) result.edges[std::size_t(element)] = true;
+      for (const int end : *ends) result.ends[std::size_t(end)] = true;
     }
   }
   return result;

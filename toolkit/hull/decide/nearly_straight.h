@@ -6,10 +6,16 @@
 
 namespace taut {
 
+/// By element.
+struct NearlyStraight {
+  std::vector<bool> edges;
+  std::vector<bool> ends;  ///< vertices that stand for these
+};
+
 /// Which pieces of edges lie within `budget` of the straight segment between two vertices that
 /// support by themselves, together with all that they go on into up to the vertices where they end:
 /// edges that were straight before their numbers were rounded. They support together with a vertex,
 /// if at all.
-std::vector<bool> nearly_straight(const MapPieces& pieces, double budget);
+NearlyStraight nearly_straight(const MapPieces& pieces, double budget);
 
 }  // namespace taut

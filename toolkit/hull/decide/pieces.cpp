@@ -90,57 +90,65 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
   }
   rounds_ = std::move(found.rounds);
   cover_straight(resolution);
-  find_what_is_beside_covered();
+  any_covered_ = std::any_of(elements_.begin(), elements_.end(),
+                             [](const MapElement& e) { return e.likeness.covered; });
+  let_ends_stand();
 }
 
 /// Of edges. What straight ones stand for is off by what these are off by too, if it is not
 /// straight itself.
 void MapPieces::cover_straight(double resolution) {
-  const std::vector<bool> straight = nearly_straight(*this, cover_share * resolution);
+  const NearlyStraight straight = nearly_straight(*this, cover_share * resolution);
   std::set<int> others;  // groups
   for (std::size_t k = 0; k < elements_.size(); ++k) {
     const Likeness& likeness = elements_[k].likeness;
-    if (likeness.covered && !straight[k]) others.insert(likeness.group);
+    if (likeness.covered && !straight.edges[k]) others.insert(likeness.group);
   }
-  const std::vector<bool> very = nearly_straight(*this, (1 - cover_share) * resolution);
+  const NearlyStraight very = nearly_straight(*this, (1 - cover_share) * resolution);
   for (std::size_t k = 0; k < elements_.size(); ++k) {
     Likeness& likeness = elements_[k].likeness;
-    const bool stands_for_others = likeness.group >= 0 && others.count(likeness.group) > 0;
-    if (stands_for_others ? very[k] : straight[k]) likeness.covered = true;
+    const bool is_of_others = likeness.group >= 0 && others.count(likeness.group) > 0;
+    if (is_of_others ? very.edges[k] : straight.edges[k]) likeness.covered = true;
+    if (straight.ends[k]) likeness.stands_for_others = true;
   }
 }
 
-/// Of vertices first, of which also what is beside their edges has to do with them.
-void MapPieces::find_what_is_beside_covered() {
-  borders_covered_.assign(elements_.size(), false);
-  for (const SourceKind kind : {SourceKind::vertex, SourceKind::edge}) {
-    for (std::size_t k = 0; k < elements_.size(); ++k) {
-      const bool is_covered = elements_[k].likeness.covered;
-      any_covered_ = any_covered_ || is_covered;
-      if (elements_[k].contact.kind != kind || (!is_covered && !borders_covered_[k])) continue;
-      for (const int beside : elements_[k].beside) {
-        if (beside >= 0) borders_covered_[std::size_t(beside)] = true;
+void MapPieces::let_stand(const Contact& c) {
+  const int element = find_first(c);
+  if (element >= 0) elements_[std::size_t(element)].likeness.stands_for_others = true;
+}
+
+/// The highest point of what stands for others may be that of what is beside it: contacts differ by
+/// as little as shapes do.
+void MapPieces::let_ends_stand() {
+  const std::vector<MapElement> before = elements_;
+  for (const MapElement& element : before) {
+    if (!element.likeness.stands_for_others) continue;
+    const Contact& c = element.contact;
+    const auto let = [&](SourceKind kind, int index) {
+      if (index >= 0) let_stand({c.instance, kind, index, 0, 0});
+    };
+    const auto let_element = [&](int k) {
+      if (k >= 0) elements_[std::size_t(k)].likeness.stands_for_others = true;
+    };
+    if (c.kind == SourceKind::face) {
+      const Patch& patch = geometry_.patch(c);
+      for (const Border& border : patch.borders) {
+        let(SourceKind::edge, border.piece);
+        let(SourceKind::vertex, border.vertex);
       }
+      for (const int vertex : patch.corner_vertex) let(SourceKind::vertex, vertex);
+      for (const MapElement::Beyond& beyond : element.beyond) let_element(beyond.element);
+    } else if (c.kind == SourceKind::edge) {
+      const EdgePiece& piece = geometry_.piece(c);
+      for (const int end : piece.end_vertex) let(SourceKind::vertex, end);
+      for (const int next : piece.end_neighbor) let(SourceKind::edge, next);
+      for (const auto& next : element.next) let_element(next[0]);
     }
   }
 }
 
 double MapPieces::budget_left() const { return any_covered_ ? 1 - cover_share : cover_share; }
-
-double MapPieces::covered_above(const Contact& c) const {
-  if (!any_covered_) return 0;
-  const int element = find(geometry_.first(geometry_.canonical(c)));
-  return element >= 0 && !elements_[std::size_t(element)].likeness.covered ? 0 : resolution_;
-}
-
-/// Inside of an element that is not covered it stands for itself.
-double MapPieces::covered_above(const MapPiece& piece, bool upper_u, bool upper_v) const {
-  if (!borders_covered_[std::size_t(piece.element)]) return 0;
-  const auto ends = [](const Interval& t, bool upper) {
-    return upper ? t.upper == 1 : t.lower == 0;
-  };
-  return ends(piece.u, upper_u) || ends(piece.v, upper_v) ? resolution_ : 0;
-}
 
 void MapPieces::find_beside() {
   for (MapElement& element : elements_) {

@@ -39,6 +39,9 @@ void even_weights(NetShape shape, std::vector<dvec4>& net);
 struct Likeness {
   /// No contact is the element's alone: it lies in the convex hull of others.
   bool covered = false;
+  /// It is one of these others, or something in which one of them ends or that it goes on into: it
+  /// stays though it may be lower than what is covered, by as much as budgets allow.
+  bool stands_for_others = false;
   /// The round shape that the element is part of, -1 of none.
   int round = -1;
   /// Translates of each other have one number and places, by which they are moved; -1 of those
@@ -106,10 +109,6 @@ class MapPieces {
   double budget_left() const;
   /// By how much points may be above all that is not covered, in the scene's frame.
   double covered_above() const { return any_covered_ ? resolution_ : 0; }
-  /// By how much a contact's point may be.
-  double covered_above(const Contact& c) const;
-  /// The same of a corner of a piece, at the lower or upper ends of u and v.
-  double covered_above(const MapPiece& piece, bool upper_u, bool upper_v) const;
 
   /// Of all there is, also of what has no contacts of its own.
   std::vector<dvec3> control_points() const;
@@ -135,14 +134,14 @@ class MapPieces {
   std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);
-  void find_what_is_beside_covered();
+  void let_ends_stand();
+  void let_stand(const Contact& c);
 
   const ContactGeometry& geometry_;
   double resolution_;
   SmoothJoins joins_;
   std::vector<MapElement> elements_;
   bool any_covered_ = false;
-  std::vector<bool> borders_covered_;  ///< by element: an edge or vertex of it is covered
   std::vector<RoundShape> rounds_;
   std::vector<MapPiece> pieces_;
   std::vector<dvec4> points_;

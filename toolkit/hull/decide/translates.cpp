@@ -292,9 +292,14 @@ class Search {
     const Group& group = groups_[std::size_t(number)];
     if (group.members.size() < 2 || group.members.size() > translate_limit) return;
     const std::vector<bool> goes = covered(pieces_, group, budget_);
+    const bool stands = std::count(goes.begin(), goes.end(), true) > 0;
     for (std::size_t k = 0; k < goes.size(); ++k) {
       const Likeness own{
-          goes[k], -1, number, group.places[k],
+          goes[k],
+          stands && !goes[k],
+          -1,
+          number,
+          group.places[k],
           goes[k] ? std::vector<Likeness::Other>() : to_others(group, goes, k, budget_)};
       for (const int element : group.members[k].elements) result_[std::size_t(element)] = own;
     }
@@ -318,8 +323,13 @@ class Search {
         if (round.surely_misses(euclidean(*pieces_.points(net)), budget_)) continue;
         own.covered = distance_outside(pieces_, k, round) + round.inside <= budget_;
         held_[std::size_t(k)] = own.covered;
+        if (own.covered) let_stand(round);
       }
     }
+  }
+
+  void let_stand(const RoundShape& round) {
+    for (const int k : round.elements) result_[std::size_t(k)].stands_for_others = true;
   }
 
   bool is_covered(const RoundShape& round) const {
@@ -343,6 +353,7 @@ class Search {
           if (result_[std::size_t(k)].covered || carries[std::size_t(k)]) continue;
           if (!holds_between(two, k)) continue;
           result_[std::size_t(k)].covered = held_[std::size_t(k)] = true;
+          for (const RoundShape* round : two) let_stand(*round);
           for (const RoundShape* round : two) {
             for (const int element : round->elements) carries[std::size_t(element)] = true;
           }
