@@ -90,11 +90,10 @@ bool ContactIndex::face_border_rises(const CellView& view, int index) {
   show(index);
   const int element = view_branches_->chart(index).element;
   const NetShape shape = pieces_.piece(pieces_.element(element).root).exact.shape;
-  const Chart& chart = view_branches_->chart(index);
   const auto is_apart = [&](Side side) {
     const std::array beside =
         along_v(side) ? std::array{Side::v0, Side::v1} : std::array{Side::u0, Side::u1};
-    return !is_at(chart, side) && glued[std::size_t(beside[0])] < 0 &&
+    return glued[std::size_t(beside[0])] < 0 &&
            glued[std::size_t(beside[1])] < 0;
   };
   return std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
@@ -413,7 +412,7 @@ bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branch
       show(chart.element, cell.u, cell.v);
       if (side_rises(view, shape, side.side, false)) continue;
       if (side_rises(view, shape, side.side, true) ||
-          (!region.is_at_end(side) && side_has_no_low(view, shape, side.side))) {
+          side_has_no_low(view, shape, side.side)) {
         others.push_back(side);
         continue;
       }

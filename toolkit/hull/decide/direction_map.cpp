@@ -21,6 +21,7 @@
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/contact_index.h"
 #include "taut/hull/decide/near_concavity.h"
+#include "taut/hull/decide/ridge_contacts.h"
 
 namespace taut {
 namespace {
@@ -91,6 +92,7 @@ class Decider {
         domination_(pieces_.budget_left() * options.resolution),
         index_(pieces_, options.resolution),
         concavity_(pieces_, options.resolution),
+        ridge_(pieces_),
         differences_(pieces_, view_, branches_, cover_share * options.resolution),
         border_(view_, branches_, query_) {}
 
@@ -405,7 +407,8 @@ class Decider {
       if (!differences_.is_round(branch) && !index_.is_one(view_, branches_, branch) &&
           !concavity_.is_one(view_, branches_, branch) &&
           !(extends && index_.is_one_of_more(view_, branches_, branch)) &&
-          !(extends && index_.is_one_of_pieces(view_, branches_, branch))) {
+          !(extends && index_.is_one_of_pieces(view_, branches_, branch)) &&
+          !(extends && ridge_.are_one(view_, branches_, branch))) {
         return std::nullopt;
       }
     }
@@ -637,6 +640,7 @@ class Decider {
   BranchOrder order_;
   ContactIndex index_;
   NearConcavity concavity_;
+  RidgeContacts ridge_;
   BranchDifferences differences_;
   CellBorder border_;
   std::vector<int> line_;  ///< numbers of branches that are in line

@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/parameter_hull.h"
 
 namespace taut {
 namespace {
-
-bool turns_right(const dvec2& a, const dvec2& b, const dvec2& c) {
-  return (b.x - a.x) * (c.y - a.y) < (b.y - a.y) * (c.x - a.x);
-}
 
 /// Of length one, from a side into its patch.
 dvec3 inwards(const ContactJet& j, Side side) {
@@ -184,56 +181,7 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
   if (all) return true;
   if (find_chain(view, branches, branch, held)) return chain_is_nearly_concave(view);
   if (count > 1 || branches.chart(first).kind != SourceKind::face) return false;
-  return is_nearly_concave(view, branches.chart(first), 0, region(view, branches, branch, first));
-}
-
-/// The convex hull in the parameters of a chart of its pieces and what else lies in it, where its
-/// rectangle is from 0 to 1.
-std::vector<dvec2> NearConcavity::region(const CellView& view, const Branches& branches,
-                                         const Branch& branch, int index) {
-  const Chart& chart = branches.chart(index);
-  std::vector<dvec2> points;
-  const auto add = [&](double u, double v) {
-    points.emplace_back((u - chart.u.lower) / (chart.u.upper - chart.u.lower),
-                        (v - chart.v.lower) / (chart.v.upper - chart.v.lower));
-  };
-  for (const int k : chart.pieces) {
-    const MapPiece& piece = view.pieces().piece(view.seen()[std::size_t(k)].piece);
-    for (const double u : {piece.u.lower, piece.u.upper}) {
-      for (const double v : {piece.v.lower, piece.v.upper}) add(u, v);
-    }
-  }
-  for (const int g : branch.glues) {
-    const Glue& glue = branches.glue(g);
-    if (glue.a != index || glue.kind == Glue::Kind::faces) continue;
-    if (glue.kind == Glue::Kind::face_vertex && glue.at_a >= 4) {  // a corner
-      const int corner = glue.at_a - 4;
-      add(corner < 2 ? 0 : 1, corner % 2);
-      continue;
-    }
-    const Interval& own = glue.kind == Glue::Kind::face_edge ? branches.chart(glue.b).u
-                                                             : along(chart, Side(glue.at_a));
-    for (const double t : {own.lower, own.upper}) {
-      const dvec2 uv = on_side(Side(glue.at_a), glue.reversed ? 1 - t : t);
-      add(uv.x, uv.y);
-    }
-  }
-  std::sort(points.begin(), points.end(),
-            [](const dvec2& a, const dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  std::vector<dvec2> hull;
-  for (const bool above : {false, true}) {
-    const std::size_t first = hull.size();
-    for (const dvec2& p : points) {
-      while (hull.size() > first + 1 && !turns_right(p, hull.back(), hull[hull.size() - 2])) {
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    if (!above) std::reverse(points.begin(), points.end());
-  }
-  return hull;
+  return is_nearly_concave(view, branches.chart(first), 0, parameter_hull(view, branches, branch, first));
 }
 
 /// The intervals of a chart's pieces, and what is between them.

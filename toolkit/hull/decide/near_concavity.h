@@ -20,8 +20,6 @@ class NearConcavity {
  private:
   bool is_nearly_concave(const CellView& view, const Chart& chart, double size,
                          const std::vector<dvec2>& region);
-  static std::vector<dvec2> region(const CellView& view, const Branches& branches,
-                                   const Branch& branch, int chart);
   static std::vector<Interval> stretches(const CellView& view, const Chart& chart);
   bool find_chain(const CellView& view, const Branches& branches, const Branch& branch,
                   const std::vector<bool>& held);
