@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
-#include "taut/hull/decide/direction_map.h"
+#include "taut/hull/decide/map_cell.h"
 
 namespace taut {
 

@@ -1,0 +1,48 @@
+#include "taut/hull/decide/map_cell.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+/// In units of the resolution over the width of facets: how far their normals may part.
+constexpr double facet_slack = 4;
+
+/// Of a contact and its translates, of which boxes may be nearly the same.
+std::size_t farthest_translate(const std::vector<MapCell::Translate>& all, std::size_t contact,
+                               const dvec3& d) {
+  if (contact >= all.size()) return contact;
+  std::size_t best = contact;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].of == all[contact].of && glm::dot(all[k].by - all[best].by, d) > 0) best = k;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool MapCell::shares_plane(const MapCell& other, double resolution) const {
+  const double slack = facet_slack * resolution / std::min(width, other.width);
+  return glm::dot(normal, other.normal) > 0 &&
+         glm::length(glm::cross(normal, other.normal)) <= slack;
+}
+
+std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {
+  if (!rounds.empty()) {
+    const auto height = [&](const Round& round) {
+      return glm::dot(round.center, d) + glm::length(round.root * d);
+    };
+    const auto highest =
+        std::max_element(rounds.begin(), rounds.end(),
+                         [&](const Round& a, const Round& b) { return height(a) < height(b); });
+    return std::size_t(highest - rounds.begin());
+  }
+  const auto gap = [&](const Box& box) {
+    return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
+  };
+  const auto best = std::min_element(contacts.begin(), contacts.end(),
+                                     [&](const Box& a, const Box& b) { return gap(a) < gap(b); });
+  return farthest_translate(translates, std::size_t(best - contacts.begin()), d);
+}
+
+}  // namespace taut
