@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -748,6 +751,106 @@ TEST(DirectionMap, WhatStandsForOthersStays) {
     for (int i = 0; i < 300; ++i) {
       expect_attained(scene, map, reference, random_direction(random), all[k].rho);
     }
+  }
+}
+
+/// All numbers of a map, to the last bit.
+class MapBits {
+ public:
+  explicit MapBits(const DirectionMap& map) {
+    for (const MapCell& cell : map.cells) add(cell);
+    const auto& statistics = map.statistics;
+    for (const long count :
+         {statistics.cells, statistics.candidates, statistics.queries, long(statistics.deepest)}) {
+      add(double(count));
+    }
+    for (const long count : statistics.of_kind) add(double(count));
+    add(map.resolution);
+  }
+  const std::vector<std::uint64_t>& all() const { return bits_; }
+
+ private:
+  void add(double x) { bits_.push_back(std::bit_cast<std::uint64_t>(x)); }
+  void add(const dvec3& x) {
+    for (int k = 0; k < 3; ++k) add(x[k]);
+  }
+  void add(const taut::Contact& c) {
+    for (const double x : {double(c.instance), double(c.kind), double(c.element), c.u, c.v}) add(x);
+  }
+  void add(const MapCell& cell) {
+    for (const double x : {double(cell.face), double(cell.level), double(cell.i), double(cell.j),
+                           double(cell.kind), double(cell.contacts.size()), double(cell.apart)}) {
+      add(x);
+    }
+    for (const taut::Box& box : cell.contacts) {
+      add(box.lower);
+      add(box.upper);
+    }
+    add(cell.contact);
+    for (const MapCell::Translate& translate : cell.translates) {
+      add(double(translate.of));
+      add(translate.by);
+    }
+    for (const MapCell::Round& round : cell.rounds) {
+      add(round.center);
+      for (int k = 0; k < 3; ++k) add(round.root[k]);
+    }
+    add(cell.normal);
+    add(cell.width);
+  }
+
+  std::vector<std::uint64_t> bits_;
+};
+
+/// Also where a limit leaves cells undecided.
+TEST(DirectionMap, SameForAnyNumberOfThreads) {
+  const struct {
+    Shape shape;
+    long cell_limit, candidate_limit;
+  } all[] = {
+      {torus(2, 0.5), 100'000, 1'000'000},
+      {torus(2, 0.5), 300, 1'000'000},
+      {teapot(), 100'000, 1'000'000},
+      {teapot(), 100'000, 5'000},
+      {filleted_box(4, 3, 2, 0.5), 100'000, 20'000},
+      {on_a_cube(mapped(sphere(), skew_rotation())), 100'000, 1'000'000},
+      {in_a_row(capsule_of_one_size(), 4, {2, 1, 0.5}), 100'000, 1'000'000},
+      {oloid(), 100'000, 1'000'000},
+      {box(3, 2, 1), 100'000, 1'000'000},
+      {{{}, {}, {{0, 0, 0}, {1, 2, 3}}}, 100'000, 1'000'000},
+  };
+  for (const auto& model : all) {
+    const Scene scene(make_model(model.shape));
+    const ContactGeometry geometry(scene);
+    taut::DirectionMapOptions options;
+    options.resolution =
+        scene.frame().length_to_frame(taut::resolution_of(scene.model(), scene.diagonal()).rho);
+    options.cell_limit = model.cell_limit;
+    options.candidate_limit = model.candidate_limit;
+    options.threads = 1;
+    const DirectionMap map = direction_map(geometry, options);
+    const auto& statistics = map.statistics;
+    const bool is_left = count(map, MapCellKind::undecided) > 0;
+    EXPECT_EQ(is_left, statistics.cells >= options.cell_limit ||
+                           statistics.candidates >= options.candidate_limit);
+    for (const int threads : {2, 5}) {
+      SCOPED_TRACE(std::to_string(&model - all) + " " + std::to_string(threads));
+      options.threads = threads;
+      EXPECT_TRUE(MapBits(direction_map(geometry, options)).all() == MapBits(map).all());
+    }
+  }
+}
+
+TEST(DirectionMap, StopsOnAnyNumberOfThreads) {
+  const Scene scene = make_scene(torus(2, 0.5));
+  std::stop_source source;
+  source.request_stop();
+  taut::DirectionMapOptions options;
+  options.resolution = 1e-8;
+  options.stop = source.get_token();
+  for (const int threads : {1, 2, 5}) {
+    options.threads = threads;
+    EXPECT_THROW(direction_map(ContactGeometry(scene), options), taut::Cancelled);
   }
 }
 

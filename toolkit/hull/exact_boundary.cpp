@@ -82,6 +82,7 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
   DirectionMapOptions own;
   own.resolution = scene.frame().length_to_frame(resolution.rho);
   own.candidate_limit = map_candidates + map_candidates_a_patch * scene.patch_count();
+  own.threads = options.threads;
   own.stop = options.progress.stop;
   DirectionMap map = direction_map(geometry, own);
   statistics.map_cells += map.statistics.cells;

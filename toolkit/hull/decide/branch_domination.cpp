@@ -11,7 +11,6 @@ constexpr std::size_t dominated_limit = 12;
 }  // namespace
 
 void BranchPoints::find(const CellView& view, const Branches& branches) {
-  const MapPieces& pieces = view.pieces();
   points_.resize(branches.all().size());
   heights_.resize(branches.all().size());
   for (std::size_t b = 0; b < points_.size(); ++b) {
@@ -20,11 +19,11 @@ void BranchPoints::find(const CellView& view, const Branches& branches) {
     for (const int chart : branches.all()[b].charts) {
       for (const int k : branches.chart(chart).pieces) {
         const SeenPiece& seen = view.seen()[std::size_t(k)];
-        const StoredNet& net = pieces.piece(seen.piece).net;
+        const StoredNet& net = seen.piece->net;
         const int p = net.shape.p;
         const int q = net.shape.q;
         for (const int corner : {0, q, p * (q + 1), p * (q + 1) + q}) {
-          const dvec4& x = pieces.points(net)[corner];
+          const dvec4& x = net.points[corner];
           Corners y = view.values(seen)[corner];
           for (double& h : y) h /= x.w;
           for (std::size_t c = 0; c < 4; ++c) {
@@ -99,8 +98,8 @@ bool BranchDomination::is_dominated(const CellView& view, const Branches& branch
                                     std::size_t branch) const {
   const auto& vertices = envelope_.vertices();
   const auto is_below = [&](const SeenPiece& seen) {
-    const StoredNet& net = view.pieces().piece(seen.piece).net;
-    const dvec4* p = view.pieces().points(net);
+    const StoredNet& net = seen.piece->net;
+    const dvec4* p = net.points;
     const Corners* y = view.values(seen);
     return std::all_of(vertices.begin(), vertices.end(), [&](const BeaconEnvelope::Vertex& v) {
       const double highest = v.height + budget_ - view.noise();

@@ -26,8 +26,8 @@ void BranchOrder::find(const CellView& view, const Branches& branches, const dve
     points_[b].clear();
     for (const int chart : branches.all()[b].charts) {
       for (const int k : branches.chart(chart).pieces) {
-        const StoredNet& net = view.pieces().piece(view.seen()[std::size_t(k)].piece).net;
-        const dvec4* p = view.pieces().points(net);
+        const StoredNet& net = view.seen()[std::size_t(k)].piece->net;
+        const dvec4* p = net.points;
         for (int i = 0; i < net.shape.size(); ++i) {
           const dvec3 x = euclidean(p[i]) - view.q();
           points_[b].emplace_back(glm::dot(x, first), glm::dot(x, second));

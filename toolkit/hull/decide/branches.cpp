@@ -194,9 +194,7 @@ bool Branches::extend(const MapPieces& pieces, int index, Side side) {
 void Branches::make_charts(const CellView& view) {
   const std::vector<SeenPiece>& seen = view.seen();
   const MapPieces& pieces = view.pieces();
-  const auto piece = [&](int k) -> const MapPiece& {
-    return pieces.piece(seen[std::size_t(k)].piece);
-  };
+  const auto piece = [&](int k) -> const MapPiece& { return *seen[std::size_t(k)].piece; };
   rest_.resize(seen.size());
   std::iota(rest_.begin(), rest_.end(), 0);
   while (!rest_.empty()) {
@@ -354,7 +352,7 @@ void Branches::find_boxes(const CellView& view) {
   for (const Chart& chart : charts_) {
     Branch& own = branches_[std::size_t(chart.branch)];
     for (const int index : chart.pieces) {
-      const Box& box = view.pieces().piece(view.seen()[std::size_t(index)].piece).box;
+      const Box& box = view.seen()[std::size_t(index)].piece->box;
       own.lower = glm::min(own.lower, box.lower);
       own.upper = glm::max(own.upper, box.upper);
     }

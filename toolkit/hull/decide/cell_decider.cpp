@@ -41,7 +41,7 @@ bool boxes_part(const std::vector<Branch>& all) {
 
 }  // namespace
 
-CellDecider::CellDecider(MapPieces& pieces, const DirectionMapOptions& options)
+CellDecider::CellDecider(const MapPieces& pieces, const DirectionMapOptions& options)
     : pieces_(pieces),
       options_(options),
       query_(pieces.geometry().scene(), options.stop),
@@ -49,6 +49,7 @@ CellDecider::CellDecider(MapPieces& pieces, const DirectionMapOptions& options)
       domination_(pieces.budget_left() * options.resolution),
       index_(pieces, options.resolution),
       concavity_(pieces, options.resolution),
+      ridge_(pieces),
       differences_(pieces, view_, branches_, cover_share * options.resolution),
       planes_(view_, branches_, options.resolution),
       border_(view_, branches_, query_) {}
@@ -64,12 +65,12 @@ LookedAtCell CellDecider::decide(const OpenCell& open) {
   const std::array<dvec3, 4> d = DirectionMap::corners(cell);
   const Support support = query_(unit(d[0] + d[3]), open.hint);
   cell.contact = support.contact;
-  std::vector<CellBeacon>& beacons = result.beacons;
-  beacons.push_back({support.point, pieces_.covered_above(support.contact)});
+  std::vector<dvec3>& beacons = result.beacons;
+  beacons.push_back(support.point);
   while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
   turn_to(cell, support.point, beacons);
   drop_low(beacons);
-  for (const int piece : *open.pieces) view_.look(piece);
+  for (const MapPiece* piece : *open.pieces) view_.look(*piece);
   view_.finish();
   const std::optional<MapCellKind> kind = kind_of_cell(cell, result.pieces);
   if (kind) {
@@ -79,7 +80,7 @@ LookedAtCell CellDecider::decide(const OpenCell& open) {
     result.splits = true;
     add_branch_points(beacons);
     // Of pieces that were split in vain there would be ever more.
-    std::vector<int> sharp = pieces_left();
+    std::vector<const MapPiece*> sharp = pieces_left();
     if (sharp.size() <= result.pieces.size()) result.pieces = std::move(sharp);
   }
   result.candidates = view_.looked() - looked;
@@ -87,8 +88,7 @@ LookedAtCell CellDecider::decide(const OpenCell& open) {
   return result;
 }
 
-void CellDecider::turn_to(const MapCell& cell, const dvec3& q,
-                          const std::vector<CellBeacon>& beacons) {
+void CellDecider::turn_to(const MapCell& cell, const dvec3& q, const std::vector<dvec3>& beacons) {
   axes_ = face_axes(cell.face);
   view_.turn_to(DirectionMap::corners(cell), q, beacons);
   differences_.turn_to(axes_.first, axes_.second);
@@ -96,7 +96,8 @@ void CellDecider::turn_to(const MapCell& cell, const dvec3& q,
 }
 
 /// None if it is to be split. `left`: the pieces before those that bend both ways were.
-std::optional<MapCellKind> CellDecider::kind_of_cell(const MapCell& cell, std::vector<int>& left) {
+std::optional<MapCellKind> CellDecider::kind_of_cell(const MapCell& cell,
+                                                     std::vector<const MapPiece*>& left) {
   std::optional<MapCellKind> kind = decided(true);
   // Of three contacts one may not reach the others, and of more the border is to tell: finer
   // pieces tell more.
@@ -114,8 +115,8 @@ std::optional<MapCellKind> CellDecider::kind_of_cell(const MapCell& cell, std::v
   return kind;
 }
 
-std::vector<int> CellDecider::pieces_left() const {
-  std::vector<int> left;
+std::vector<const MapPiece*> CellDecider::pieces_left() const {
+  std::vector<const MapPiece*> left;
   left.reserve(view_.seen().size());
   for (const SeenPiece& s : view_.seen()) left.push_back(s.piece);
   return left;
@@ -139,8 +140,8 @@ void CellDecider::finish(MapCell& cell, MapCellKind kind) const {
 }
 
 /// Points that are nowhere the highest in a cell are so nowhere in its quarters.
-void CellDecider::drop_low(std::vector<CellBeacon>& beacons) const {
-  std::vector<CellBeacon> left;
+void CellDecider::drop_low(std::vector<dvec3>& beacons) const {
+  std::vector<dvec3> left;
   for (std::size_t k = 0; k < beacons.size(); ++k) {
     if (view_.is_highest(k)) left.push_back(beacons[k]);
   }
@@ -148,13 +149,12 @@ void CellDecider::drop_low(std::vector<CellBeacon>& beacons) const {
 }
 
 /// What surpasses the rest of a branch, or of others, though it may not support itself.
-void CellDecider::add_branch_points(std::vector<CellBeacon>& beacons) {
+void CellDecider::add_branch_points(std::vector<dvec3>& beacons) {
   if (branches_.all().size() > branch_beacons) return;
   branch_points_.find(view_, branches_);
   for (std::size_t b = 0; b < branches_.all().size(); ++b) {
     const auto& points = branch_points_.points(b);
-    const auto& above = branch_points_.above(b);
-    for (std::size_t k = 0; k < points.size(); ++k) beacons.push_back({points[k], above[k]});
+    beacons.insert(beacons.end(), points.begin(), points.end());
   }
 }
 
@@ -231,7 +231,8 @@ std::optional<MapCellKind> CellDecider::kind_of_branches(bool extends) {
     if (!differences_.is_round(branch) && !index_.is_one(view_, branches_, branch) &&
         !concavity_.is_one(view_, branches_, branch) &&
         !(extends && index_.is_one_of_more(view_, branches_, branch)) &&
-        !(extends && index_.is_one_of_pieces(view_, branches_, branch))) {
+        !(extends && index_.is_one_of_pieces(view_, branches_, branch)) &&
+        !(extends && ridge_.are_one(view_, branches_, branch))) {
       return std::nullopt;
     }
   }
@@ -312,20 +313,44 @@ bool CellDecider::is_flat() const {
   });
 }
 
-/// Branches that come within the resolution of each other are one.
+/// Branches are one of which two points are within the resolution of each other: corners of their
+/// pieces.
 bool CellDecider::hang_together(const std::vector<Branch>& all) const {
   DisjointSets sets(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i + 1; j < all.size(); ++j) {
-      const dvec3 gap =
-          glm::max(glm::max(all[i].lower - all[j].upper, all[j].lower - all[i].upper), dvec3(0.0));
-      if (glm::length(gap) <= options_.resolution) sets.unite(int(i), int(j));
+      if (come_near(all[i], all[j])) sets.unite(int(i), int(j));
     }
   }
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (sets.find(int(i)) != sets.find(0)) return false;
   }
   return true;
+}
+
+bool CellDecider::come_near(const Branch& a, const Branch& b) const {
+  const dvec3 gap = glm::max(glm::max(a.lower - b.upper, b.lower - a.upper), dvec3(0.0));
+  if (glm::length(gap) > options_.resolution) return false;
+  const std::vector<dvec3> own = corners_of_pieces(a);
+  const std::vector<dvec3> other = corners_of_pieces(b);
+  return std::any_of(own.begin(), own.end(), [&](const dvec3& x) {
+    return std::any_of(other.begin(), other.end(),
+                       [&](const dvec3& y) { return glm::distance(x, y) <= options_.resolution; });
+  });
+}
+
+std::vector<dvec3> CellDecider::corners_of_pieces(const Branch& branch) const {
+  std::vector<dvec3> corners;
+  for (const int chart : branch.charts) {
+    for (const int k : branches_.chart(chart).pieces) {
+      const StoredNet& net = view_.seen()[std::size_t(k)].piece->net;
+      const int row = net.shape.q + 1;
+      for (const int corner : {0, row - 1, net.shape.p * row, net.shape.p * row + row - 1}) {
+        corners.push_back(euclidean(net.points[corner]));
+      }
+    }
+  }
+  return corners;
 }
 
 }  // namespace taut

@@ -14,14 +14,15 @@
 #include "taut/hull/decide/contact_index.h"
 #include "taut/hull/decide/direction_map.h"
 #include "taut/hull/decide/near_concavity.h"
+#include "taut/hull/decide/ridge_contacts.h"
 
 namespace taut {
 
 /// A cell that is to be decided, with what is known of it.
 struct OpenCell {
   MapCell cell;
-  std::shared_ptr<const std::vector<int>> pieces;  ///< no others touch
-  std::vector<CellBeacon> beacons;
+  std::shared_ptr<const std::vector<const MapPiece*>> pieces;  ///< no others touch
+  std::vector<dvec3> beacons;
   Contact hint;  ///< that supports nearby
 };
 
@@ -30,8 +31,8 @@ struct LookedAtCell {
   MapCell cell;
   bool splits = false;
   /// Of what is split or may have to be, a node or facet: what its quarters are decided with.
-  std::vector<int> pieces;
-  std::vector<CellBeacon> beacons;
+  std::vector<const MapPiece*> pieces;
+  std::vector<dvec3> beacons;
   long candidates = 0;  ///< pieces that were looked at
   long queries = 0;     ///< support queries
 };
@@ -40,20 +41,20 @@ struct LookedAtCell {
 class CellDecider {
  public:
   /// The pieces must outlive it.
-  CellDecider(MapPieces& pieces, const DirectionMapOptions& options);
+  CellDecider(const MapPieces& pieces, const DirectionMapOptions& options);
 
   /// @throws Cancelled
   LookedAtCell decide(const OpenCell& open);
 
  private:
-  void turn_to(const MapCell& cell, const dvec3& q, const std::vector<CellBeacon>& beacons);
-  void drop_low(std::vector<CellBeacon>& beacons) const;
-  void add_branch_points(std::vector<CellBeacon>& beacons);
-  std::vector<int> pieces_left() const;
+  void turn_to(const MapCell& cell, const dvec3& q, const std::vector<dvec3>& beacons);
+  void drop_low(std::vector<dvec3>& beacons) const;
+  void add_branch_points(std::vector<dvec3>& beacons);
+  std::vector<const MapPiece*> pieces_left() const;
   void finish(MapCell& cell, MapCellKind kind) const;
   void put_in_line(MapCell& cell) const;
 
-  std::optional<MapCellKind> kind_of_cell(const MapCell& cell, std::vector<int>& left);
+  std::optional<MapCellKind> kind_of_cell(const MapCell& cell, std::vector<const MapPiece*>& left);
   std::optional<MapCellKind> decided(bool before_splits);
   std::optional<MapCellKind> decided_last();
   std::optional<MapCellKind> decided_sharply(int level);
@@ -65,8 +66,10 @@ class CellDecider {
   bool is_facet();
   bool is_flat() const;
   bool hang_together(const std::vector<Branch>& all) const;
+  bool come_near(const Branch& a, const Branch& b) const;
+  std::vector<dvec3> corners_of_pieces(const Branch& branch) const;
 
-  MapPieces& pieces_;
+  const MapPieces& pieces_;
   DirectionMapOptions options_;
   SupportQuery query_;
   FaceAxes axes_ = {};
@@ -78,6 +81,7 @@ class CellDecider {
   BranchOrder order_;
   ContactIndex index_;
   NearConcavity concavity_;
+  RidgeContacts ridge_;
   BranchDifferences differences_;
   CellPlanes planes_;
   CellBorder border_;

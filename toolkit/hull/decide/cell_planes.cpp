@@ -38,8 +38,8 @@ bool CellPlanes::is_spot() const {
 void CellPlanes::collect_points() {
   points_.clear();
   for (const SeenPiece& s : view_.seen()) {
-    const StoredNet& net = view_.pieces().piece(s.piece).net;
-    const dvec4* p = view_.pieces().points(net);
+    const StoredNet& net = s.piece->net;
+    const dvec4* p = net.points;
     for (int k = 0; k < net.shape.size(); ++k) points_.push_back(euclidean(p[k]));
   }
 }
@@ -83,7 +83,7 @@ CellPlanes::Plane CellPlanes::node() const {
   std::array<Contact, 3> contact;
   for (const std::size_t k : {0u, 1u, 2u}) {
     const MapPiece& piece =
-        pieces.piece(view_.seen()[std::size_t(branches_.chart(all[k].charts[0]).pieces[0])].piece);
+        *view_.seen()[std::size_t(branches_.chart(all[k].charts[0]).pieces[0])].piece;
     contact[k] = pieces.element_of(piece).contact;
     contact[k].u = 0.5 * (piece.u.lower + piece.u.upper);
     contact[k].v = 0.5 * (piece.v.lower + piece.v.upper);

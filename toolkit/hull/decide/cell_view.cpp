@@ -39,7 +39,7 @@ bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
   for (std::size_t c = 0; c < 4; ++c) {
     if (!(seen.top[c] < corners[c].height - depth)) return false;
   }
-  const dvec4* p = pieces_.points(piece.net);
+  const dvec4* p = piece.net.points;
   const Corners* y = values(seen);
   return std::all_of(corners.begin() + 4, corners.end(), [&](const BeaconEnvelope::Vertex& v) {
     for (int k = 0; k < piece.net.shape.size(); ++k) {
@@ -64,12 +64,11 @@ bool CellView::is_surpassed(const MapElement& element) const {
   });
 }
 
-void CellView::look(int index) {
+void CellView::look(const MapPiece& piece) {
   ++looked_;
-  const MapPiece& piece = pieces_.piece(index);
   if (is_surpassed(pieces_.element_of(piece))) return;
-  const dvec4* p = pieces_.points(piece.net);
-  SeenPiece seen{index, values_.size(), {}, {}};
+  const dvec4* p = piece.net.points;
+  SeenPiece seen{&piece, values_.size(), {}, {}};
   seen.top.fill(-infinity);
   seen.low.fill(infinity);
   const bool rational = pieces_.element_of(piece).rational;
@@ -105,10 +104,10 @@ void CellView::finish() {
 /// A surface or an edge that ends at the piece rises from all of it, in all directions of the cell.
 /// What is higher there may be covered, and the piece what stands for it.
 bool CellView::rises_inward(const SeenPiece& seen) const {
-  const MapPiece& piece = pieces_.piece(seen.piece);
+  const MapPiece& piece = *seen.piece;
   if (pieces_.element_of(piece).likeness.stands_for_others) return false;
   return std::any_of(piece.inward.begin(), piece.inward.end(), [&](const StoredNet& net) {
-    const dvec4* p = pieces_.points(net);
+    const dvec4* p = net.points;
     for (int k = 0; k < net.shape.size(); ++k) {
       const Corners y = heights(p[k], q_, d_);
       for (std::size_t c = 0; c < 4; ++c) {
@@ -121,7 +120,7 @@ bool CellView::rises_inward(const SeenPiece& seen) const {
 }
 
 void CellView::add_corners(const SeenPiece& seen) {
-  const MapPiece& piece = pieces_.piece(seen.piece);
+  const MapPiece& piece = *seen.piece;
   const int p = piece.net.shape.p;
   const int q = piece.net.shape.q;
   for (const bool upper_u : {false, true}) {
@@ -129,7 +128,7 @@ void CellView::add_corners(const SeenPiece& seen) {
       if ((upper_u && p == 0) || (upper_v && q == 0)) continue;
       const int k = (upper_u ? p : 0) * (q + 1) + (upper_v ? q : 0);
       Corners y = values(seen)[k];
-      for (double& height : y) height /= pieces_.points(piece.net)[k].w;
+      for (double& height : y) height /= piece.net.points[k].w;
       beacons_.push_back(y);
     }
   }
@@ -151,11 +150,11 @@ bool CellView::sharpen(double depth) {
     const std::optional<Direction> split =
         PieceSlopes(pieces_, seen, values(seen), noise_).bends_both_ways(8 * depth);
     if (!split) {
-      look(seen.piece);
+      look(*seen.piece);
       continue;
     }
     any = true;
-    for (const int half : pieces_.halves(seen.piece, *split)) look(half);
+    for (const MapPiece* half : seen.piece->halves(*split)) look(*half);
   }
   any = any || seen_.size() < before_.size();
   finish();
@@ -176,7 +175,7 @@ bool CellView::refine() {
       continue;
     }
     any = true;
-    for (const int half : pieces_.halves(seen.piece, *split)) look(half);
+    for (const MapPiece* half : seen.piece->halves(*split)) look(*half);
   }
   if (any) finish();
   return any;

@@ -17,7 +17,7 @@ namespace taut {
 class CellView {
  public:
   /// `noise`: what rounding may do to heights and their differences. The pieces must outlive it.
-  CellView(MapPieces& pieces, double noise) : pieces_(pieces), noise_(noise) {}
+  CellView(const MapPieces& pieces, double noise) : pieces_(pieces), noise_(noise) {}
 
   /// Turns to a cell. `beacons`: points of the model, of which q is one.
   void turn_to(const std::array<dvec3, 4>& corners, const dvec3& q, std::span<const dvec3> beacons);
@@ -29,7 +29,7 @@ class CellView {
 
   /// Looks at a piece: drops it if for each direction one of the beacons is above all of it, by
   /// more than what it stands for may be, or its element moved on to a translate is higher.
-  void look(int piece);
+  void look(const MapPiece& piece);
   /// Once all pieces have been looked at: drops those that no plane can touch.
   void finish();
   /// Those that are left.
@@ -57,7 +57,7 @@ class CellView {
   bool is_surpassed(const MapElement& element) const;
   bool rises_inward(const SeenPiece& seen) const;
 
-  MapPieces& pieces_;
+  const MapPieces& pieces_;
   double noise_;
   std::array<dvec3, 4> d_ = {};
   dvec3 q_ = dvec3(0.0);

@@ -80,7 +80,7 @@ void ContactIndex::show(int index) {
 void ContactIndex::show(int index, const Interval& u, const Interval& v) {
   const MapElement& element = pieces_.element(index);
   pieces_.restricted(index, u, v, net_);
-  if (element.rational) even_weights(pieces_.piece(element.root).exact.shape, net_);
+  if (element.rational) even_weights(element.root->exact.shape, net_);
 }
 
 /// From the border of a patch's rectangle inwards, where nothing is glued to it.
@@ -89,12 +89,11 @@ bool ContactIndex::face_border_rises(const CellView& view, int index) {
   if (std::all_of(glued.begin(), glued.end(), [](int g) { return g >= 0; })) return true;
   show(index);
   const int element = view_branches_->chart(index).element;
-  const NetShape shape = pieces_.piece(pieces_.element(element).root).exact.shape;
+  const NetShape shape = pieces_.element(element).root->exact.shape;
   const auto is_apart = [&](Side side) {
     const std::array beside =
         along_v(side) ? std::array{Side::v0, Side::v1} : std::array{Side::u0, Side::u1};
-    return glued[std::size_t(beside[0])] < 0 &&
-           glued[std::size_t(beside[1])] < 0;
+    return glued[std::size_t(beside[0])] < 0 && glued[std::size_t(beside[1])] < 0;
   };
   return std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
     return glued[std::size_t(side)] >= 0 || side_rises(view, shape, side) ||
@@ -178,11 +177,11 @@ bool ContactIndex::edge_border_rises(const CellView& view, int index) {
   }
   Growth growth(view);
   for (const dvec4& p : net_) growth.include(p);
-  const MapPiece& root = pieces_.piece(element.root);
+  const MapPiece& root = *element.root;
   std::vector<std::vector<dvec4>> inside;
   for (std::size_t k = 0; k < root.inward.size(); ++k) {
     const StoredNet& net = root.inward[k];
-    const dvec4* p = pieces_.points(net);
+    const dvec4* p = net.points;
     std::vector<dvec4> inward(p, p + net.shape.size());
     restrict_net(net.shape, inward.data(), chart.u, Interval{0, 1});
     if (is_beside(index, element.beside[k])) {
@@ -227,12 +226,12 @@ bool ContactIndex::is_beside(int edge, int element) const {
 bool ContactIndex::vertex_border_rises(const CellView& view, int index) {
   const Chart& chart = view_branches_->chart(index);
   const MapElement& element = pieces_.element(chart.element);
-  const MapPiece& root = pieces_.piece(element.root);
+  const MapPiece& root = *element.root;
   Growth growth(view);
-  growth.include(*pieces_.points(root.net));
+  growth.include(*root.net.points);
   std::vector<std::vector<dvec4>> inside;
   for (std::size_t k = 0; k < root.inward.size(); ++k) {
-    const dvec4 tangent = *pieces_.points(root.inward[k]);
+    const dvec4 tangent = *root.inward[k].points;
     if (is_beside(index, element.beside[k])) {
       inside.push_back({tangent});
     } else if (!growth.along(-tangent)) {
@@ -373,7 +372,7 @@ bool ContactIndex::is_one_of_more(const CellView& view, const Branches& branches
       const Chart& chart = more.chart(k);
       if (chart.kind != SourceKind::face) return false;
       show(k);
-      const NetShape shape = pieces_.piece(pieces_.element(chart.element).root).exact.shape;
+      const NetShape shape = pieces_.element(chart.element).root->exact.shape;
       for (const Side side : all_sides) {
         if (glued_[std::size_t(k)][std::size_t(side)] >= 0) continue;
         if (!side_rises(view, shape, side)) beyond.emplace_back(k, side);
@@ -393,10 +392,10 @@ bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branch
     return false;
   }
   const MapElement& element = pieces_.element(chart.element);
-  const NetShape shape = pieces_.piece(element.root).exact.shape;
+  const NetShape shape = element.root->exact.shape;
   std::vector<ParameterRegion::Cell> rectangles;
   for (const int k : chart.pieces) {
-    const MapPiece& piece = pieces_.piece(view.seen()[std::size_t(k)].piece);
+    const MapPiece& piece = *view.seen()[std::size_t(k)].piece;
     rectangles.push_back({piece.u, piece.v});
     if (!regions_.are_definite(chart.element, piece.u, piece.v)) return false;
   }
@@ -411,8 +410,7 @@ bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branch
       const ParameterRegion::Cell cell = region.cell(side.i, side.j);
       show(chart.element, cell.u, cell.v);
       if (side_rises(view, shape, side.side, false)) continue;
-      if (side_rises(view, shape, side.side, true) ||
-          side_has_no_low(view, shape, side.side)) {
+      if (side_rises(view, shape, side.side, true) || side_has_no_low(view, shape, side.side)) {
         others.push_back(side);
         continue;
       }

@@ -29,9 +29,9 @@ CurvedRegions::Tree& CurvedRegions::tree(int element) {
   Tree& tree = trees_[std::size_t(element)];
   if (!tree.empty()) return tree;
   const MapElement& e = pieces_.element(element);
-  const StoredNet& net = pieces_.piece(e.root).exact;
+  const StoredNet& net = e.root->exact;
   BezierPatch bezier{net.shape.p, net.shape.q, {}};
-  const dvec4* p = pieces_.points(net);
+  const dvec4* p = net.points;
   bezier.points.assign(p, p + net.shape.size());
   std::array<bool, 4> poles;
   for (const Side side : all_sides) poles[std::size_t(side)] = pieces_.is_pole(e, side);
@@ -66,7 +66,7 @@ bool CurvedRegions::has_pole(int element) const {
 /// The least length on the surface of a step of length one in the parameters: that of the means of
 /// the differences of control points, less what these differ from them.
 double CurvedRegions::least_stretch(int element, const Interval& u, const Interval& v) const {
-  const NetShape shape = pieces_.piece(pieces_.element(element).root).exact.shape;
+  const NetShape shape = pieces_.element(element).root->exact.shape;
   std::vector<dvec4> net;
   pieces_.restricted(element, u, v, net);
   const int row = shape.q + 1;

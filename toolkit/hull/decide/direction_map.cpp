@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "taut/core/parallel.h"
+#include "taut/core/pool.h"
 #include "taut/hull/decide/cell_decider.h"
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/needle.h"
@@ -14,12 +17,17 @@
 namespace taut {
 namespace {
 
+/// Cells that are decided at once, on several threads.
+constexpr std::size_t batch_limit = 256;
+
 /// Decides cells level by level, so that what costs too much to be decided takes nothing from the
 /// rest.
 class MapMaker {
  public:
   MapMaker(const ContactGeometry& geometry, const DirectionMapOptions& options)
-      : pieces_(geometry, options.resolution), options_(options), decider_(pieces_, options) {}
+      : pieces_(geometry, options.resolution),
+        options_(options),
+        deciders_([this] { return std::make_unique<CellDecider>(pieces_, options_); }) {}
 
   DirectionMap run() {
     const auto needle = needle_halves(pieces_.control_points(), options_.resolution);
@@ -39,16 +47,16 @@ class MapMaker {
  private:
   /// What a node's cell is split with.
   struct Node {
-    std::vector<int> pieces;
-    std::vector<CellBeacon> beacons;
+    std::vector<const MapPiece*> pieces;
+    std::vector<dvec3> beacons;
   };
 
   void split_cube() {
-    std::vector<int> all;
+    std::vector<const MapPiece*> all;
     for (const MapElement& e : pieces_.elements()) {
       if (!e.likeness.covered) all.push_back(e.root);
     }
-    const auto whole = std::make_shared<const std::vector<int>>(std::move(all));
+    const auto whole = std::make_shared<const std::vector<const MapPiece*>>(std::move(all));
     for (int face = 0; face < 6; ++face) {
       MapCell root;
       root.face = face;
@@ -95,14 +103,32 @@ class MapMaker {
 
   void decide_waiting() {
     while (!waiting_.empty()) {
-      OpenCell next = std::move(waiting_.front());
-      waiting_.pop_front();
-      if (is_spent()) {
-        add(std::move(next.cell));  // undecided, as there is no time for it
-      } else {
-        take(decider_.decide(next));
+      std::vector<OpenCell> batch = next_batch();
+      std::vector<LookedAtCell> looked_at(batch.size());
+      if (!is_spent()) {
+        parallel_for(batch.size(), 1, options_.threads, [&](std::size_t begin, std::size_t end) {
+          const auto decider = deciders_.lease();
+          for (std::size_t k = begin; k < end; ++k) looked_at[k] = (*decider).decide(batch[k]);
+        });
+      }
+      for (std::size_t k = 0; k < batch.size(); ++k) {
+        if (is_spent()) {
+          add(std::move(batch[k].cell));  // undecided, as there is no time for it
+        } else {
+          take(std::move(looked_at[k]));
+        }
       }
     }
+  }
+
+  /// What is looked at beyond a limit is forgotten, so that it does not matter how many these are.
+  std::vector<OpenCell> next_batch() {
+    const auto count = std::min(waiting_.size(), options_.threads == 1 ? 1 : batch_limit);
+    const auto end = waiting_.begin() + std::ptrdiff_t(count);
+    std::vector<OpenCell> batch(std::make_move_iterator(waiting_.begin()),
+                                std::make_move_iterator(end));
+    waiting_.erase(waiting_.begin(), end);
+    return batch;
   }
 
   void take(LookedAtCell&& looked_at) {
@@ -165,9 +191,9 @@ class MapMaker {
     return true;
   }
 
-  void split(const MapCell& cell, std::vector<int> pieces, const std::vector<CellBeacon>& beacons,
-             const Contact& hint) {
-    const auto shared = std::make_shared<const std::vector<int>>(std::move(pieces));
+  void split(const MapCell& cell, std::vector<const MapPiece*> pieces,
+             const std::vector<dvec3>& beacons, const Contact& hint) {
+    const auto shared = std::make_shared<const std::vector<const MapPiece*>>(std::move(pieces));
     for (std::uint32_t k = 0; k < 4; ++k) {
       MapCell quarter;
       quarter.face = cell.face;
@@ -178,9 +204,9 @@ class MapMaker {
     }
   }
 
-  MapPieces pieces_;
+  const MapPieces pieces_;
   DirectionMapOptions options_;
-  CellDecider decider_;
+  Pool<CellDecider> deciders_;
   DirectionMap map_;
   std::map<int, Node> nodes_;  // by cell
   std::deque<OpenCell> waiting_;

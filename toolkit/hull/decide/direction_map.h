@@ -52,6 +52,7 @@ struct DirectionMapOptions {
   int level_limit = 30;
   long cell_limit = 1'000'000;
   long candidate_limit = 1'000'000'000;
+  int threads = 0;  ///< 0: as many as the machine has
   std::stop_token stop;
 };
 
@@ -66,7 +67,8 @@ struct DirectionMapOptions {
 /// resolution are left out (BranchDomination). All bounds are of Bernstein coefficients, for all
 /// directions of the cell at once, rounding included.
 ///
-/// Ruled patches and straight edges have no contacts but at their ends.
+/// Ruled patches and straight edges have no contacts but at their ends. The same bits for any
+/// number of threads.
 /// @throws Cancelled
 DirectionMap direction_map(const ContactGeometry& geometry, const DirectionMapOptions& options);
 

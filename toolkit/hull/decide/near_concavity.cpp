@@ -24,7 +24,7 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, 
   if (chart.kind == SourceKind::vertex) return true;
   const MapElement& element = pieces_.element(chart.element);
   pieces_.restricted(chart.element, chart.u, chart.v, net_);
-  const NetShape shape = pieces_.piece(element.root).exact.shape;
+  const NetShape shape = element.root->exact.shape;
   // What changes weights changes regions.
   if (element.rational && region.empty()) even_weights(shape, net_);
   double least = infinity;
@@ -105,8 +105,8 @@ bool NearConcavity::meet_once(const CellView& view, const Branches& branches, co
 bool NearConcavity::both_rise(const CellView& view, const Branches& branches, const Branch& branch,
                               const Glue& glue) const {
   const auto leaving = [&](int chart, int end) {
-    const StoredNet& net = pieces_.piece(pieces_.element(branches.chart(chart).element).root).exact;
-    const dvec4* p = pieces_.points(net);
+    const StoredNet& net = pieces_.element(branches.chart(chart).element).root->exact;
+    const dvec4* p = net.points;
     const int last = net.shape.p;
     const dvec3 own = euclidean(p[end == 0 ? 0 : last]);
     dvec3 way(0.0);
@@ -181,14 +181,15 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
   if (all) return true;
   if (find_chain(view, branches, branch, held)) return chain_is_nearly_concave(view);
   if (count > 1 || branches.chart(first).kind != SourceKind::face) return false;
-  return is_nearly_concave(view, branches.chart(first), 0, parameter_hull(view, branches, branch, first));
+  return is_nearly_concave(view, branches.chart(first), 0,
+                           parameter_hull(view, branches, branch, first));
 }
 
 /// The intervals of a chart's pieces, and what is between them.
 std::vector<Interval> NearConcavity::stretches(const CellView& view, const Chart& chart) {
   std::vector<Interval> pieces;
   for (const int k : chart.pieces) {
-    pieces.push_back(view.pieces().piece(view.seen()[std::size_t(k)].piece).u);
+    pieces.push_back(view.seen()[std::size_t(k)].piece->u);
   }
   std::sort(pieces.begin(), pieces.end(),
             [](const Interval& a, const Interval& b) { return a.lower < b.lower; });

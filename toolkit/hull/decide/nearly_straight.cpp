@@ -62,7 +62,7 @@ double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
 }
 
 dvec3 place(const MapPieces& pieces, int vertex) {
-  return euclidean(*pieces.points(pieces.piece(pieces.element(vertex).root).exact));
+  return euclidean(*pieces.element(vertex).root->exact.points);
 }
 
 /// The vertices that are not covered farthest along a line to either side, of those near it: within
@@ -104,8 +104,8 @@ std::optional<std::array<int, 2>> ends_if_straight(const MapPieces& pieces, cons
   const dvec3 b = place(pieces, ends[1]);
   const bool is_straight =
       std::all_of(chain.elements().begin(), chain.elements().end(), [&](int k) {
-        const StoredNet& net = pieces.piece(pieces.element(k).root).exact;
-        const dvec4* p = pieces.points(net);
+        const StoredNet& net = pieces.element(k).root->exact;
+        const dvec4* p = net.points;
         return std::all_of(p, p + net.shape.size(), [&](const dvec4& x) {
           return distance_to_segment(euclidean(x), a, b) <= budget;
         });

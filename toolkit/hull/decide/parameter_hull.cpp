@@ -13,7 +13,7 @@ std::vector<dvec2> parameter_hull(const CellView& view, const Branches& branches
                         (v - chart.v.lower) / (chart.v.upper - chart.v.lower));
   };
   for (const int k : chart.pieces) {
-    const MapPiece& piece = view.pieces().piece(view.seen()[std::size_t(k)].piece);
+    const MapPiece& piece = *view.seen()[std::size_t(k)].piece;
     for (const double u : {piece.u.lower, piece.u.upper}) {
       for (const double v : {piece.v.lower, piece.v.upper}) add(u, v);
     }

@@ -15,9 +15,9 @@ class PieceSlopes {
   /// `values`: heights of the control points times their weights; `noise`: what rounding may do to
   /// them. All must outlive it.
   PieceSlopes(const MapPieces& pieces, const SeenPiece& seen, const Corners* values, double noise)
-      : piece_(pieces.piece(seen.piece)),
+      : piece_(*seen.piece),
         element_(pieces.element_of(piece_)),
-        points_(pieces.points(piece_.net)),
+        points_(piece_.net.points),
         seen_(seen),
         values_(values),
         noise_(noise) {}

@@ -40,19 +40,6 @@ std::vector<dvec4> inward_net(NetShape shape, const std::vector<dvec4>& points, 
 
 }  // namespace
 
-void even_weights(NetShape shape, std::vector<dvec4>& net) {
-  const int p = shape.p;
-  const int q = shape.q;
-  const auto w = [&](int i, int j) { return net[std::size_t(i * (q + 1) + j)].w; };
-  const double along_u = p > 0 ? std::pow(w(0, 0) * w(0, q) / (w(p, 0) * w(p, q)), 0.5 / p) : 1;
-  const double along_v = q > 0 ? std::pow(w(0, 0) * w(p, 0) / (w(0, q) * w(p, q)), 0.5 / q) : 1;
-  double fu = 1 / std::sqrt(w(0, 0) * w(p, q));
-  for (int i = 0; i <= p; ++i, fu *= along_u) {
-    double f = fu;
-    for (int j = 0; j <= q; ++j, f *= along_v) net[std::size_t(i * (q + 1) + j)] *= f;
-  }
-}
-
 MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
     : geometry_(geometry), resolution_(resolution), joins_(geometry) {
   const Scene& scene = geometry.scene();
@@ -210,26 +197,11 @@ bool MapPieces::runs_against_first(const Contact& c) const {
   return geometry_.first({c.instance, c.kind, c.element, 0, 0}).u > 0.5;
 }
 
-int MapPieces::add(MapPiece piece, bool rational) {
-  piece.exact = piece.net;
-  if (rational) {
-    const auto first = points_.begin() + std::ptrdiff_t(piece.net.first);
-    std::vector<dvec4> net(first, first + piece.net.shape.size());
-    even_weights(piece.net.shape, net);
-    piece.net = store(piece.net.shape, net);
-  }
-  piece.box = {};
-  for (int k = 0; k < piece.net.shape.size(); ++k) {
-    piece.box.include(euclidean(points(piece.net)[k]));
-  }
-  pieces_.push_back(std::move(piece));
-  return int(pieces_.size()) - 1;
-}
-
-StoredNet MapPieces::store(NetShape shape, const std::vector<dvec4>& points) {
-  const StoredNet net{shape, points_.size()};
-  points_.insert(points_.end(), points.begin(), points.end());
-  return net;
+void MapPieces::add(MapElement element, MapPiece::Root root) {
+  root.element = int(elements_.size());
+  root.rational = element.rational;
+  element.root = &roots_.emplace_back(root);
+  elements_.push_back(std::move(element));
 }
 
 std::vector<dvec4> MapPieces::placed(const Contact& c, const std::vector<dvec4>& points) const {
@@ -275,10 +247,10 @@ void MapPieces::add_face(const Contact& c) {
     element.collapsed[std::size_t(side)] =
         geometry_.patch(c).borders[std::size_t(side)].kind == BorderKind::collapsed;
   }
-  element.root =
-      add({int(elements_.size()), {0, 1}, {0, 1}, store(shape, points), {}, {}, {-1, -1}, {-1, -1}},
-          element.rational);
-  elements_.push_back(element);
+  MapPiece::Root root;
+  root.u = root.v = {0, 1};
+  root.net = {shape, points};
+  add(std::move(element), std::move(root));
 }
 
 void MapPieces::add_edge(const Contact& c) {
@@ -294,88 +266,38 @@ void MapPieces::add_edge(const Contact& c) {
   MapElement element;
   element.contact = c;
   element.rational = !is_polynomial(curve.points);
-  MapPiece root{int(elements_.size()),
-                {0, 1},
-                {0, 0},
-                store({curve.degree(), 0}, curve.points),
-                {},
-                {},
-                {-1, -1},
-                {-1, -1}};
+  MapPiece::Root root;
+  root.u = {0, 1};
+  root.net = {{curve.degree(), 0}, curve.points};
   for (const auto* list : {&sides, &ruled}) {
     for (const ContactGeometry::PieceSide& side : *list) {
       NetShape shape;
       const int instance = side.instance < 0 ? c.instance : side.instance;
       const std::vector<dvec4> points =
           placed_patch({instance, SourceKind::face, side.patch, 0, 0}, shape);
-      const std::vector<dvec4> inward = inward_net(shape, points, side.side, side.reversed);
-      root.inward.push_back(store({int(inward.size()) - 1, 0}, inward));
+      std::vector<dvec4> inward = inward_net(shape, points, side.side, side.reversed);
+      const int degree = int(inward.size()) - 1;
+      root.inward.push_back({{degree, 0}, std::move(inward)});
     }
   }
-  element.root = add(std::move(root), element.rational);
-  elements_.push_back(element);
+  add(std::move(element), std::move(root));
 }
 
 void MapPieces::add_vertex(const Contact& c) {
-  MapPiece root;
-  root.element = int(elements_.size());
-  root.u = root.v = {0, 0};
-  root.net = store({0, 0}, {homogeneous(geometry_.point(c))});
+  MapPiece::Root root;
+  root.net = {{0, 0}, {homogeneous(geometry_.point(c))}};
   for (const ContactGeometry::PieceEnd& end : geometry_.ends(c)) {
-    root.inward.push_back(store({0, 0}, {dvec4(tangent_from(geometry_, c, end), 0)}));
+    root.inward.push_back({{0, 0}, {dvec4(tangent_from(geometry_, c, end), 0)}});
   }
   MapElement element;
   element.contact = c;
-  element.root = add(std::move(root), false);
-  elements_.push_back(std::move(element));
-}
-
-std::array<int, 2> MapPieces::halves(int index, Direction across) {
-  const bool along_u = across == Direction::u;
-  {
-    const MapPiece& known = pieces_[std::size_t(index)];
-    const auto& made = along_u ? known.halves_u : known.halves_v;
-    if (made[0] >= 0) return made;
-  }
-  const MapPiece whole = pieces_[std::size_t(index)];
-  std::array<MapPiece, 2> half;
-  for (MapPiece& h : half) {
-    h.element = whole.element;
-    h.u = whole.u;
-    h.v = whole.v;
-  }
-  const auto split = [&](const StoredNet& net) {
-    const auto size = std::size_t(net.shape.size());
-    const std::size_t first = points_.size();
-    points_.resize(first + 2 * size);
-    dvec4* const lower = points_.data() + first;
-    dvec4* const upper = lower + size;
-    std::copy_n(points_.data() + net.first, size, upper);
-    along_u ? halve_u(net.shape, upper, lower) : halve_v(net.shape, upper, lower);
-    return std::array<StoredNet, 2>{StoredNet{net.shape, first}, {net.shape, first + size}};
-  };
-  const auto nets = split(whole.exact);
-  const bool rational = elements_[std::size_t(whole.element)].rational;
-  for (std::size_t k : {0u, 1u}) half[k].net = nets[k];
-  for (const StoredNet& net : whole.inward) {
-    const auto parts = split(net);
-    for (std::size_t k : {0u, 1u}) half[k].inward.push_back(parts[k]);
-  }
-  const Interval range = along_u ? whole.u : whole.v;
-  const double middle = 0.5 * (range.lower + range.upper);
-  (along_u ? half[0].u : half[0].v).upper = middle;
-  (along_u ? half[1].u : half[1].v).lower = middle;
-  const std::array<int, 2> made = {add(std::move(half[0]), rational),
-                                   add(std::move(half[1]), rational)};
-  (along_u ? pieces_[std::size_t(index)].halves_u : pieces_[std::size_t(index)].halves_v) = made;
-  return made;
+  add(std::move(element), std::move(root));
 }
 
 void MapPieces::restricted(int element, const Interval& u, const Interval& v,
                            std::vector<dvec4>& points) const {
-  const StoredNet& net = piece(elements_[std::size_t(element)].root).exact;
-  const auto first = points_.begin() + std::ptrdiff_t(net.first);
-  points.assign(first, first + net.shape.size());
+  const StoredNet& net = elements_[std::size_t(element)].root->exact;
+  points.assign(net.points, net.points + net.shape.size());
   restrict_net(net.shape, points.data(), u, net.shape.q > 0 ? v : Interval{0, 1});
 }
 

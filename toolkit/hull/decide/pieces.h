@@ -1,39 +1,16 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include "taut/bounds/contact_geometry.h"
-#include "taut/bounds/scalar_net.h"
+#include "taut/hull/decide/map_piece.h"
 #include "taut/hull/decide/round_shape.h"
 #include "taut/hull/decide/smooth_joins.h"
 
 namespace taut {
-
-/// A net of homogeneous control points or derivatives in a store of them; v within u.
-struct StoredNet {
-  NetShape shape;
-  std::size_t first = 0;
-};
-
-/// Part of an element: a rectangle of a patch, an interval of a piece of an edge, or a vertex.
-struct MapPiece {
-  int element = -1;
-  Interval u, v;
-  /// Its control points; of a rational one in parameters in which weights are most alike.
-  StoredNet net;
-  StoredNet exact;  ///< in the element's own parameters
-  /// Of an edge or vertex: derivatives along the surfaces and edges that end there, away from it.
-  std::vector<StoredNet> inward;
-  std::array<int, 2> halves_u = {-1, -1};
-  std::array<int, 2> halves_v = {-1, -1};
-  Box box = {};  ///< of its control points
-};
-
-/// Scales a rational net so that the weights at its four corners are as alike as changes of
-/// parameters that keep the rectangle can make them.
-void even_weights(NetShape shape, std::vector<dvec4>& net);
 
 /// What elements are to those like them.
 struct Likeness {
@@ -62,7 +39,7 @@ struct Likeness {
 struct MapElement {
   Contact contact;
   bool rational = false;
-  int root = -1;
+  const MapPiece* root = nullptr;
   /// Indexed by Side, of a patch: what it goes on into smoothly, and the largest angle between the
   /// tangent planes there, as measured at some places; of an edge, at ends 0 and 1, between the
   /// tangents.
@@ -82,8 +59,8 @@ struct MapElement {
   Likeness likeness;
 };
 
-/// The elements of a scene, in its frame, with trees of their pieces that grow as they are asked.
-/// One object a thread; the geometry must outlive it.
+/// The elements of a scene, in its frame, with the roots of their trees of pieces. The geometry
+/// must outlive it.
 class MapPieces {
  public:
   /// `resolution`: what is nearer may be taken for one, in the scene's frame.
@@ -113,19 +90,13 @@ class MapPieces {
   /// Of all there is, also of what has no contacts of its own.
   std::vector<dvec3> control_points() const;
 
-  const MapPiece& piece(int index) const { return pieces_[std::size_t(index)]; }
   const MapElement& element_of(const MapPiece& piece) const { return element(piece.element); }
-  const dvec4* points(const StoredNet& net) const { return points_.data() + net.first; }
-  std::size_t piece_count() const { return pieces_.size(); }
-  /// One of the two halves of a piece across a parameter. @pre it has the parameter
-  std::array<int, 2> halves(int piece, Direction across);
   /// The element's control points over a rectangle.
   void restricted(int element, const Interval& u, const Interval& v,
                   std::vector<dvec4>& points) const;
 
  private:
-  int add(MapPiece piece, bool rational);
-  StoredNet store(NetShape shape, const std::vector<dvec4>& points);
+  void add(MapElement element, MapPiece::Root root);
   void add_face(const Contact& c);
   void add_edge(const Contact& c);
   void add_vertex(const Contact& c);
@@ -143,8 +114,7 @@ class MapPieces {
   std::vector<MapElement> elements_;
   bool any_covered_ = false;
   std::vector<RoundShape> rounds_;
-  std::vector<MapPiece> pieces_;
-  std::vector<dvec4> points_;
+  std::deque<MapPiece> roots_;
   std::vector<std::array<int, 3>> first_;  // per instance and kind, into index_
   std::vector<int> index_;
 };

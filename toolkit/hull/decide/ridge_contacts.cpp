@@ -230,7 +230,7 @@ bool RidgeContacts::are_one(const CellView& view, const Branches& branches, cons
   }
   constexpr std::array directions = {Direction::u, Direction::v};
   return std::any_of(directions.begin(), directions.end(), [&](Direction along) {
-    shape_ = pieces_.piece(element.root).exact.shape;
+    shape_ = element.root->exact.shape;
     pieces_.restricted(chart.element, {0, 1}, {0, 1}, net_);
     return are_one(view, along, hull);
   });

@@ -20,8 +20,8 @@ constexpr int ray_limit = 16;
 
 /// Points of an element, in order of the parameters.
 std::vector<dvec3> samples(const MapPieces& pieces, int element) {
-  const StoredNet& net = pieces.piece(pieces.element(element).root).exact;
-  const dvec4* p = pieces.points(net);
+  const StoredNet& net = pieces.element(element).root->exact;
+  const dvec4* p = net.points;
   BezierPatch patch{net.shape.p, net.shape.q, {p, p + net.shape.size()}};
   std::vector<dvec3> result;
   for (int i = 0; i < fit_samples; ++i) {
@@ -109,12 +109,12 @@ std::optional<RoundShape> shape_near(const std::vector<dvec3>& points, SourceKin
 }
 
 const StoredNet& net_of(const MapPieces& pieces, int element) {
-  return pieces.piece(pieces.element(element).root).exact;
+  return pieces.element(element).root->exact;
 }
 
 std::span<const dvec4> points_of(const MapPieces& pieces, int element) {
   const StoredNet& net = net_of(pieces, element);
-  return {pieces.points(net), std::size_t(net.shape.size())};
+  return {net.points, std::size_t(net.shape.size())};
 }
 
 /// How often rays from the centre meet the elements of a shape, of which each is drawn together to

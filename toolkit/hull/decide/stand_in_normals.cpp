@@ -42,9 +42,9 @@ const StandInNormals::Cone& StandInNormals::cone(int element) {
   cone.angle = std::numbers::pi;
   const MapElement& e = pieces_.element(element);
   if (e.rational) return cone;
-  const StoredNet& net = pieces_.piece(e.root).exact;
-  const std::vector<dvec3> along_u = differences(net.shape, pieces_.points(net), true);
-  const std::vector<dvec3> along_v = differences(net.shape, pieces_.points(net), false);
+  const StoredNet& net = e.root->exact;
+  const std::vector<dvec3> along_u = differences(net.shape, net.points, true);
+  const std::vector<dvec3> along_v = differences(net.shape, net.points, false);
   dvec3 sum(0.0);
   for (const dvec3& a : along_u) {
     for (const dvec3& b : along_v) sum += glm::cross(a, b);

@@ -41,9 +41,9 @@ double gauge_of(const std::vector<dvec3>& offsets) {
   return sum / double(offsets.size());
 }
 
-Shape shape_of(const MapPieces& pieces, const MapElement& element) {
-  const StoredNet& net = pieces.piece(element.root).exact;
-  const dvec4* p = pieces.points(net);
+Shape shape_of(const MapElement& element) {
+  const StoredNet& net = element.root->exact;
+  const dvec4* p = net.points;
   Shape shape;
   for (int k = 0; k < net.shape.size(); ++k) {
     shape.offsets.push_back(euclidean(p[k]));
@@ -143,10 +143,9 @@ std::optional<Mean> mean_near(const std::vector<dvec3>& points, const std::vecto
 }
 
 double distance_outside(const MapPieces& pieces, int element, const RoundShape& round) {
-  const StoredNet& net = pieces.piece(pieces.element(element).root).exact;
+  const StoredNet& net = pieces.element(element).root->exact;
   const auto size = std::size_t(net.shape.size());
-  return round.distances(net.shape, {pieces.points(net), size}).outwards +
-         pieces.geometry().rounding();
+  return round.distances(net.shape, {net.points, size}).outwards + pieces.geometry().rounding();
 }
 
 /// An element, or those of a round shape.
@@ -254,8 +253,8 @@ class Search {
     for (int k = 0; k < int(result_.size()); ++k) {
       if (counts_round[std::size_t(k)]) continue;
       const MapElement& element = pieces_.element(k);
-      const NetShape net = pieces_.piece(element.root).exact.shape;
-      add({int(element.contact.kind), net.p, net.q}, {{k}, shape_of(pieces_, element)});
+      const NetShape net = element.root->exact.shape;
+      add({int(element.contact.kind), net.p, net.q}, {{k}, shape_of(element)});
     }
     for (std::size_t k = 0; k < groups_.size(); ++k) tell(int(k));
     hold();
@@ -319,8 +318,8 @@ class Search {
         Likeness& own = result_[std::size_t(k)];
         if (own.covered || std::count(round.elements.begin(), round.elements.end(), k) > 0)
           continue;
-        const StoredNet& net = pieces_.piece(pieces_.element(k).root).exact;
-        if (round.surely_misses(euclidean(*pieces_.points(net)), budget_)) continue;
+        const StoredNet& net = pieces_.element(k).root->exact;
+        if (round.surely_misses(euclidean(*net.points), budget_)) continue;
         own.covered = distance_outside(pieces_, k, round) + round.inside <= budget_;
         held_[std::size_t(k)] = own.covered;
         if (own.covered) let_stand(round);
@@ -370,7 +369,7 @@ class Search {
     }
     const dvec3 way = two[1]->center - two[0]->center;
     const dvec3 across = two[0]->is_flat() ? two[0]->axes[2] : way;
-    const dvec3 middle = shape_of(pieces_, pieces_.element(element)).middle;
+    const dvec3 middle = shape_of(pieces_.element(element)).middle;
     const double share = glm::dot(middle - two[0]->center, across) / glm::dot(way, across);
     if (!(share > 0 && share < 1)) return false;
     const std::array<double, 2> weights = {1 - share, share};
