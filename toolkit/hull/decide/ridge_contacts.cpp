@@ -11,6 +11,8 @@ namespace {
 /// How often stretches are halved, and widened across.
 constexpr int cut_limit = 5;
 constexpr int widening_limit = 6;
+constexpr int narrowing_limit = 4;
+constexpr double narrow_share = 0.7;
 
 /// In units of what rounding may do to heights: what it may do to second and third derivatives.
 constexpr double derivative_noise = 256;
@@ -84,19 +86,12 @@ void RidgeContacts::restrict(const std::vector<dvec4>& net, const Stretch& stret
 }
 
 /// Widens a stretch until heights grow from both sides inwards.
-bool RidgeContacts::find_across(const CellView& view, Stretch& stretch) {
+bool RidgeContacts::widen(const CellView& view, Stretch& stretch) {
   for (int round = 0; round < widening_limit; ++round) {
-    restrict(t_, stretch, part_[0]);
-    bool lower = true;
-    bool upper = true;
-    for (int i = 0; i <= shape_.p; ++i) {
-      for (const dvec3& d : view.corners()) {
-        const dvec4& first = part_[0][std::size_t(i * (shape_.q + 1))];
-        const dvec4& last = part_[0][std::size_t(i * (shape_.q + 1) + shape_.q)];
-        lower = lower && glm::dot(dvec3(first), d) > derivative_noise * view.noise();
-        upper = upper && glm::dot(dvec3(last), d) < -derivative_noise * view.noise();
-      }
-    }
+    const double noise = derivative_noise * view.noise();
+    const Interval& t = stretch.t;
+    const bool lower = of_net(view, t_, {stretch.s, {t.lower, t.lower}}).lower > noise;
+    const bool upper = of_net(view, t_, {stretch.s, {t.upper, t.upper}}).upper < -noise;
     if (lower && upper) return true;
     if ((!lower && stretch.t.lower <= 0) || (!upper && stretch.t.upper >= 1)) return false;
     const double width = stretch.t.upper - stretch.t.lower;
@@ -106,10 +101,41 @@ bool RidgeContacts::find_across(const CellView& view, Stretch& stretch) {
   return false;
 }
 
+/// To where the ridge is, by Newton's method for intervals. @pre heights are concave across and
+/// grow from both sides inwards
+void RidgeContacts::narrow(const CellView& view, Stretch& stretch) {
+  Interval& t = stretch.t;
+  for (int round = 0; round < narrowing_limit; ++round) {
+    const double middle = 0.5 * (t.lower + t.upper);
+    const Range slope = of_net(view, t_, {stretch.s, {middle, middle}});
+    const Range bend = of_net(view, second_[2], stretch);
+    const double noise = derivative_noise * view.noise();
+    const double up = std::max(0.0, slope.upper + noise) / -(bend.upper + noise);
+    const double down = std::min(0.0, slope.lower - noise) / -(bend.upper + noise);
+    const double least_up = std::max(0.0, slope.lower - noise) / -(bend.lower - noise);
+    const double least_down = std::min(0.0, slope.upper + noise) / -(bend.lower - noise);
+    const Interval own = {std::max(t.lower, middle + (down < 0 ? down : least_up)),
+                          std::min(t.upper, middle + (up > 0 ? up : least_down))};
+    const bool ends = own.upper - own.lower > narrow_share * (t.upper - t.lower);
+    t = own;
+    if (ends) return;
+  }
+}
+
+RidgeContacts::Range RidgeContacts::of_net(const CellView& view, const std::vector<dvec4>& net,
+                                           const Stretch& stretch) {
+  restrict(net, stretch, part_[0]);
+  Range range;
+  for (const dvec4& coefficient : part_[0]) {
+    for (const dvec3& d : view.corners()) range.include(glm::dot(dvec3(coefficient), d));
+  }
+  return range;
+}
+
 /// The direction of the ridge is (1, m), where m is a ratio of nets and as such between those of
 /// their coefficients. The second derivative along it is at least that along any other direction;
 /// and, a convex function of the three, at most the largest of those at coefficients.
-RidgeContacts::Found RidgeContacts::find_bend(const CellView& view, Stretch& stretch) {
+bool RidgeContacts::find_bend(const CellView& view, Stretch& stretch) {
   const double noise = derivative_noise * view.noise();
   for (std::size_t k : {0u, 1u, 2u}) restrict(second_[k], stretch, part_[k]);
   const std::size_t size = part_[0].size();
@@ -120,13 +146,12 @@ RidgeContacts::Found RidgeContacts::find_bend(const CellView& view, Stretch& str
       const double ss = glm::dot(dvec3(part_[0][k]), d);
       const double st = glm::dot(dvec3(part_[1][k]), d);
       const double tt = glm::dot(dvec3(part_[2][k]), d);
-      if (!(tt < -noise)) return Found::no;
       way.include(st / -tt);
       bend.include(ss + st * st / -tt);
     }
   }
   stretch.bend = Bend::down;
-  if (bend.upper < -noise) return Found::yes;
+  if (bend.upper < -noise) return true;
   const double middle = 0.5 * (way.lower + way.upper);
   Range along;
   for (const dvec3& d : view.corners()) {
@@ -136,7 +161,7 @@ RidgeContacts::Found RidgeContacts::find_bend(const CellView& view, Stretch& str
     }
   }
   stretch.bend = Bend::up;
-  if (along.lower > noise) return Found::yes;
+  if (along.lower > noise) return true;
   for (std::size_t k : {0u, 1u, 2u, 3u}) restrict(third_[k], stretch, part_[k]);
   // Bernstein coefficients of the cubic polynomial in m.
   Range third;
@@ -156,20 +181,22 @@ RidgeContacts::Found RidgeContacts::find_bend(const CellView& view, Stretch& str
     }
   }
   stretch.bend = third.upper < 0 ? Bend::falling : Bend::rising;
-  return third.upper < -noise || third.lower > noise ? Found::yes : Found::unclear;
+  return third.upper < -noise || third.lower > noise;
 }
 
 bool RidgeContacts::cut(const CellView& view, const std::vector<dvec2>& hull, const Interval& s,
                         int depth) {
   Stretch stretch{s, slice(hull, s)};
-  const bool found = find_across(view, stretch);
-  if (found) {
-    const Found bend = find_bend(view, stretch);
-    if (bend == Found::yes) {
+  const double noise = derivative_noise * view.noise();
+  if (widen(view, stretch) && of_net(view, second_[2], stretch).upper < -2 * noise) {
+    const Interval across = stretch.t;
+    narrow(view, stretch);
+    if (find_bend(view, stretch)) {
+      stretch.t = across;
       // Else there were two ridges.
       if (!stretches_.empty()) {
         const Interval& before = stretches_.back().t;
-        if (before.lower > stretch.t.upper || stretch.t.lower > before.upper) return false;
+        if (before.lower > across.upper || across.lower > before.upper) return false;
       }
       stretches_.push_back(stretch);
       return true;

@@ -39,9 +39,10 @@ class RidgeContacts {
   bool are_one(const CellView& view, Direction along, const std::vector<dvec2>& hull);
   void derive(Direction along);
   bool cut(const CellView& view, const std::vector<dvec2>& hull, const Interval& s, int depth);
-  bool find_across(const CellView& view, Stretch& stretch);
-  enum class Found { no, unclear, yes };
-  Found find_bend(const CellView& view, Stretch& stretch);
+  Range of_net(const CellView& view, const std::vector<dvec4>& net, const Stretch& stretch);
+  bool widen(const CellView& view, Stretch& stretch);
+  void narrow(const CellView& view, Stretch& stretch);
+  bool find_bend(const CellView& view, Stretch& stretch);
   bool bends_down_once() const;
   void restrict(const std::vector<dvec4>& net, const Stretch& stretch, std::vector<dvec4>& part);
 
