@@ -49,7 +49,7 @@ CellDecider::CellDecider(const MapPieces& pieces, const DirectionMapOptions& opt
       domination_(pieces.budget_left() * options.resolution),
       index_(pieces, options.resolution),
       concavity_(pieces, options.resolution),
-      ridge_(pieces),
+      ridge_(pieces, options.resolution),
       differences_(pieces, view_, branches_, cover_share * options.resolution),
       planes_(view_, branches_, options.resolution),
       border_(view_, branches_, query_) {}

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
@@ -15,10 +16,12 @@ namespace taut {
 /// its ends in t inwards. Then for each s there is one highest point, at t*(s), on which all
 /// contacts are, as maxima of g(s) = h(s, t*(s)). Along w = (1, -h_st / h_tt) the second derivative
 /// of h is that of g and, as h_t stays zero along the ridge, the third is that of g too. Where g
-/// bends down over one interval of s only, it has one maximum inside of R at most.
+/// bends down over one interval of s only, it has one maximum inside of R at most. An edge of the
+/// branch at an end of R is one more if g falls from it inwards; of two the lower one is within the
+/// resolution of what is between.
 class RidgeContacts {
  public:
-  explicit RidgeContacts(const MapPieces& pieces) : pieces_(pieces) {}
+  RidgeContacts(const MapPieces& pieces, double resolution) : pieces_(pieces), rho_(resolution) {}
 
   /// True is certain.
   bool are_one(const CellView& view, const Branches& branches, const Branch& branch);
@@ -36,20 +39,27 @@ class RidgeContacts {
     double upper = -infinity;
     void include(double x);
   };
-  bool are_one(const CellView& view, Direction along, const std::vector<dvec2>& hull);
+  static std::optional<int> patch(const Branches& branches, const Branch& branch,
+                                  std::array<bool, 4>& edges);
+  bool are_one(const CellView& view, Direction along, const std::vector<dvec2>& hull,
+               const std::array<bool, 4>& edges);
   void derive(Direction along);
   bool cut(const CellView& view, const std::vector<dvec2>& hull, const Interval& s, int depth);
   Range of_net(const CellView& view, const std::vector<dvec4>& net, const Stretch& stretch);
   bool widen(const CellView& view, Stretch& stretch);
   void narrow(const CellView& view, Stretch& stretch);
   bool find_bend(const CellView& view, Stretch& stretch);
-  bool bends_down_once() const;
+  Range bend(const CellView& view, const Stretch& stretch, Range& way);
+  bool is_dent_small(const CellView& view, bool at_upper);
+  bool bends_down_once(const CellView& view, const std::array<bool, 2>& edges);
   void restrict(const std::vector<dvec4>& net, const Stretch& stretch, std::vector<dvec4>& part);
 
   const MapPieces& pieces_;
-  NetShape shape_;  ///< of t within s
+  double rho_;
+  double noise_ = 0;  ///< what rounding may do to derivatives
+  NetShape shape_;    ///< of t within s
   std::vector<dvec4> net_;
-  std::vector<dvec4> t_;
+  std::vector<dvec4> s_, t_;
   std::array<std::vector<dvec4>, 3> second_;  ///< ss, st, tt
   std::array<std::vector<dvec4>, 4> third_;   ///< sss, sst, stt, ttt
   std::vector<Stretch> stretches_;
