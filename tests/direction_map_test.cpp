@@ -319,17 +319,17 @@ std::array<double, 5> interpolated(const std::array<double, 5>& y) {
           (-3 * y[0] + 16 * y[1] - 36 * y[2] + 48 * y[3] - 13 * y[4]) / 12, y[4]};
 }
 
-/// The same dent, turned against the parameters.
-Shape dented_obliquely(double depth, double angle) {
+/// A sheet above [-1, 1] x [-1, 1] of a height that is of degree four in s and t, which are x and y
+/// turned by an angle.
+template <class Height>
+Shape sheet(double angle, const Height& height) {
   std::array<std::array<double, 5>, 5> heights;  // by x, then y
   for (int i = 0; i <= 4; ++i) {
     for (int j = 0; j <= 4; ++j) {
       const double x = 0.5 * i - 1;
       const double y = 0.5 * j - 1;
-      const double s = std::cos(angle) * x + std::sin(angle) * y;
-      const double t = std::cos(angle) * y - std::sin(angle) * x;
-      heights[std::size_t(i)][std::size_t(j)] =
-          -16 * depth * (s * s - 0.25) * (s * s - 0.25) - t * t;
+      heights[std::size_t(i)][std::size_t(j)] = height(std::cos(angle) * x + std::sin(angle) * y,
+                                                       std::cos(angle) * y - std::sin(angle) * x);
     }
   }
   for (auto& row : heights) row = interpolated(row);
@@ -345,6 +345,13 @@ Shape dented_obliquely(double depth, double angle) {
   return {{spline(rows, 4, 4)}, {}, {}};
 }
 
+/// The same dent, turned against the parameters.
+Shape dented_obliquely(double depth, double angle) {
+  return sheet(angle, [&](double s, double t) {
+    return -16 * depth * (s * s - 0.25) * (s * s - 0.25) - t * t;
+  });
+}
+
 TEST(DirectionMap, ObliqueDentsStayApart) {
   constexpr double rho = 1e-5;
   for (const double angle : {0.3, 0.7}) {
@@ -358,6 +365,71 @@ TEST(DirectionMap, ObliqueDentsStayApart) {
       EXPECT_TRUE(cell.kind == MapCellKind::arc || depth < 100 * rho);
       EXPECT_NE(cell.kind, MapCellKind::region);
     }
+  }
+}
+
+/// Beside a parabolic line contacts are maxima along a ridge, on one side of it only.
+TEST(DirectionMap, ContactsUpToAParabolicLineAreOne) {
+  const Shape shape = sheet(0.7, [](double s, double t) { return -t * t - 0.2 * s * s * s; });
+  for (const Variant variant : {Variant::clean, Variant::turned, Variant::float32}) {
+    SCOPED_TRACE(taut_test::name_of(variant));
+    taut_test::Random random(1);
+    const Mapped mapped(placed({shape}, variant, random).shape);
+    EXPECT_EQ(count(mapped.map, MapCellKind::undecided), 0);
+    EXPECT_LT(mapped.map.statistics.cells, 740);
+  }
+}
+
+/// Where a sheet ends without bending, as subdivision surfaces do, contacts leave its edge at once.
+TEST(DirectionMap, ContactsLeaveEdges) {
+  const Shape shape = sheet(0, [](double s, double t) {
+    const double across = t - 0.4 * (s + 1) * (s + 1);
+    return -across * across - 0.1 * (s + 1) * (s + 1) * (s + 1);
+  });
+  const Mapped mapped(shape);
+  EXPECT_EQ(count(mapped.map, MapCellKind::undecided), 0);
+  EXPECT_LT(mapped.map.statistics.cells, 1000);
+}
+
+/// A crest and the edge beside it, with a dent between.
+TEST(DirectionMap, DentsBesideAnEdgeStayApart) {
+  constexpr double rho = 1e-5;
+  for (const double depth : {4 * rho, 64 * rho, 1000 * rho}) {
+    SCOPED_TRACE(depth);
+    const Shape shape =
+        sheet(0, [&](double s, double t) { return -6.75 * depth * (s + 1) * s * s - t * t; });
+    const dmat3 rotation = skew_rotation();
+    const Scene scene = make_scene(mapped(shape, rotation));
+    const DirectionMap map = map_at(scene, rho);
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    EXPECT_NE(cell_at(map, rotation * dvec3(0, 0, 1)).kind, MapCellKind::region);
+  }
+}
+
+/// Three quarters of a cap, without that in which it is the highest: two edges are.
+TEST(DirectionMap, ReentrantCornersPartEdges) {
+  Shape shape;
+  for (const auto& [x, y] : {std::array{-1, -1}, {-1, 0}, {0, -1}}) {
+    std::vector<std::vector<dvec3>> rows(3);
+    for (int i = 0; i <= 2; ++i) {
+      for (int j = 0; j <= 2; ++j) {
+        // Blossoms of (x - 0.3)^2 and (y - 0.3)^2.
+        const auto square = [](double from, int k) {
+          const double a = from - 0.3 + (k == 2 ? 1 : 0);
+          const double b = from - 0.3 + (k >= 1 ? 1 : 0);
+          return a * b;
+        };
+        rows[std::size_t(i)].emplace_back(x + 0.5 * i, y + 0.5 * j, -square(x, i) - square(y, j));
+      }
+    }
+    shape.surfaces.push_back(spline(rows, 2, 2));
+  }
+  const dmat3 rotation = skew_rotation();
+  for (const bool turned : {false, true}) {
+    const dmat3 own = turned ? rotation : dmat3(1.0);
+    const Scene scene = make_scene(mapped(shape, own));
+    const DirectionMap map = map_at(scene, 1e-3);
+    EXPECT_NE(cell_at(map, own * dvec3(0, 0, 1)).kind, MapCellKind::region);
   }
 }
 
@@ -542,7 +614,7 @@ TEST(DirectionMap, DomesOnStraightSidesAreDecided) {
       {{20, 0, 0}, {20, 10, 11}, {20, 20, 8}, {20, 30, 0}},
       {{30, 0, 0}, {30, 10, 0}, {30, 20, 0}, {30, 30, 0}}};
   taut_test::Random random(2);
-  for (const Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
+  for (const taut_test::Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
     SCOPED_TRACE(name_of(variant));
     const Mapped mapped(placed({{{spline(rows)}, {}, {}}}, variant, random).shape);
     EXPECT_EQ(count(mapped.map, MapCellKind::undecided), 0);
@@ -569,7 +641,7 @@ TEST(DirectionMap, WhatBendsBothWaysIsDecided) {
                                     {"curves_and_points/wires", 1000},
                                     {"sheets/terrain", 3000},
                                     {"sheets/ship", 2500}}) {
-    for (const Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
+    for (const taut_test::Variant variant : {Variant::clean, Variant::turned, Variant::decimals}) {
       SCOPED_TRACE(std::string(name) + " " + name_of(variant));
       const DirectionMap map = map_of_family(name, variant);
       EXPECT_EQ(count(map, MapCellKind::undecided), 0);

@@ -171,7 +171,7 @@ void CellDecider::put_in_line(MapCell& cell) const {
 
 std::optional<MapCellKind> CellDecider::decided(bool before_splits) {
   dominated_.clear();
-  if (view_.seen().size() > looked_at_limit) {
+  if (view_.seen().size() > view_.crowding() * looked_at_limit) {
     branches_.clear();
     return is_facet() ? std::optional(MapCellKind::facet) : std::nullopt;
   }
@@ -188,7 +188,7 @@ std::optional<MapCellKind> CellDecider::decided(bool before_splits) {
 
 /// What takes longer, for pieces that are as fine as they become.
 std::optional<MapCellKind> CellDecider::decided_last() {
-  if (view_.seen().size() > looked_at_limit) return std::nullopt;
+  if (view_.seen().size() > view_.crowding() * looked_at_limit) return std::nullopt;
   if (!planes_.is_spot() && is_facet()) return MapCellKind::facet;
   if (const auto kind = kind_of_branches(true)) return kind;
   return kind_without_dominated();

@@ -14,6 +14,9 @@ constexpr double split_share = 1;
 constexpr std::size_t many_pieces = 128;
 constexpr double coarse_share = 64;
 constexpr std::size_t split_piece_limit = 192;
+/// Cells as narrow as this are few, where much touches one plane: they may have so many times more.
+constexpr double narrow_cell = 1e-6;
+constexpr std::size_t narrow_times = 4;
 
 }  // namespace
 
@@ -47,6 +50,10 @@ bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
     }
     return true;
   });
+}
+
+std::size_t CellView::crowding() const {
+  return glm::distance(d_[0], d_[3]) < narrow_cell ? narrow_times : 1;
 }
 
 double CellView::longest_direction() const {
@@ -162,8 +169,8 @@ bool CellView::sharpen(double depth) {
 }
 
 bool CellView::refine() {
-  if (seen_.size() > split_piece_limit) return false;
-  const double share = seen_.size() > many_pieces ? coarse_share : split_share;
+  if (seen_.size() > crowding() * split_piece_limit) return false;
+  const double share = seen_.size() > crowding() * many_pieces ? coarse_share : split_share;
   before_.swap(seen_);
   seen_.clear();
   bool any = false;

@@ -45,6 +45,9 @@ class CellView {
   /// than it below the convex hull of what else there is. True if there were any.
   bool sharpen(double depth);
 
+  /// How many times more pieces than in a wide cell are not too many.
+  std::size_t crowding() const;
+
   const MapPieces& pieces() const { return pieces_; }
   double noise() const { return noise_; }
   /// Pieces looked at since construction.

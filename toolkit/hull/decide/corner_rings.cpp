@@ -42,6 +42,7 @@ void CornerRings::visit(int k, Side u, Side v) {
     const Way back = walk({k, start.other, start.next});
     closed = way.edge >= 0 && back.edge >= 0 && meet(way.edge, back.edge);
     way.corners.insert(way.corners.end(), back.corners.begin(), back.corners.end());
+    reentrant_ = reentrant_ || way.corners.size() > 3;  // the first one twice
   }
   // The point is met from each of its charts, and both ways around.
   for (const Corner& c : way.corners) {

@@ -21,6 +21,9 @@ class CornerRings {
               const Glued& glued);
 
   int count() const { return count_; }
+  /// At some corner three charts of patches or more meet, but not all around: there the branch is
+  /// not convex.
+  bool any_is_reentrant() const { return reentrant_; }
   /// Charts and their sides at poles that are such points.
   const std::vector<std::pair<int, Side>>& poles() const { return poles_; }
 
@@ -53,6 +56,7 @@ class CornerRings {
   const Branch& branch_;
   const Glued& glued_;
   int count_ = 0;
+  bool reentrant_ = false;
   std::vector<std::pair<int, Side>> poles_;
   std::set<std::array<int, 3>> passed_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/corner_rings.h"
 #include "taut/hull/decide/parameter_hull.h"
 
 namespace taut {
@@ -144,6 +145,18 @@ bool NearConcavity::spans(const Branches& branches, const Glue& glue, bool same)
 /// each other smoothly. From a chart that meets two others in what is highest of it both would have
 /// to rise, against slopes that are the same on the two sides; what slopes may grow by between them
 /// counts over the branch.
+/// The chart in such a corner may be left for either of two others.
+bool NearConcavity::is_reentrant(const Branches& branches, const Branch& branch) const {
+  CornerRings::Glued glued(branches.charts().size(), {-1, -1, -1, -1});
+  for (const int g : branch.glues) {
+    const Glue& glue = branches.glue(g);
+    if (glue.kind != Glue::Kind::faces) continue;
+    glued[std::size_t(glue.a)][std::size_t(glue.at_a)] = g;
+    glued[std::size_t(glue.b)][std::size_t(glue.at_b)] = g;
+  }
+  return CornerRings(pieces_, branches, branch, glued).any_is_reentrant();
+}
+
 bool NearConcavity::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
   DisjointSets sets(branches.charts().size());
   std::vector<bool> held(branches.charts().size(), false);
@@ -165,7 +178,7 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
     if (!(kink * size <= rho_)) continue;
     if (meet_once(view, branches, branch, glue)) sets.unite(glue.a, glue.b);
   }
-  if (!(kinks * size <= kink_share * rho_)) return false;
+  if (!(kinks * size <= kink_share * rho_) || is_reentrant(branches, branch)) return false;
   int first = -1;
   int count = 0;
   for (const int k : branch.charts) {

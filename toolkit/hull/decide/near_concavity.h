@@ -20,6 +20,7 @@ class NearConcavity {
  private:
   bool is_nearly_concave(const CellView& view, const Chart& chart, double size,
                          const std::vector<dvec2>& region);
+  bool is_reentrant(const Branches& branches, const Branch& branch) const;
   static std::vector<Interval> stretches(const CellView& view, const Chart& chart);
   bool find_chain(const CellView& view, const Branches& branches, const Branch& branch,
                   const std::vector<bool>& held);
