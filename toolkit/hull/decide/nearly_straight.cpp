@@ -127,8 +127,8 @@ NearlyStraight nearly_straight(const MapPieces& pieces, double budget) {
   for (int k = 0; k < int(count); ++k) {
     const Contact& c = pieces.element(k).contact;
     if (c.kind != SourceKind::edge || result.edges[std::size_t(k)]) continue;
-    for (const int end : {0, 1}) {
-      const Chain chain(pieces, c, end);
+    for (const int from_end : {0, 1}) {
+      const Chain chain(pieces, c, from_end);
       if (!chain.is_whole()) continue;
       const auto ends = ends_if_straight(pieces, chain, vertices, budget);
       if (!ends) continue;
