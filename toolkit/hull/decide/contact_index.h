@@ -21,10 +21,10 @@ namespace taut {
 /// points. All near-maxima hang together with it: a piece of the surface above some height that
 /// does not hold it would have a maximum of its own.
 ///
-/// From parts of the border inside of patches, beyond which no plane touches, heights may fall: if
-/// along these they have no local minimum, the highest points of them, from which the heights
-/// grow outwards, count one each too (Morse theory for surfaces with borders: minima there would
-/// count minus one). So there is one contact or none.
+/// From parts of the border to which nothing of the branch is glued, so that beyond them no plane
+/// touches, heights may fall: if along these they have no local minimum, the highest points of
+/// them, from which the heights grow outwards, count one each too (Morse theory for surfaces with
+/// borders: minima there would count minus one). So there is one contact or none.
 ///
 /// Patches may be nearly flat too, or bend towards the directions a little: the heights less
 /// e times the square of the distance from a point, which is less than a quarter of the resolution

@@ -101,12 +101,6 @@ std::vector<ParameterRegion::BorderSide> ParameterRegion::border() const {
   return result;
 }
 
-bool ParameterRegion::is_at_end(const BorderSide& side) const {
-  const Cell c = cell(side.i, side.j);
-  const Interval& across = along_v(side.side) ? c.u : c.v;
-  return at_upper_end(side.side) ? across.upper == 1 : across.lower == 0;
-}
-
 /// At a corner of the grid.
 int ParameterRegion::cells_at(int i, int j) const {
   return has(i - 1, j - 1) + has(i - 1, j) + has(i, j - 1) + has(i, j);

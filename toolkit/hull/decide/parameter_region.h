@@ -25,8 +25,6 @@ class ParameterRegion {
     Side side = Side::u0;
   };
   std::vector<BorderSide> border() const;
-  /// The side lies on the border of the patch.
-  bool is_at_end(const BorderSide& side) const;
   /// One of them ends at a corner at which three cells of the region meet.
   bool any_end_inwards(const std::vector<BorderSide>& sides) const;
   Cell cell(int i, int j) const;

@@ -12,6 +12,7 @@ namespace {
 /// How often stretches are halved, and widened across.
 constexpr int cut_limit = 5;
 constexpr int widening_limit = 6;
+/// Steps of Newton's method, which ends where one does not make a stretch this much narrower.
 constexpr int narrowing_limit = 4;
 constexpr double narrow_share = 0.7;
 
@@ -241,7 +242,7 @@ bool RidgeContacts::is_dent_small(const CellView& view, bool at_upper) {
   return false;
 }
 
-/// Of all ways in which g may change between bending up and down, from stretch to stretch without a
+/// In all ways in which g may change between bending up and down, from stretch to stretch without a
 /// step; beyond an edge it bends down, unless there is no dent beside it that counts.
 bool RidgeContacts::bends_down_once(const CellView& view, const std::array<bool, 2>& edges) {
   constexpr int impossible = -1;
@@ -265,7 +266,8 @@ bool RidgeContacts::bends_down_once(const CellView& view, const std::array<bool,
     }
   }
   if (up == 1 && edges[1] && !is_dent_small(view, true)) ++up;
-  return std::max(up, down) <= 1;
+  const int most = std::max(up, down);
+  return most != impossible && most <= 1;
 }
 
 bool RidgeContacts::are_one(const CellView& view, Direction along, const std::vector<dvec2>& hull,
@@ -326,6 +328,7 @@ bool RidgeContacts::are_one(const CellView& view, const Branches& branches, cons
   return std::any_of(directions.begin(), directions.end(), [&](Direction along) {
     shape_ = shape;
     pieces_.restricted(chart.element, {0, 1}, {0, 1}, net_);
+    for (dvec4& p : net_) p /= p.w;
     return are_one(view, along, hull, edges);
   });
 }
