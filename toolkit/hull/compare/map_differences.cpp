@@ -129,6 +129,8 @@ class Comparison {
     const dvec3 n = unit(d[0] + d[3]);
     const dvec3 x = geometry_.point(c);
     if (reaches(n, glm::dot(x, n))) return;
+    // Beside an arc it is not told on which side of it a point lies.
+    if (is_on_arc(n, x, x)) return;
     tell({n, c, x}, "a support point lies on no face that was found");
   }
 
