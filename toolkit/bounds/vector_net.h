@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "taut/bounds/scalar_net.h"
 #include "taut/core/geometry.h"
+#include "taut/surface/bezier.h"
 
 namespace taut {
 
@@ -61,6 +63,24 @@ void restrict_net(NetShape shape, Vector* b, const Interval& u, const Interval& 
   const int row = shape.q + 1;
   for (int j = 0; j <= shape.q; ++j) line(b + j, shape.p, row, u);
   for (int i = 0; i <= shape.p; ++i) line(b + i * row, shape.q, 1, v);
+}
+
+/// The derivative of a net with respect to u or v, as a net of the same degrees.
+template <class Vector>
+std::vector<Vector> derived(NetShape shape, const std::vector<Vector>& net, Direction along) {
+  const int row = shape.q + 1;
+  const bool of_u = along == Direction::u;
+  const int degree = of_u ? shape.p : shape.q;
+  const int step = of_u ? row : 1;
+  std::vector<Vector> result(net.size(), Vector(0.0));
+  for (int k = 0; k < shape.size(); ++k) {
+    const int i = of_u ? k / row : k % row;
+    const Vector& own = net[std::size_t(k)];
+    Vector& to = result[std::size_t(k)];
+    if (i > 0) to += double(i) * (own - net[std::size_t(k - step)]);
+    if (i < degree) to += double(degree - i) * (net[std::size_t(k + step)] - own);
+  }
+  return result;
 }
 
 }  // namespace taut

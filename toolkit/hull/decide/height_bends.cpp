@@ -11,32 +11,6 @@ namespace {
 /// Parts of nets that are looked at before a bound is given up.
 constexpr int part_limit = 64;
 
-/// A net of degree n in a parameter, stored as one of the shape, becomes one of degree n + 1.
-void elevate_u(std::vector<dvec4>& net, int n, NetShape shape) {
-  const int row = shape.q + 1;
-  for (int j = 0; j < row; ++j) {
-    for (int i = n + 1; i >= 0; --i) {
-      const double t = double(i) / (n + 1);
-      const dvec4 lower = i > 0 ? net[std::size_t((i - 1) * row + j)] : dvec4(0.0);
-      const dvec4 upper = i <= n ? net[std::size_t(i * row + j)] : dvec4(0.0);
-      net[std::size_t(i * row + j)] = t * lower + (1 - t) * upper;
-    }
-  }
-}
-
-void elevate_v(std::vector<dvec4>& net, int n, NetShape shape) {
-  const int row = shape.q + 1;
-  for (int i = 0; i <= shape.p; ++i) {
-    dvec4* line = net.data() + i * row;
-    for (int j = n + 1; j >= 0; --j) {
-      const double t = double(j) / (n + 1);
-      const dvec4 lower = j > 0 ? line[j - 1] : dvec4(0.0);
-      const dvec4 upper = j <= n ? line[j] : dvec4(0.0);
-      line[j] = t * lower + (1 - t) * upper;
-    }
-  }
-}
-
 /// All of a rectangle is on the outer side of a side of a convex polygon.
 bool is_outside(const Interval& u, const Interval& v, const std::vector<dvec2>& polygon) {
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -63,33 +37,10 @@ double largest_bend(double a, double b, double c) {
 void NetBends::find(NetShape shape, const std::vector<dvec4>& net) {
   shape_ = shape;
   part_.u = part_.v = {0, 1};
-  const int row = shape.q + 1;
-  const auto at = [&](int i, int j) -> const dvec4& { return net[std::size_t(i * row + j)]; };
-  const double p = shape.p;
-  const double q = shape.q;
-  part_.uu.assign(net.size(), dvec4(0.0));
-  part_.uv.assign(net.size(), dvec4(0.0));
-  part_.vv.assign(net.size(), dvec4(0.0));
-  for (int i = 0; i <= shape.p; ++i) {
-    for (int j = 0; j <= shape.q; ++j) {
-      const auto k = std::size_t(i * row + j);
-      if (i + 2 <= shape.p)
-        part_.uu[k] = p * (p - 1) * (at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j));
-      if (j + 2 <= shape.q)
-        part_.vv[k] = q * (q - 1) * (at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2));
-      if (i < shape.p && j < shape.q) {
-        part_.uv[k] = p * q * (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j));
-      }
-    }
-  }
-  for (int k = std::max(0, shape.p - 2); shape.p >= 2 && k < shape.p; ++k)
-    elevate_u(part_.uu, k, shape);
-  for (int k = std::max(0, shape.q - 2); shape.q >= 2 && k < shape.q; ++k)
-    elevate_v(part_.vv, k, shape);
-  if (shape.p > 0 && shape.q > 0) {
-    elevate_u(part_.uv, shape.p - 1, shape);
-    elevate_v(part_.uv, shape.q - 1, shape);
-  }
+  const std::vector<dvec4> u = derived(shape, net, Direction::u);
+  part_.uu = derived(shape, u, Direction::u);
+  part_.uv = derived(shape, u, Direction::v);
+  part_.vv = derived(shape, derived(shape, net, Direction::v), Direction::v);
 }
 
 /// Across the parameter with which they change most. Keeps the upper half, and leaves the lower one

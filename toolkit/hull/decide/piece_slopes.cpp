@@ -29,11 +29,6 @@ void PieceSlopes::Change::include(double of_u, double of_v) {
   along_v = std::max(along_v, std::abs(of_v));
 }
 
-void PieceSlopes::Range::include(double x) {
-  lower = std::min(lower, x);
-  upper = std::max(upper, x);
-}
-
 /// Height of a control point times its weight, over that of the piece's middle.
 double PieceSlopes::middle(std::size_t k) const {
   return mean(values_[k]) - 0.5 * (mean(seen_.low) + mean(seen_.top)) * points_[k].w;
@@ -88,7 +83,7 @@ bool PieceSlopes::rise_along(Direction direction) const {
   const Side upper_side = of_u ? Side::v1 : Side::u1;
   const bool lower = is_at(lower_side) && element_.collapsed[std::size_t(lower_side)];
   const bool upper = is_at(upper_side) && element_.collapsed[std::size_t(upper_side)];
-  Range range;
+  CoefficientRange range;
   for (int j = lower ? 1 : 0; j <= degree - (upper ? 1 : 0); ++j) {
     const double factor =
         (lower ? double(degree) / j : 1) * (upper ? double(degree) / (degree - j) : 1);
@@ -133,11 +128,11 @@ double PieceSlopes::longest_step(Direction direction) const {
 
 /// Of the heights over one of the piece, times the weights; a part of them once one is not above
 /// `least`.
-PieceSlopes::Range PieceSlopes::second_differences(Direction direction, double least) const {
+CoefficientRange PieceSlopes::second_differences(Direction direction, double least) const {
   const bool of_u = direction == Direction::u;
   const int step = of_u ? q() + 1 : 1;
   const int across = of_u ? 1 : q() + 1;
-  Range range;
+  CoefficientRange range;
   for (int j = 0; j <= (of_u ? q() : p()); ++j) {
     for (int i = 0; i + 2 <= (of_u ? p() : q()); ++i) {
       const int k = i * step + j * across;
@@ -181,7 +176,7 @@ bool PieceSlopes::surely_bend_up() const {
 bool PieceSlopes::bend_up_along(Direction direction) const {
   const bool of_u = direction == Direction::u;
   const double least = 2 * noise_;
-  const Range range = second_differences(direction, least);
+  const CoefficientRange range = second_differences(direction, least);
   if (!(range.lower > least)) return false;
   double kink = 0;
   for (const Side side : of_u ? std::array{Side::u0, Side::u1} : std::array{Side::v0, Side::v1}) {
@@ -340,7 +335,7 @@ bool PieceSlopes::are_convex(const Way& way) const {
 
 /// The slope's coefficients in a direction, as those of the degree of the piece, have one sign.
 bool PieceSlopes::are_definite(double along_u, double along_v) const {
-  Range range;
+  CoefficientRange range;
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
       const auto slope = [&](const auto& of) { return slope_at(i, j, along_u, along_v, of); };

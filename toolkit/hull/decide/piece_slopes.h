@@ -1,5 +1,6 @@
 #pragma once
 
+#include "taut/hull/decide/coefficient_range.h"
 #include "taut/hull/decide/pieces.h"
 #include "taut/hull/decide/seen_piece.h"
 
@@ -63,17 +64,10 @@ class PieceSlopes {
     double along_u = 0, along_v = 0;
     double up = 0;
   };
-  /// Of Bernstein coefficients.
-  struct Range {
-    double lower = infinity;
-    double upper = -infinity;
-    void include(double x);
-    bool has_zero(double noise) const { return lower <= noise && upper >= -noise; }
-  };
 
   bool is_at(Side side) const;
   double longest_step(Direction direction) const;
-  Range second_differences(Direction direction, double least) const;
+  CoefficientRange second_differences(Direction direction, double least) const;
   bool bend_up_along(Direction direction) const;
   bool bend_up_obliquely() const;
   std::optional<Way> steepest_bend(const Bend& bend) const;

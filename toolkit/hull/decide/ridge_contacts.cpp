@@ -19,21 +19,6 @@ constexpr double narrow_share = 0.7;
 /// How often the part beside an edge over which heights bend up is halved.
 constexpr int dent_limit = 12;
 
-/// The derivative of a net along s or t, as a net of the same degrees.
-void derive_net(NetShape shape, const std::vector<dvec4>& net, bool along_s,
-                std::vector<dvec4>& result) {
-  const int degree = along_s ? shape.p : shape.q;
-  const int step = along_s ? shape.q + 1 : 1;
-  result.assign(net.size(), dvec4(0.0));
-  for (int k = 0; k < shape.size(); ++k) {
-    const int i = along_s ? k / (shape.q + 1) : k % (shape.q + 1);
-    const dvec4& own = net[std::size_t(k)];
-    dvec4& to = result[std::size_t(k)];
-    if (i > 0) to += double(i) * (own - net[std::size_t(k - step)]);
-    if (i < degree) to += double(degree - i) * (net[std::size_t(k + step)] - own);
-  }
-}
-
 /// The extent across of a convex polygon over an interval of s, which is its first coordinate.
 Interval slice(const std::vector<dvec2>& polygon, const Interval& s) {
   Interval t = {infinity, -infinity};
@@ -52,11 +37,6 @@ Interval slice(const std::vector<dvec2>& polygon, const Interval& s) {
 
 }  // namespace
 
-void RidgeContacts::Range::include(double x) {
-  lower = std::min(lower, x);
-  upper = std::max(upper, x);
-}
-
 /// With t within s.
 void RidgeContacts::derive(Direction along) {
   if (along == Direction::v) {
@@ -69,15 +49,15 @@ void RidgeContacts::derive(Direction along) {
     net_.swap(turned);
     std::swap(shape_.p, shape_.q);
   }
-  derive_net(shape_, net_, true, s_);
-  derive_net(shape_, net_, false, t_);
-  derive_net(shape_, s_, true, second_[0]);
-  derive_net(shape_, s_, false, second_[1]);
-  derive_net(shape_, t_, false, second_[2]);
-  derive_net(shape_, second_[0], true, third_[0]);
-  derive_net(shape_, second_[0], false, third_[1]);
-  derive_net(shape_, second_[2], true, third_[2]);
-  derive_net(shape_, second_[2], false, third_[3]);
+  s_ = derived(shape_, net_, Direction::u);
+  t_ = derived(shape_, net_, Direction::v);
+  second_[0] = derived(shape_, s_, Direction::u);
+  second_[1] = derived(shape_, s_, Direction::v);
+  second_[2] = derived(shape_, t_, Direction::v);
+  third_[0] = derived(shape_, second_[0], Direction::u);
+  third_[1] = derived(shape_, second_[0], Direction::v);
+  third_[2] = derived(shape_, second_[2], Direction::u);
+  third_[3] = derived(shape_, second_[2], Direction::v);
 }
 
 void RidgeContacts::restrict(const std::vector<dvec4>& net, const Stretch& stretch,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/coefficient_range.h"
 
 namespace taut {
 
@@ -33,12 +34,7 @@ class RidgeContacts {
     Interval s, t;
     Bend bend = Bend::up;
   };
-  /// The lowest and the highest of Bernstein coefficients, for all directions.
-  struct Range {
-    double lower = infinity;
-    double upper = -infinity;
-    void include(double x);
-  };
+  using Range = CoefficientRange;  ///< for all directions of a cell
   static std::optional<int> patch(const Branches& branches, const Branch& branch,
                                   std::array<bool, 4>& edges);
   bool are_one(const CellView& view, Direction along, const std::vector<dvec2>& hull,
