@@ -142,6 +142,58 @@ TEST(CurvatureNets, ProveWholeQuadrics) {
   }
 }
 
+/// A graph over the quadrangle of four points, z = form of x and y.
+BezierPatch quadric_over(const std::array<dvec2, 4>& corners, double xx, double xy, double yy) {
+  // Blossoms: corners are (0, 0), (0, 1), (1, 0), (1, 1).
+  const auto product = [&](int i, int j, int axis, int other) {
+    double sum = 0;
+    int count = 0;
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        if ((a >> 1) + (b >> 1) != i || (a & 1) + (b & 1) != j) continue;
+        sum += corners[std::size_t(a)][axis] * corners[std::size_t(b)][other];
+        ++count;
+      }
+    }
+    return sum / count;
+  };
+  const auto at = [&](int i, int j) {
+    const auto mean = [&](int axis) {
+      const auto own = [&](int a, int b) { return corners[std::size_t(2 * a + b)][axis]; };
+      return 0.25 * ((2 - i) * ((2 - j) * own(0, 0) + j * own(0, 1)) +
+                     i * ((2 - j) * own(1, 0) + j * own(1, 1)));
+    };
+    return dvec3(
+        mean(0), mean(1),
+        xx * product(i, j, 0, 0) + 2 * xy * product(i, j, 0, 1) + yy * product(i, j, 1, 1));
+  };
+  BezierPatch patch{2, 2, {}};
+  for (int i = 0; i <= 2; ++i) {
+    for (int j = 0; j <= 2; ++j) patch.points.push_back(homogeneous(at(i, j)));
+  }
+  return patch;
+}
+
+/// Slivers of a fan, as they are about the pole of a cage: in a corner of them parameter lines are
+/// all but parallel.
+TEST(CurvatureNets, TellSliversApart) {
+  for (const double width : {0.3, 0.03, 0.003}) {
+    SCOPED_TRACE(width);
+    const std::array<dvec2, 4> kite = {dvec2{1, 0}, {0.5, 0}, {1, width}, {0.66, 0.7 * width}};
+    const auto sign = [&](double xx, double xy, double yy) {
+      return CurvatureNets(quadric_over(kite, xx, xy, yy), no_poles).definite_sign();
+    };
+    const int up = sign(1, 0.3, 2);
+    EXPECT_NE(up, 0);
+    EXPECT_EQ(sign(-1, 0.3, -2), -up);
+    EXPECT_EQ(sign(1e-3, 0, 2), up);
+    EXPECT_EQ(sign(1, 0, -2), 0);
+    EXPECT_EQ(sign(1, 0, -1e-3), 0);
+    EXPECT_EQ(sign(1, 1, 1), 0);  // bends one way only
+    EXPECT_EQ(sign(0, 0, 0), 0);
+  }
+}
+
 /// A pole that is none: the tip of a cone has no normal, and nothing is told of it.
 TEST(CurvatureNets, TellNothingOfTips) {
   BezierPatch tip{2, 2, {}};

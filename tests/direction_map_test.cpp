@@ -703,6 +703,57 @@ TEST(DirectionMap, CagesAreDecided) {
   }
 }
 
+/// A cap over quadrangles that halve the sides of the triangles of a fan, each sliver three: in the
+/// middle of it two parameter lines are all but parallel.
+Shape fan_of_slivers(int count) {
+  Shape shape;
+  const auto add = [&](const std::array<dvec2, 4>& q) {
+    std::vector<std::vector<dvec3>> rows(3);
+    const auto blossom = [&](int a, int b, int c, int d) {
+      // At ((a, c), (b, d)), each 0 or 1: corners are (0, 0), (0, 1), (1, 0), (1, 1).
+      const dvec2 x = q[std::size_t(2 * a + c)];
+      const dvec2 y = q[std::size_t(2 * b + d)];
+      return 0.5 * dvec3(x + y, -x.x * y.x - 2 * x.y * y.y);
+    };
+    for (int i = 0; i <= 2; ++i) {
+      for (int j = 0; j <= 2; ++j) {
+        const int a = i > 1 ? 1 : 0, b = i > 0 ? 1 : 0, c = j > 1 ? 1 : 0, d = j > 0 ? 1 : 0;
+        rows[std::size_t(i)].push_back(0.5 * (blossom(a, b, c, d) + blossom(a, b, d, c)));
+      }
+    }
+    shape.surfaces.push_back(spline(rows, 2, 2));
+  };
+  const auto rim = [&](int k) {
+    const double angle = 2 * pi * k / count;
+    return dvec2(std::cos(angle), std::sin(angle));
+  };
+  for (int k = 0; k < count; ++k) {
+    const std::array<dvec2, 3> corners = {dvec2(0.0), rim(k), rim((k + 1) % count)};
+    const dvec2 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const dvec2 own = corners[c];
+      add({own, 0.5 * (own + corners[(c + 2) % 3]), 0.5 * (own + corners[(c + 1) % 3]), middle});
+    }
+  }
+  return shape;
+}
+
+/// What of a cap in several patches touches planes of a cell may lie in parts that do not hang
+/// together: the cap around them does.
+TEST(DirectionMap, FansOfSliversAreOneCap) {
+  const dmat3 rotation = skew_rotation();
+  for (const bool turned : {false, true}) {
+    const Shape shape = fan_of_slivers(48);
+    const Scene scene = make_scene(turned ? mapped(shape, rotation) : shape);
+    const DirectionMap map = map_at(scene, 1e-8);
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    EXPECT_LT(map.statistics.candidates, 200'000);
+    const MapCell& cell = cell_at(map, (turned ? rotation : dmat3(1.0)) * unit({0.2, 0.3, 1}));
+    EXPECT_EQ(cell.kind, MapCellKind::region);
+    EXPECT_EQ(cell.contacts.size(), 1u);
+  }
+}
+
 /// In directions of a cell the support function is attained, within the resolution, where the cell
 /// says that something may touch.
 void expect_holds(const Shape& shape) {

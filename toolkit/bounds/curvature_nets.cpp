@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "taut/bounds/normal_net.h"
@@ -167,16 +168,55 @@ SecondForm CurvatureNets::over() const {
 }
 
 /// At a point the form is a convex combination of those of the nets' entries, and what is between
-/// definite forms of one sign is definite.
+/// definite forms of one sign is definite. Where parameter lines are all but parallel these are all
+/// but singular; that they are not is then told by the determinant's net, and the sign at a corner.
 int CurvatureNets::definite_sign() const {
+  const auto form = [&](std::size_t k) {
+    return SecondForm{uu_.around(k), uv_.around(k), vv_.around(k)};
+  };
   const auto all = [&](const auto& is_so) {
     for (std::size_t k = 0; k < uu_.entries.size(); ++k) {
-      if (!is_so(SecondForm{uu_.around(k), uv_.around(k), vv_.around(k)})) return false;
+      if (!is_so(form(k))) return false;
     }
     return true;
   };
-  if (all([](const SecondForm& form) { return form.surely_negative(); })) return -1;
-  return all([](const SecondForm& form) { return form.surely_positive(); }) ? 1 : 0;
+  if (all([](const SecondForm& f) { return f.surely_negative(); })) return -1;
+  if (all([](const SecondForm& f) { return f.surely_positive(); })) return 1;
+  // The form there.
+  const std::size_t last = uu_.entries.size() - 1;
+  const auto row = std::size_t(uu_.shape.q);
+  const std::array corners = {std::size_t{0}, row, last - row, last};
+  const auto at_corners = [&](const auto& is_so) {
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](std::size_t k) { return is_so(form(k)); });
+  };
+  if (at_corners([](const SecondForm& f) { return f.surely_negative(); })) {
+    return determinant_is_positive() ? -1 : 0;
+  }
+  if (at_corners([](const SecondForm& f) { return f.surely_positive(); })) {
+    return determinant_is_positive() ? 1 : 0;
+  }
+  return 0;
+}
+
+bool CurvatureNets::determinant_is_positive() const {
+  const auto net = [&](const std::vector<double>& entries) {
+    return scaled<double>(
+        uu_.shape, [&](int i, int j) { return entries[std::size_t(i * (uu_.shape.q + 1) + j)]; });
+  };
+  ScaledNet<double> determinant({2 * uu_.shape.p, 2 * uu_.shape.q});
+  const auto uv = net(uv_.entries);
+  add_product(net(uu_.entries), net(vv_.entries), 0, 0, determinant, std::multiplies());
+  add_product(uv, uv, 0, 0, determinant, [](double a, double b) { return -a * b; });
+  // Convex combinations of products.
+  const double uu = largest(uu_.entries) + uu_.error;
+  const double vv = largest(vv_.entries) + vv_.error;
+  const double mixed = largest(uv_.entries) + uv_.error;
+  const double roundings = 8.0 * (uu_.shape.p + uu_.shape.q + 8);
+  const double error = uu * vv_.error + vv * uu_.error + 2 * mixed * uv_.error +
+                       roundings * rounding_unit * (uu * vv + mixed * mixed);
+  const std::vector<double> entries = unscaled(determinant);
+  return std::all_of(entries.begin(), entries.end(), [&](double x) { return x > error; });
 }
 
 /// By the least eigenvalue of an entry, which its errors change by no more than their sum.

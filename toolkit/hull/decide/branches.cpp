@@ -10,7 +10,7 @@ namespace taut {
 namespace {
 
 /// Passes over the glue after which charts are as they are: each carries a change one chart on.
-constexpr int evening_limit = 4;
+constexpr int evening_limit = 32;
 
 bool touches(const Interval& a, const Interval& b) {
   return a.lower <= b.upper && b.lower <= a.upper;
@@ -118,6 +118,18 @@ void Branches::glue(const MapPieces& pieces) {
   even_out();
 }
 
+void Branches::unite() {
+  Branch all;
+  for (const Branch& branch : branches_) {
+    all.charts.insert(all.charts.end(), branch.charts.begin(), branch.charts.end());
+    all.glues.insert(all.glues.end(), branch.glues.begin(), branch.glues.end());
+    all.lower = glm::min(all.lower, branch.lower);
+    all.upper = glm::max(all.upper, branch.upper);
+  }
+  for (const int k : all.charts) charts_[std::size_t(k)].branch = 0;
+  branches_ = {std::move(all)};
+}
+
 Branches Branches::alone(const Branch& branch) const {
   Branches result;
   std::vector<int> index(charts_.size(), -1);
@@ -143,7 +155,9 @@ bool Branches::extend(const MapPieces& pieces, const std::vector<std::pair<int, 
   for (const auto& [chart, side] : beyond) {
     if (!extend(pieces, chart, side)) return false;
   }
+  join_touching();
   glue(pieces);
+  if (join_touching()) glue(pieces);
   sort_into_branches(pieces);
   for (Branch& branch : branches_) {
     std::vector<dvec4> net;
@@ -157,6 +171,27 @@ bool Branches::extend(const MapPieces& pieces, const std::vector<std::pair<int, 
     }
   }
   return true;
+}
+
+/// Charts of one element that have grown together are one.
+bool Branches::join_touching() {
+  const auto before = charts_.size();
+  for (std::size_t k = 0; k < charts_.size(); ++k) {
+    for (std::size_t other = k + 1; other < charts_.size();) {
+      Chart& own = charts_[k];
+      const Chart& next = charts_[other];
+      if (own.element != next.element || !touches(own.u, next.u) || !touches(own.v, next.v)) {
+        ++other;
+        continue;
+      }
+      include(own.u, next.u);
+      include(own.v, next.v);
+      own.pieces.insert(own.pieces.end(), next.pieces.begin(), next.pieces.end());
+      charts_.erase(charts_.begin() + std::ptrdiff_t(other));
+      other = k + 1;
+    }
+  }
+  return charts_.size() < before;
 }
 
 bool Branches::extend(const MapPieces& pieces, int index, Side side) {

@@ -50,11 +50,14 @@ class Branches {
   void clear();
   /// Forgets the other branches, and that their charts are of one.
   void keep(const std::vector<bool>& left);
+  /// Takes all for one branch.
+  void unite();
   /// One of the branches alone.
   Branches alone(const Branch& branch) const;
   /// Lets charts of patches reach further, beyond some of their sides, by as much as they are wide:
   /// onto what no plane of the cell touches, or what is known to be lower. Over smooth joins they
-  /// go on in charts without pieces; beyond other borders there is nothing, and the answer false.
+  /// go on in charts without pieces, or in those of other branches; beyond other borders there is
+  /// nothing, and the answer false.
   bool extend(const MapPieces& pieces, const std::vector<std::pair<int, Side>>& beyond);
 
   const std::vector<Branch>& all() const { return branches_; }
@@ -73,6 +76,7 @@ class Branches {
   void sort_into_branches(const MapPieces& pieces);
   void find_boxes(const CellView& view);
   bool extend(const MapPieces& pieces, int chart, Side side);
+  bool join_touching();
   int chart_touching(int element, const Interval& u, const Interval& v) const;
 
   std::vector<Chart> charts_;

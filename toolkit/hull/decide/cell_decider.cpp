@@ -173,7 +173,8 @@ std::optional<MapCellKind> CellDecider::decided(bool before_splits) {
   dominated_.clear();
   if (view_.seen().size() > view_.crowding() * looked_at_limit) {
     branches_.clear();
-    return is_facet() ? std::optional(MapCellKind::facet) : std::nullopt;
+    if (is_facet()) return MapCellKind::facet;
+    return is_flat() ? std::optional(MapCellKind::flat) : std::nullopt;
   }
   branches_.find(view_);
   // Something supports: what is taken for granted of the model does not hold.
@@ -190,6 +191,7 @@ std::optional<MapCellKind> CellDecider::decided(bool before_splits) {
 std::optional<MapCellKind> CellDecider::decided_last() {
   if (view_.seen().size() > view_.crowding() * looked_at_limit) return std::nullopt;
   if (!planes_.is_spot() && is_facet()) return MapCellKind::facet;
+  if (are_one()) return MapCellKind::region;
   if (const auto kind = kind_of_branches(true)) return kind;
   return kind_without_dominated();
 }
@@ -201,9 +203,17 @@ std::optional<MapCellKind> CellDecider::decided_sharply(int level) {
     if (view_.seen().size() > sharpened_limit) return std::nullopt;
     if (!view_.sharpen(sharp_share * options_.resolution)) return std::nullopt;
     branches_.find(view_);
+    if (are_one()) return MapCellKind::region;
     if (const auto kind = kind_of_branches(true)) return kind;
   }
   return std::nullopt;
+}
+
+/// Branches are parts of a surface that has one contact.
+bool CellDecider::are_one() {
+  if (branches_.all().size() < 2 || !index_.are_one_of_more(view_, branches_)) return false;
+  branches_.unite();
+  return true;
 }
 
 /// Without the branches that others stand for to within what is left of the resolution. (The only

@@ -58,6 +58,7 @@ class CellDecider {
   std::optional<MapCellKind> decided(bool before_splits);
   std::optional<MapCellKind> decided_last();
   std::optional<MapCellKind> decided_sharply(int level);
+  bool are_one();
   std::optional<MapCellKind> kind_without_dominated();
   std::optional<MapCellKind> kind_of_branches(bool extends);
   std::optional<MapCellKind> kind_of_contacts(const std::vector<Branch>& all);

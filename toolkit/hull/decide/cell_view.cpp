@@ -14,9 +14,11 @@ constexpr double split_share = 1;
 constexpr std::size_t many_pieces = 128;
 constexpr double coarse_share = 64;
 constexpr std::size_t split_piece_limit = 192;
-/// Cells as narrow as this are few, where much touches one plane: they may have so many times more.
-constexpr double narrow_cell = 1e-6;
+/// Narrow cells are few, where much touches one plane: they may have so many times more.
+constexpr double narrow_cell = 1e-4;
 constexpr std::size_t narrow_times = 4;
+constexpr double very_narrow_cell = 1e-6;
+constexpr std::size_t very_narrow_times = 16;
 
 }  // namespace
 
@@ -53,7 +55,8 @@ bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
 }
 
 std::size_t CellView::crowding() const {
-  return glm::distance(d_[0], d_[3]) < narrow_cell ? narrow_times : 1;
+  const double width = glm::distance(d_[0], d_[3]);
+  return width < very_narrow_cell ? very_narrow_times : width < narrow_cell ? narrow_times : 1;
 }
 
 double CellView::longest_direction() const {

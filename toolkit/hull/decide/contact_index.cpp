@@ -18,7 +18,7 @@ constexpr double most_oblique = 0.99;
 constexpr double point_size = 4;
 
 /// How often a surface is let reach further: each time it becomes up to three times as wide.
-constexpr int extension_limit = 12;
+constexpr int extension_limit = 24;
 
 Corners heights_in(const CellView& view, const dvec4& p) {
   return heights(p, view.q(), view.corners());
@@ -359,29 +359,37 @@ bool ContactIndex::is_one(const CellView& view, const Branches& branches, const 
                      [&](int k) { return border_rises(view, k); });
 }
 
-bool ContactIndex::is_one_of_more(const CellView& view, const Branches& branches,
-                                  const Branch& branch) {
-  if (!is_cap(view, branches, branch)) return false;
-  Branches more = branches.alone(branch);
+bool ContactIndex::are_one_of_more(const CellView& view, Branches branches) {
   std::vector<std::pair<int, Side>> beyond;
   for (int round = 0; round < extension_limit; ++round) {
-    if (more.all().size() != 1 || !is_cap(view, more, more.all().front())) return false;
     beyond.clear();
-    for (const int k : more.all().front().charts) {
-      if (border_rises(view, k)) continue;
-      const Chart& chart = more.chart(k);
-      if (chart.kind != SourceKind::face) return false;
-      show(k);
-      const NetShape shape = pieces_.element(chart.element).root->exact.shape;
-      for (const Side side : all_sides) {
-        if (glued_[std::size_t(k)][std::size_t(side)] >= 0) continue;
-        if (!side_rises(view, shape, side)) beyond.emplace_back(k, side);
-      }
+    const bool one = branches.all().size() == 1;
+    for (const Branch& branch : branches.all()) {
+      if (!is_cap(view, branches, branch) || !add_falling(view, branch, one, beyond)) return false;
     }
-    if (beyond.empty()) return true;
-    if (!more.extend(pieces_, beyond)) return false;
+    if (beyond.empty()) return one;
+    if (!branches.extend(pieces_, beyond)) return false;
   }
   return false;
+}
+
+/// The sides of a cap beyond which it has to reach further: from which heights do not grow inwards,
+/// and if it is `alone` not from where it matters. False if they do not so from edges or vertices.
+bool ContactIndex::add_falling(const CellView& view, const Branch& branch, bool alone,
+                               std::vector<std::pair<int, Side>>& sides) {
+  for (const int k : branch.charts) {
+    const Chart& chart = view_branches_->chart(k);
+    const bool is_face = chart.kind == SourceKind::face;
+    if ((alone || !is_face) && border_rises(view, k)) continue;
+    if (!is_face) return false;
+    show(k);
+    const NetShape shape = pieces_.element(chart.element).root->exact.shape;
+    for (const Side side : all_sides) {
+      if (glued_[std::size_t(k)][std::size_t(side)] >= 0) continue;
+      if (!side_rises(view, shape, side)) sides.emplace_back(k, side);
+    }
+  }
+  return true;
 }
 
 /// Beyond a side from which the heights do not grow inwards the region goes on, as far as it may.

@@ -41,7 +41,11 @@ class ContactIndex {
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
   /// The same for a surface that reaches further, where the heights do not grow from the border of
   /// the branch inwards: what of it planes do not touch does not matter.
-  bool is_one_of_more(const CellView& view, const Branches& branches, const Branch& branch);
+  bool is_one_of_more(const CellView& view, const Branches& branches, const Branch& branch) {
+    return are_one_of_more(view, branches.alone(branch));
+  }
+  /// The same for a surface that holds all branches.
+  bool are_one_of_more(const CellView& view, Branches branches);
 
   /// The same for a surface of one patch that is made of the branch's pieces, where their rectangle
   /// holds much else.
@@ -57,6 +61,8 @@ class ContactIndex {
   bool is_curved(const CellView& view, const Chart& chart);
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   bool border_rises(const CellView& view, int chart);
+  bool add_falling(const CellView& view, const Branch& branch, bool alone,
+                   std::vector<std::pair<int, Side>>& sides);
   bool face_border_rises(const CellView& view, int chart);
   bool side_rises(const CellView& view, const NetShape& shape, Side side,
                   bool obliquely = true) const;
