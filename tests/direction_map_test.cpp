@@ -703,6 +703,32 @@ TEST(DirectionMap, CagesAreDecided) {
   }
 }
 
+/// Of what lies in a plane some cells beside the plane's normal see nothing else; where a point is
+/// above it, it is no facet.
+TEST(DirectionMap, FacetsTouch) {
+  taut_test::Random random(2);
+  int facets = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double above = k % 4 == 0 ? 0 : log_uniform(random, 1e-3, 0.3);
+    Shape flat;
+    flat.curves = {one_piece({{-1, -1, 0}, {-2, 0, 0}, {-1, 1, 0}})};
+    flat.points = {{3, 0, above}};
+    const Shape shape = mapped(flat, random_rotation(random));
+    const Scene scene = make_scene(shape);
+    const ContactGeometry geometry(scene);
+    const DirectionMap map = map_at(scene, 1e-8);
+    EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+    const SupportReference reference(shape);
+    for (const MapCell& cell : map.cells) {
+      if (cell.kind != MapCellKind::facet) continue;
+      ++facets;
+      const dvec3 top = scene.frame().to_frame(reference(cell.normal).x);
+      EXPECT_LE(glm::dot(top - geometry.jet(cell.contact).x, cell.normal), 4e-8) << above;
+    }
+  }
+  EXPECT_GT(facets, 20);
+}
+
 /// A cap over quadrangles that halve the sides of the triangles of a fan, each sliver three: in the
 /// middle of it two parameter lines are all but parallel.
 Shape fan_of_slivers(int count) {

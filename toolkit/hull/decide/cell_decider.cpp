@@ -65,6 +65,7 @@ LookedAtCell CellDecider::decide(const OpenCell& open) {
   const std::array<dvec3, 4> d = DirectionMap::corners(cell);
   const Support support = query_(unit(d[0] + d[3]), open.hint);
   cell.contact = support.contact;
+  contact_ = support.contact;
   std::vector<dvec3>& beacons = result.beacons;
   beacons.push_back(support.point);
   while (beacons.size() > beacon_limit) beacons.erase(beacons.begin());
@@ -110,7 +111,7 @@ std::optional<MapCellKind> CellDecider::kind_of_cell(const MapCell& cell,
   left = pieces_left();
   if (!kind) kind = decided_sharply(cell.level);
   if (is_open_row() && !planes_.is_spot() && is_facet()) kind = MapCellKind::facet;
-  if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border(cell.contact);
+  if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border();
   if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
   return kind;
 }
@@ -289,13 +290,13 @@ std::optional<MapCellKind> CellDecider::kind_of_row() {
 }
 
 /// Of what may be a node, or not, and of what may be in line.
-std::optional<MapCellKind> CellDecider::kind_by_border(const Contact& hint) {
+std::optional<MapCellKind> CellDecider::kind_by_border() {
   const std::vector<Branch>& all = branches_.all();
   const auto open = all.size() == 3 ? std::optional(MapCellKind::node) : std::nullopt;
   // Of what is dominated it is not told where it supports.
   if (!dominated_.empty() || !boxes_part(all)) return open;
   order_.find(view_, branches_, axes_.first, axes_.second);
-  const std::optional<CellBorder::Found> found = border_.find(order_, hint);
+  const std::optional<CellBorder::Found> found = border_.find(order_, contact_);
   if (!found || found->is_node) return open;
   std::vector<bool> left(all.size(), false);
   for (const int k : found->supporting) left[std::size_t(k)] = true;
@@ -306,8 +307,13 @@ std::optional<MapCellKind> CellDecider::kind_by_border(const Contact& hint) {
   return line_.size() <= kinds.size() ? kinds[line_.size() - 1] : MapCellKind::in_line;
 }
 
+/// The plane touches the model, be its normal in the cell or beside it.
 bool CellDecider::is_facet() {
   facet_ = planes_.facet();
+  if (!facet_) return false;
+  const dvec3 top = query_(facet_->normal, contact_).point;
+  const double depth = 2 * options_.resolution + pieces_.covered_above();
+  if (glm::dot(top - view_.q(), facet_->normal) > depth) facet_.reset();
   return facet_.has_value();
 }
 

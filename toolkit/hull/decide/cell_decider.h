@@ -63,7 +63,7 @@ class CellDecider {
   std::optional<MapCellKind> kind_of_branches(bool extends);
   std::optional<MapCellKind> kind_of_contacts(const std::vector<Branch>& all);
   std::optional<MapCellKind> kind_of_row();
-  std::optional<MapCellKind> kind_by_border(const Contact& hint);
+  std::optional<MapCellKind> kind_by_border();
   bool is_facet();
   bool is_flat() const;
   bool hang_together(const std::vector<Branch>& all) const;
@@ -87,6 +87,7 @@ class CellDecider {
   CellPlanes planes_;
   CellBorder border_;
   std::vector<int> line_;  ///< numbers of branches that are in line
+  Contact contact_ = {};   ///< supports in the middle of the cell
   std::optional<CellPlanes::Plane> facet_;
 };
 

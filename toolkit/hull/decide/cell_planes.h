@@ -21,7 +21,7 @@ class CellPlanes {
     dvec3 normal = dvec3(0.0);  ///< outwards
     double width = 0;           ///< how far what touches it reaches from a line in it, at least
   };
-  /// One that all that is left is within the resolution of, with a normal in the cell.
+  /// One that all that is left is within the resolution of, with a normal in the cell or beside it.
   std::optional<Plane> facet();
   /// That which touches three branches. @pre there are three
   Plane node() const;
