@@ -77,7 +77,6 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
   const Stopwatch watch;
   options.progress.update("decide", 0);
   const Scene& scene = geometry.scene();
-  if (scene.model().deviation_bound() > 0) return {};
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
   DirectionMapOptions own;
   own.resolution = scene.frame().length_to_frame(resolution.rho);

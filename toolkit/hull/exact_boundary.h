@@ -20,9 +20,8 @@ Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& o
                    HullStatistics& statistics);
 
 /// The map of a scene's directions, at the resolution that the options or the model ask for. Where
-/// contacts all but tie it costs more than models do to decide it, and it is left undecided. Of
-/// models with stand-ins it is empty: what is known of their contacts is too little. Adds what it
-/// took to the statistics.
+/// contacts all but tie it costs more than models do to decide it, and it is left undecided. Adds
+/// what it took to the statistics.
 /// @throws Cancelled
 DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
                            HullStatistics& statistics);

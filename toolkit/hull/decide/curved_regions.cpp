@@ -28,6 +28,13 @@ CurvedRegions::CurvedRegions(const MapPieces& pieces)
 CurvedRegions::Tree& CurvedRegions::tree(int element) {
   Tree& tree = trees_[std::size_t(element)];
   if (!tree.empty()) return tree;
+  Node root;
+  root.nets = nets_of(element);
+  tree.push_back(std::move(root));
+  return tree;
+}
+
+std::unique_ptr<CurvatureNets> CurvedRegions::nets_of(int element) const {
   const MapElement& e = pieces_.element(element);
   const StoredNet& net = e.root->exact;
   BezierPatch bezier{net.shape.p, net.shape.q, {}};
@@ -35,10 +42,7 @@ CurvedRegions::Tree& CurvedRegions::tree(int element) {
   bezier.points.assign(p, p + net.shape.size());
   std::array<bool, 4> poles;
   for (const Side side : all_sides) poles[std::size_t(side)] = pieces_.is_pole(e, side);
-  Node root;
-  root.nets = std::make_unique<CurvatureNets>(bezier, poles);
-  tree.push_back(std::move(root));
-  return tree;
+  return std::make_unique<CurvatureNets>(bezier, poles);
 }
 
 /// What the nets tell of a rectangle. Their forms are the second derivatives of the heights along
@@ -48,13 +52,21 @@ void CurvedRegions::know(int element, Node& node) const {
   if (node.known) return;
   node.known = true;
   node.sign = node.nets->definite_sign();
+  know_hollows(element, node);
+  // Nets are large, and few of these are asked for again.
+  if (node.sign != 0 || node.level == curvature_level_limit) node.nets.reset();
+}
+
+void CurvedRegions::know_hollows(int element, Node& node) const {
   if (pieces_.element(element).rational || has_pole(element)) return;
   node.normals = node.nets->normal_bounds();
   const double stretch = least_stretch(element, node.u, node.v);
   if (!(node.normals.least > 0) || !(stretch > 0)) return;
   for (const int sign : {-1, 1}) {
     node.hollow[std::size_t(sign > 0)] =
-        node.nets->shortfall_bound(sign) / (node.normals.least * stretch * stretch);
+        node.sign == sign
+            ? 0
+            : node.nets->shortfall_bound(sign) / (node.normals.least * stretch * stretch);
   }
 }
 
@@ -96,13 +108,36 @@ double CurvedRegions::least_stretch(int element, const Interval& u, const Interv
   return least > 0 ? std::sqrt(least) - std::hypot(off(along_u, a), off(along_v, b)) : 0;
 }
 
+Direction CurvedRegions::direction_of_halves(const Interval& u, const Interval& v) {
+  return width(u) >= width(v) ? Direction::u : Direction::v;
+}
+
+/// The nets of a node, as they were.
+std::unique_ptr<CurvatureNets> CurvedRegions::nets_again(int element, const Node& node) const {
+  std::unique_ptr<CurvatureNets> nets = nets_of(element);
+  Interval u{0, 1};
+  Interval v{0, 1};
+  for (int level = 0; level < node.level; ++level) {
+    const Direction direction = direction_of_halves(u, v);
+    Interval& range = direction == Direction::u ? u : v;
+    const double middle = range.at(0.5);
+    const bool upper = (direction == Direction::u ? node.u : node.v).lower >= middle;
+    (upper ? range.lower : range.upper) = middle;
+    nets = std::make_unique<CurvatureNets>(nets->halves(direction)[upper ? 1 : 0]);
+  }
+  return nets;
+}
+
 /// False at the limit of levels.
-bool CurvedRegions::split(Tree& tree, int index) {
+bool CurvedRegions::split(int element, int index) {
+  Tree& tree = this->tree(element);
   Node& node = tree[std::size_t(index)];
   if (node.first_half >= 0) return true;
   if (node.level == curvature_level_limit) return false;
-  const bool of_u = width(node.u) >= width(node.v);
-  const auto nets = node.nets->halves(of_u ? Direction::u : Direction::v);
+  if (node.nets == nullptr) node.nets = nets_again(element, node);
+  const Direction direction = direction_of_halves(node.u, node.v);
+  const bool of_u = direction == Direction::u;
+  const auto nets = node.nets->halves(direction);
   node.nets.reset();
   const int first = int(tree.size());
   node.first_half = first;
@@ -135,7 +170,7 @@ int CurvedRegions::sign(int element, int index, const Interval& u, const Interva
   know(element, tree[std::size_t(index)]);
   const Node& node = tree[std::size_t(index)];
   if (node.sign != 0 || is_small_part(node, u, v)) return node.sign;
-  if (!split(tree, index)) return 0;
+  if (!split(element, index)) return 0;
   int result = 0;
   const int first = tree[std::size_t(index)].first_half;
   for (const int half : {first, first + 1}) {
@@ -165,7 +200,7 @@ bool CurvedRegions::is_nearly_concave(int element, int index, const Interval& u,
     // What is curved the other way is so in its halves.
     if (one_side && node.sign == (along ? 1 : -1)) return false;
   }
-  if (!split(tree, index)) return false;
+  if (!split(element, index)) return false;
   const int first = tree[std::size_t(index)].first_half;
   for (const int half : {first, first + 1}) {
     const Node& node = tree[std::size_t(half)];

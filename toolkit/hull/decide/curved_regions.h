@@ -36,7 +36,7 @@ class CurvedRegions {
     CurvatureNets::NormalBounds normals;
     std::array<double, 2> hollow = {infinity, infinity};
     int first_half = -1;
-    std::unique_ptr<CurvatureNets> nets;  ///< none once it has halves
+    std::unique_ptr<CurvatureNets> nets;  ///< none where they are no longer needed
   };
   using Tree = std::vector<Node>;
   Tree& tree(int element);
@@ -45,9 +45,13 @@ class CurvedRegions {
                          const std::array<dvec3, 4>& directions, double hollow);
   static bool is_small_part(const Node& node, const Interval& u, const Interval& v);
   bool has_pole(int element) const;
+  std::unique_ptr<CurvatureNets> nets_of(int element) const;
+  std::unique_ptr<CurvatureNets> nets_again(int element, const Node& node) const;
+  static Direction direction_of_halves(const Interval& u, const Interval& v);
   void know(int element, Node& node) const;
+  void know_hollows(int element, Node& node) const;
   double least_stretch(int element, const Interval& u, const Interval& v) const;
-  bool split(Tree& tree, int node);
+  bool split(int element, int node);
 
   const MapPieces& pieces_;
   std::vector<Tree> trees_;  // by element
