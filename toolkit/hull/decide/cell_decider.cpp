@@ -212,9 +212,24 @@ std::optional<MapCellKind> CellDecider::decided_sharply(int level) {
 
 /// Branches are parts of a surface that has one contact.
 bool CellDecider::are_one() {
-  if (branches_.all().size() < 2 || !index_.are_one_of_more(view_, branches_)) return false;
+  if (branches_.all().size() < 2 || !are_of_one_surface()) return false;
+  if (!index_.are_one_of_more(view_, branches_)) return false;
   branches_.unite();
   return true;
+}
+
+bool CellDecider::are_of_one_surface() const {
+  const std::vector<Branch>& all = branches_.all();
+  const auto surface = [&](const Branch& branch) {
+    int found = -1;
+    for (const int chart : branch.charts) {
+      found = std::max(found, pieces_.element(branches_.chart(chart).element).surface);
+    }
+    return found;
+  };
+  const int first = surface(all.front());
+  return first >= 0 && std::all_of(all.begin(), all.end(),
+                                   [&](const Branch& branch) { return surface(branch) == first; });
 }
 
 /// Without the branches that others stand for to within what is left of the resolution. (The only

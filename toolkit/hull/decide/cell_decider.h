@@ -59,6 +59,7 @@ class CellDecider {
   std::optional<MapCellKind> decided_last();
   std::optional<MapCellKind> decided_sharply(int level);
   bool are_one();
+  bool are_of_one_surface() const;
   std::optional<MapCellKind> kind_without_dominated();
   std::optional<MapCellKind> kind_of_branches(bool extends);
   std::optional<MapCellKind> kind_of_contacts(const std::vector<Branch>& all);

@@ -306,10 +306,26 @@ bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
     if (sets.find(k) != sets.find(branch.charts.front())) return false;
   }
   const CornerRings rings(pieces_, branches, branch, glued_);
+  find_ends(branches, branch, rings);
   for (const auto& [chart, side] : rings.poles()) {
     glued_[std::size_t(chart)][std::size_t(side)] = 0;  // no border is there
   }
   return int(branch.charts.size()) - arcs + rings.count() == 1;
+}
+
+void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
+                             const CornerRings& rings) {
+  ends_.clear();
+  for (const int g : branch.glues) {
+    const Glue& glue = branches.glue(g);
+    if (glue.kind != Glue::Kind::faces) continue;
+    const Side side = Side(glue.at_a);
+    for (const bool upper : {false, true}) {
+      const Side other =
+          along_v(side) ? (upper ? Side::v1 : Side::v0) : (upper ? Side::u1 : Side::u0);
+      if (!rings.is_inside(glue.a, side, other)) ends_.emplace_back(glue.a, side, upper);
+    }
+  }
 }
 
 bool ContactIndex::is_cap(const CellView& view, const Branches& branches, const Branch& branch) {
@@ -352,9 +368,30 @@ bool ContactIndex::border_rises(const CellView& view, int chart) {
                                     : vertex_border_rises(view, chart);
 }
 
+/// From the border along all sides at which charts meet.
+bool ContactIndex::joins_rise(const CellView& view) {
+  return std::all_of(ends_.begin(), ends_.end(), [&](const auto& end) {
+    const auto& [chart, side, upper] = end;
+    show(chart);
+    const int element = view_branches_->chart(chart).element;
+    const NetShape shape = pieces_.element(element).root->exact.shape;
+    const int row = shape.q + 1;
+    const bool of_v = along_v(side);
+    const int fixed = at_upper_end(side) ? (of_v ? shape.p : shape.q) : 0;
+    const int last = of_v ? shape.q : shape.p;
+    const auto at = [&](int k) -> const dvec4& {
+      const int along = upper ? last - k : k;
+      return net_[std::size_t(of_v ? fixed * row + along : along * row + fixed)];
+    };
+    Growth growth(view, tilt_);
+    growth.include(at(0));
+    return growth.along(at(1) - at(0));
+  });
+}
+
 bool ContactIndex::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
   if (glm::distance(branch.lower, branch.upper) <= point_size * rho_) return true;
-  return is_cap(view, branches, branch) &&
+  return is_cap(view, branches, branch) && joins_rise(view) &&
          std::all_of(branch.charts.begin(), branch.charts.end(),
                      [&](int k) { return border_rises(view, k); });
 }
@@ -367,7 +404,7 @@ bool ContactIndex::are_one_of_more(const CellView& view, Branches branches) {
     for (const Branch& branch : branches.all()) {
       if (!is_cap(view, branches, branch) || !add_falling(view, branch, one, beyond)) return false;
     }
-    if (beyond.empty()) return one;
+    if (beyond.empty()) return one && joins_rise(view);
     if (!branches.extend(pieces_, beyond)) return false;
   }
   return false;

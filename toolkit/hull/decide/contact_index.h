@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,10 @@ namespace taut {
 /// the counts sum to the surface's Euler characteristic; if that is one, so is the number of such
 /// points. All near-maxima hang together with it: a piece of the surface above some height that
 /// does not hold it would have a maximum of its own.
+///
+/// Inwards means along some direction that leads into the surface. Where several charts meet at the
+/// border the directions from its two sides may lead to either side of a notch; if heights grow
+/// along what the charts share there, too, they grow along all that is between.
 ///
 /// From parts of the border to which nothing of the branch is glued, so that beyond them no plane
 /// touches, heights may fall: if along these they have no local minimum, the highest points of
@@ -56,11 +61,13 @@ class ContactIndex {
   /// The charts hang together to a surface of Euler characteristic one, with a border.
   bool is_disc(const Branches& branches, const Branch& branch);
   static bool is_whole(const Branches& branches, const Glue& glue);
+  void find_ends(const Branches& branches, const Branch& branch, const CornerRings& rings);
   /// They are joined to a disc, smoothly, and curved, or nearly so.
   bool is_cap(const CellView& view, const Branches& branches, const Branch& branch);
   bool is_curved(const CellView& view, const Chart& chart);
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   bool border_rises(const CellView& view, int chart);
+  bool joins_rise(const CellView& view);
   bool add_falling(const CellView& view, const Branch& branch, bool alone,
                    std::vector<std::pair<int, Side>>& sides);
   bool face_border_rises(const CellView& view, int chart);
@@ -81,6 +88,8 @@ class ContactIndex {
   double rho_;
   double tilt_ = 0;  ///< by which heights have to grow from the border of the last cap
   CornerRings::Glued glued_;
+  /// Ends of sides at which charts meet that are on the border: a chart, the side, its upper end.
+  std::vector<std::tuple<int, Side, bool>> ends_;
   /// An edge or vertex, and a chart of the branch that ends there.
   std::vector<std::pair<int, int>> beside_;
   const Branches* view_branches_ = nullptr;

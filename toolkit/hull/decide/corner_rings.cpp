@@ -48,7 +48,12 @@ void CornerRings::visit(int k, Side u, Side v) {
   for (const Corner& c : way.corners) {
     passed_.insert({c.chart, int(c.next), int(c.other)});
     passed_.insert({c.chart, int(pole ? opposite(c.next) : c.other), int(pole ? c.other : c.next)});
-    if (pole && closed) poles_.emplace_back(c.chart, c.other);
+    if (!closed) continue;
+    inside_.insert({c.chart, int(c.next), int(c.other)});
+    inside_.insert({c.chart, int(c.other), int(c.next)});
+    if (!pole) continue;
+    inside_.insert({c.chart, int(opposite(c.next)), int(c.other)});
+    poles_.emplace_back(c.chart, c.other);
   }
   count_ += closed ? 1 : 0;
 }

@@ -24,6 +24,10 @@ class CornerRings {
   /// At some corner three charts of patches or more meet, but not all around: there the branch is
   /// not convex.
   bool any_is_reentrant() const { return reentrant_; }
+  /// The corner of a chart is such a point, be it a pole or not.
+  bool is_inside(int chart, Side side, Side other) const {
+    return inside_.contains({chart, int(side), int(other)});
+  }
   /// Charts and their sides at poles that are such points.
   const std::vector<std::pair<int, Side>>& poles() const { return poles_; }
 
@@ -59,6 +63,7 @@ class CornerRings {
   bool reentrant_ = false;
   std::vector<std::pair<int, Side>> poles_;
   std::set<std::array<int, 3>> passed_;
+  std::set<std::array<int, 3>> inside_;  ///< charts with two sides
 };
 
 }  // namespace taut

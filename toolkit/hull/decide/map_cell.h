@@ -10,12 +10,12 @@ namespace taut {
 
 /// What is decided of the supporting planes with normals in a cell.
 enum class MapCellKind {
-  region,  ///< one contact for each of them
-  arc,     ///< one of two, which exchange along a curve that is the graph of a function, or not
-  node,    ///< one of three, which all touch one plane at most
+  region,     ///< one contact for each of them
+  arc,        ///< one of two, which exchange along a curve that is the graph of a function, or not
+  node,       ///< one of three, which all touch one plane at most
   facet,      ///< all lie within the resolution of one plane that touches the model, whose normal
               ///< is in the cell or beside it
-  flat,    ///< all lie within the resolution of all the planes
+  flat,       ///< all lie within the resolution of all the planes
   undecided,  ///< none of these is proven
   in_line,    ///< one of several, of which each exchanges with the next only, along curves that
               ///< are graphs over one axis, or not

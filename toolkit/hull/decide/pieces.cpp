@@ -71,6 +71,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
   }
   find_beside();
   find_beyond();
+  find_surfaces();
   Likenesses found = find_translates(*this, cover_share * resolution);
   for (std::size_t k = 0; k < elements_.size(); ++k) {
     elements_[k].likeness = std::move(found.of_elements[k]);
@@ -173,6 +174,18 @@ void MapPieces::find_beyond() {
       if (beyond) element.next[std::size_t(end)] = {find(beyond->piece), beyond->end};
       element.kink[std::size_t(end)] = joins_.kink(c, end);
     }
+  }
+}
+
+void MapPieces::find_surfaces() {
+  DisjointSets sets(elements_.size());
+  for (std::size_t k = 0; k < elements_.size(); ++k) {
+    for (const MapElement::Beyond& beyond : elements_[k].beyond) {
+      if (beyond.element >= 0) sets.unite(int(k), beyond.element);
+    }
+  }
+  for (std::size_t k = 0; k < elements_.size(); ++k) {
+    if (elements_[k].contact.kind == SourceKind::face) elements_[k].surface = sets.find(int(k));
   }
 }
 

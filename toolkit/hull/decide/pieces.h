@@ -50,6 +50,8 @@ struct MapElement {
   };
   std::array<Beyond, 4> beyond = {};
   std::array<double, 4> kink = {};
+  /// Of a patch: those with the same number go on into each other.
+  int surface = -1;
   /// Of an edge, where it passes a vertex: the element and the end at which it goes on, or -1.
   std::array<std::array<int, 2>, 2> next = {{{-1, -1}, {-1, -1}}};
   std::array<bool, 4> collapsed = {};  ///< sides that are one point
@@ -102,6 +104,7 @@ class MapPieces {
   void add_vertex(const Contact& c);
   void find_beside();
   void find_beyond();
+  void find_surfaces();
   std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);
