@@ -729,25 +729,35 @@ TEST(DirectionMap, FacetsTouch) {
   EXPECT_GT(facets, 20);
 }
 
+/// The patch over a quadrangle, corners (0, 0), (0, 1), (1, 0), (1, 1), of a quadratic height with
+/// a blossom.
+template <class Height>
+NurbsSurface quadric_over(const std::array<dvec2, 4>& corners, Height height) {
+  const auto at = [&](int a, int c, int b, int d) {
+    const dvec2 x = corners[std::size_t(2 * a + c)];
+    const dvec2 y = corners[std::size_t(2 * b + d)];
+    return dvec3(0.5 * (x + y), height(x, y));
+  };
+  std::vector<std::vector<dvec3>> rows(3);
+  for (int i = 0; i <= 2; ++i) {
+    for (int j = 0; j <= 2; ++j) {
+      const int a = i > 1 ? 1 : 0;
+      const int b = i > 0 ? 1 : 0;
+      const int c = j > 1 ? 1 : 0;
+      const int d = j > 0 ? 1 : 0;
+      rows[std::size_t(i)].push_back(0.5 * (at(a, c, b, d) + at(a, d, b, c)));
+    }
+  }
+  return spline(rows, 2, 2);
+}
+
 /// A cap over quadrangles that halve the sides of the triangles of a fan, each sliver three: in the
 /// middle of it two parameter lines are all but parallel.
 Shape fan_of_slivers(int count) {
   Shape shape;
-  const auto add = [&](const std::array<dvec2, 4>& q) {
-    std::vector<std::vector<dvec3>> rows(3);
-    const auto blossom = [&](int a, int b, int c, int d) {
-      // At ((a, c), (b, d)), each 0 or 1: corners are (0, 0), (0, 1), (1, 0), (1, 1).
-      const dvec2 x = q[std::size_t(2 * a + c)];
-      const dvec2 y = q[std::size_t(2 * b + d)];
-      return 0.5 * dvec3(x + y, -x.x * y.x - 2 * x.y * y.y);
-    };
-    for (int i = 0; i <= 2; ++i) {
-      for (int j = 0; j <= 2; ++j) {
-        const int a = i > 1 ? 1 : 0, b = i > 0 ? 1 : 0, c = j > 1 ? 1 : 0, d = j > 0 ? 1 : 0;
-        rows[std::size_t(i)].push_back(0.5 * (blossom(a, b, c, d) + blossom(a, b, d, c)));
-      }
-    }
-    shape.surfaces.push_back(spline(rows, 2, 2));
+  const auto add = [&](const std::array<dvec2, 4>& corners) {
+    shape.surfaces.push_back(quadric_over(
+        corners, [](const dvec2& x, const dvec2& y) { return -x.x * y.x - 2 * x.y * y.y; }));
   };
   const auto rim = [&](int k) {
     const double angle = 2 * pi * k / count;
@@ -777,6 +787,35 @@ TEST(DirectionMap, FansOfSliversAreOneCap) {
     const MapCell& cell = cell_at(map, (turned ? rotation : dmat3(1.0)) * unit({0.2, 0.3, 1}));
     EXPECT_EQ(cell.kind, MapCellKind::region);
     EXPECT_EQ(cell.contacts.size(), 1u);
+  }
+}
+
+/// Of a cap with a notch, below which it would be the highest, both sides of the notch are; behind
+/// it they hang together.
+TEST(DirectionMap, NotchesPartWhatMeetsBehindThem) {
+  constexpr double half = 0.2;
+  taut_test::Random random(4);
+  for (const int sectors : {2, 3, 4, 5, 6}) {
+    SCOPED_TRACE(sectors);
+    Shape shape;
+    const auto rim = [&](double k) {
+      const double angle = half + (2 * pi - 2 * half) * k / sectors;
+      return dvec2(std::cos(angle), std::sin(angle));
+    };
+    for (int k = 0; k < sectors; ++k) {
+      shape.surfaces.push_back(quadric_over(
+          {dvec2(0.0), rim(k), rim(k + 1), 1.5 * rim(k + 0.5)},
+          [](const dvec2& x, const dvec2& y) { return -(x.x - 0.2) * (y.x - 0.2) - x.y * y.y; }));
+    }
+    for (int turn = 0; turn < 8; ++turn) {
+      const dmat3 own = turn == 0 ? dmat3(1.0) : random_rotation(random);
+      const Scene scene = make_scene(mapped(shape, own));
+      const DirectionMap map = map_at(scene, 1e-5);
+      EXPECT_EQ(count(map, MapCellKind::undecided), 0);
+      for (const double tilt : {-0.1, -0.05, 0.0, 0.05}) {
+        EXPECT_NE(cell_at(map, own * dvec3(tilt, 0, 1)).kind, MapCellKind::region) << tilt;
+      }
+    }
   }
 }
 

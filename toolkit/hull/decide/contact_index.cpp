@@ -20,6 +20,11 @@ constexpr double point_size = 4;
 /// How often a surface is let reach further: each time it becomes up to three times as wide.
 constexpr int extension_limit = 24;
 
+/// The side that meets another one at its lower or upper end.
+Side beside(Side side, bool upper) {
+  return along_v(side) ? (upper ? Side::v1 : Side::v0) : (upper ? Side::u1 : Side::u0);
+}
+
 Corners heights_in(const CellView& view, const dvec4& p) {
   return heights(p, view.q(), view.corners());
 }
@@ -321,9 +326,14 @@ void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
     if (glue.kind != Glue::Kind::faces) continue;
     const Side side = Side(glue.at_a);
     for (const bool upper : {false, true}) {
-      const Side other =
-          along_v(side) ? (upper ? Side::v1 : Side::v0) : (upper ? Side::u1 : Side::u0);
-      if (!rings.is_inside(glue.a, side, other)) ends_.emplace_back(glue.a, side, upper);
+      const Side border = beside(side, upper);
+      if (rings.is_inside(glue.a, side, border)) continue;
+      std::optional<CornerRings::Fan> fan = rings.fan(glue.a, side, border);
+      if (!fan && !is_at(branches.chart(glue.a), border)) {
+        const Side there = Side(glue.at_b);
+        fan = {{{glue.a, border, side}, {glue.b, beside(there, upper != glue.reversed), there}}};
+      }
+      ends_.push_back({{glue.a, side, border}, fan});
     }
   }
 }
@@ -368,25 +378,41 @@ bool ContactIndex::border_rises(const CellView& view, int chart) {
                                     : vertex_border_rises(view, chart);
 }
 
-/// From the border along all sides at which charts meet.
+/// What leads from a corner of a chart along its two sides.
+ContactIndex::CornerRays ContactIndex::rays(const CornerRings::Corner& corner) {
+  show(corner.chart);
+  const int element = view_branches_->chart(corner.chart).element;
+  const NetShape shape = pieces_.element(element).root->exact.shape;
+  const bool of_v = along_v(corner.next);
+  const bool upper_u = at_upper_end(of_v ? corner.next : corner.other);
+  const bool upper_v = at_upper_end(of_v ? corner.other : corner.next);
+  const auto at = [&](int i, int j) -> const dvec4& {
+    const int k = upper_u ? shape.p - i : i;
+    const int l = upper_v ? shape.q - j : j;
+    return net_[std::size_t(k * (shape.q + 1) + l)];
+  };
+  const dvec3 own = euclidean(at(0, 0));
+  const dvec3 ways[] = {euclidean(at(1, 0)) - own, euclidean(at(0, 1)) - own};
+  return {at(0, 0), ways[of_v ? 1 : 0], ways[of_v ? 0 : 1]};
+}
+
+/// From where charts meet on the border heights grow along what two of them share; or straight
+/// inwards from both of their borders there, which leads to the same side of a notch.
+bool ContactIndex::join_rises(const CellView& view, const JoinEnd& end) {
+  const CornerRays own = rays(end.at);
+  Growth growth(view, tilt_);
+  growth.include(own.corner);
+  if (growth.along({own.next, 0})) return true;
+  return end.fan && std::all_of(end.fan->begin(), end.fan->end(), [&](const auto& corner) {
+           const CornerRays last = rays(corner);
+           const dvec3 border = unit(last.next);
+           return growth.along({last.other - glm::dot(last.other, border) * border, 0});
+         });
+}
+
 bool ContactIndex::joins_rise(const CellView& view) {
-  return std::all_of(ends_.begin(), ends_.end(), [&](const auto& end) {
-    const auto& [chart, side, upper] = end;
-    show(chart);
-    const int element = view_branches_->chart(chart).element;
-    const NetShape shape = pieces_.element(element).root->exact.shape;
-    const int row = shape.q + 1;
-    const bool of_v = along_v(side);
-    const int fixed = at_upper_end(side) ? (of_v ? shape.p : shape.q) : 0;
-    const int last = of_v ? shape.q : shape.p;
-    const auto at = [&](int k) -> const dvec4& {
-      const int along = upper ? last - k : k;
-      return net_[std::size_t(of_v ? fixed * row + along : along * row + fixed)];
-    };
-    Growth growth(view, tilt_);
-    growth.include(at(0));
-    return growth.along(at(1) - at(0));
-  });
+  return std::all_of(ends_.begin(), ends_.end(),
+                     [&](const JoinEnd& end) { return join_rises(view, end); });
 }
 
 bool ContactIndex::is_one(const CellView& view, const Branches& branches, const Branch& branch) {

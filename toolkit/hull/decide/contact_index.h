@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -58,6 +57,16 @@ class ContactIndex {
 
  private:
   class Growth;
+  /// Where a side at which charts meet ends on the border, and the first and the last of those
+  /// that meet there, as far as is known.
+  struct JoinEnd {
+    CornerRings::Corner at;
+    std::optional<CornerRings::Fan> fan;
+  };
+  struct CornerRays {
+    dvec4 corner;
+    dvec3 next, other;
+  };
   /// The charts hang together to a surface of Euler characteristic one, with a border.
   bool is_disc(const Branches& branches, const Branch& branch);
   static bool is_whole(const Branches& branches, const Glue& glue);
@@ -68,6 +77,8 @@ class ContactIndex {
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   bool border_rises(const CellView& view, int chart);
   bool joins_rise(const CellView& view);
+  CornerRays rays(const CornerRings::Corner& corner);
+  bool join_rises(const CellView& view, const JoinEnd& end);
   bool add_falling(const CellView& view, const Branch& branch, bool alone,
                    std::vector<std::pair<int, Side>>& sides);
   bool face_border_rises(const CellView& view, int chart);
@@ -88,8 +99,7 @@ class ContactIndex {
   double rho_;
   double tilt_ = 0;  ///< by which heights have to grow from the border of the last cap
   CornerRings::Glued glued_;
-  /// Ends of sides at which charts meet that are on the border: a chart, the side, its upper end.
-  std::vector<std::tuple<int, Side, bool>> ends_;
+  std::vector<JoinEnd> ends_;
   /// An edge or vertex, and a chart of the branch that ends there.
   std::vector<std::pair<int, int>> beside_;
   const Branches* view_branches_ = nullptr;

@@ -41,6 +41,7 @@ void CornerRings::visit(int k, Side u, Side v) {
     // From one edge to another, with what these meet in.
     const Way back = walk({k, start.other, start.next});
     closed = way.edge >= 0 && back.edge >= 0 && meet(way.edge, back.edge);
+    if (way.edge < 0 && back.edge < 0) add_fan(way, back);
     way.corners.insert(way.corners.end(), back.corners.begin(), back.corners.end());
     reentrant_ = reentrant_ || way.corners.size() > 3;  // the first one twice
   }
@@ -56,6 +57,16 @@ void CornerRings::visit(int k, Side u, Side v) {
     poles_.emplace_back(c.chart, c.other);
   }
   count_ += closed ? 1 : 0;
+}
+
+void CornerRings::add_fan(const Way& way, const Way& back) {
+  const Fan fan = {way.corners.back(), back.corners.back()};
+  for (const Way* own : {&way, &back}) {
+    for (const Corner& c : own->corners) {
+      fans_[{c.chart, int(c.next), int(c.other)}] = fan;
+      fans_[{c.chart, int(c.other), int(c.next)}] = fan;
+    }
+  }
 }
 
 CornerRings::Way CornerRings::walk(const Corner& from) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,6 +17,19 @@ class CornerRings {
   /// By chart, and by its sides or ends: the glue there, or -1.
   using Glued = std::vector<std::array<int, 4>>;
 
+  /// A corner of a chart, seen on the way around: the side over which the next step leads, and the
+  /// other one, which is one point at a pole.
+  struct Corner {
+    int chart;
+    Side next, other;
+    bool operator==(const Corner& c) const {
+      return chart == c.chart && next == c.next && other == c.other;
+    }
+  };
+  /// Of charts that meet at a point, but not all around, the first and the last one: beyond the
+  /// sides `next` there are no others.
+  using Fan = std::array<Corner, 2>;
+
   /// All must outlive it.
   CornerRings(const MapPieces& pieces, const Branches& branches, const Branch& branch,
               const Glued& glued);
@@ -28,19 +42,15 @@ class CornerRings {
   bool is_inside(int chart, Side side, Side other) const {
     return inside_.contains({chart, int(side), int(other)});
   }
+  /// That of which the corner of a chart is part, if there is one; none where edges bound it.
+  std::optional<Fan> fan(int chart, Side side, Side other) const {
+    const auto found = fans_.find({chart, int(side), int(other)});
+    return found == fans_.end() ? std::nullopt : std::optional(found->second);
+  }
   /// Charts and their sides at poles that are such points.
   const std::vector<std::pair<int, Side>>& poles() const { return poles_; }
 
  private:
-  /// A corner of a chart, seen on the way around: the side over which the next step leads, and the
-  /// other one, which is one point at a pole.
-  struct Corner {
-    int chart;
-    Side next, other;
-    bool operator==(const Corner& c) const {
-      return chart == c.chart && next == c.next && other == c.other;
-    }
-  };
   /// Corners passed from one on, and how the way ends: where it began, at the chart of an edge, or
   /// nowhere.
   struct Way {
@@ -50,6 +60,7 @@ class CornerRings {
   };
 
   void visit(int chart, Side u, Side v);
+  void add_fan(const Way& way, const Way& back);
   Way walk(const Corner& from) const;
   std::optional<Corner> step(const Corner& from, int& edge) const;
   bool is_pole(const Corner& c) const;
@@ -63,7 +74,8 @@ class CornerRings {
   bool reentrant_ = false;
   std::vector<std::pair<int, Side>> poles_;
   std::set<std::array<int, 3>> passed_;
-  std::set<std::array<int, 3>> inside_;  ///< charts with two sides
+  std::set<std::array<int, 3>> inside_;     ///< charts with two sides
+  std::map<std::array<int, 3>, Fan> fans_;  ///< by the same
 };
 
 }  // namespace taut
