@@ -208,11 +208,11 @@ bool CurvatureNets::determinant_is_positive() const {
   const auto uv = net(uv_.entries);
   add_product(net(uu_.entries), net(vv_.entries), 0, 0, determinant, std::multiplies());
   add_product(uv, uv, 0, 0, determinant, [](double a, double b) { return -a * b; });
-  // Convex combinations of products.
+  // Convex combinations of products, at most as many as entries.
   const double uu = largest(uu_.entries) + uu_.error;
   const double vv = largest(vv_.entries) + vv_.error;
   const double mixed = largest(uv_.entries) + uv_.error;
-  const double roundings = 8.0 * (uu_.shape.p + uu_.shape.q + 8);
+  const double roundings = (uu_.shape.p + 1.0) * (uu_.shape.q + 1.0) + 16;
   const double error = uu * vv_.error + vv * uu_.error + 2 * mixed * uv_.error +
                        roundings * rounding_unit * (uu * vv + mixed * mixed);
   const std::vector<double> entries = unscaled(determinant);
