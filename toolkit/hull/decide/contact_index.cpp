@@ -333,6 +333,11 @@ void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
         const Side there = Side(glue.at_b);
         fan = {{{glue.a, border, side}, {glue.b, beside(there, upper != glue.reversed), there}}};
       }
+      if (fan && std::any_of(fan->begin(), fan->end(), [&](const CornerRings::Corner& c) {
+            return glued_[std::size_t(c.chart)][std::size_t(c.next)] >= 0;
+          })) {
+        fan.reset();  // not the last ones
+      }
       ends_.push_back({{glue.a, side, border}, fan});
     }
   }
