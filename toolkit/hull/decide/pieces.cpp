@@ -7,6 +7,7 @@
 #include "taut/bounds/poles.h"
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/vector_net.h"
+#include "taut/core/disjoint_sets.h"
 #include "taut/hull/decide/nearly_straight.h"
 #include "taut/hull/decide/translates.h"
 
