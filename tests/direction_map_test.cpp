@@ -179,6 +179,16 @@ TEST_P(KnownMaps, AreFound) { expect_known(GetParam(), GetParam().shape); }
 INSTANTIATE_TEST_SUITE_P(Clean, KnownMaps, testing::ValuesIn(known_maps()),
                          [](const auto& info) { return info.param.name; });
 
+/// Arcs that end where their contacts meet: turned and rounded, cells there are told as nodes
+/// still.
+std::vector<Known> known_maps_with_free_ends() {
+  return {{"moment_curve", {{}, {twisted_cubic()}, {}}, 1, 1, 0},
+          {"dented_ellipsoid", dented_ellipsoid(), 1, 1, 0}};
+}
+
+INSTANTIATE_TEST_SUITE_P(FreeEnds, KnownMaps, testing::ValuesIn(known_maps_with_free_ends()),
+                         [](const auto& info) { return info.param.name; });
+
 class KnownMapsTurned : public testing::TestWithParam<Known> {};
 
 TEST_P(KnownMapsTurned, AreFound) {
