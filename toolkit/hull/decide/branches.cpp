@@ -57,6 +57,10 @@ std::array<Interval, 2> strip(Side side, const Interval& t) {
 
 const Interval& along(const Chart& chart, Side side) { return along_v(side) ? chart.v : chart.u; }
 
+Side side_at_end(Side side, bool upper) {
+  return along_v(side) ? (upper ? Side::v1 : Side::v0) : (upper ? Side::u1 : Side::u0);
+}
+
 bool is_at(const Chart& chart, Side side) {
   const Interval& across = along_v(side) ? chart.u : chart.v;
   return at_upper_end(side) ? across.upper == 1 : across.lower == 0;

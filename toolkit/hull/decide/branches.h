@@ -96,6 +96,8 @@ inline constexpr double kink_share = 2;
 
 /// The interval of a side's free parameter that a chart spans.
 const Interval& along(const Chart& chart, Side side);
+/// The side that meets another one at its lower or upper end.
+Side side_at_end(Side side, bool upper);
 /// The chart reaches the side of its patch.
 bool is_at(const Chart& chart, Side side);
 

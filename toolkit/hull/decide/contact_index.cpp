@@ -20,11 +20,6 @@ constexpr double point_size = 4;
 /// How often a surface is let reach further: each time it becomes up to three times as wide.
 constexpr int extension_limit = 24;
 
-/// The side that meets another one at its lower or upper end.
-Side beside(Side side, bool upper) {
-  return along_v(side) ? (upper ? Side::v1 : Side::v0) : (upper ? Side::u1 : Side::u0);
-}
-
 Corners heights_in(const CellView& view, const dvec4& p) {
   return heights(p, view.q(), view.corners());
 }
@@ -326,12 +321,13 @@ void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
     if (glue.kind != Glue::Kind::faces) continue;
     const Side side = Side(glue.at_a);
     for (const bool upper : {false, true}) {
-      const Side border = beside(side, upper);
+      const Side border = side_at_end(side, upper);
       if (rings.is_inside(glue.a, side, border)) continue;
       std::optional<CornerRings::Fan> fan = rings.fan(glue.a, side, border);
       if (!fan && !is_at(branches.chart(glue.a), border)) {
         const Side there = Side(glue.at_b);
-        fan = {{{glue.a, border, side}, {glue.b, beside(there, upper != glue.reversed), there}}};
+        fan = {
+            {{glue.a, border, side}, {glue.b, side_at_end(there, upper != glue.reversed), there}}};
       }
       if (fan && std::any_of(fan->begin(), fan->end(), [&](const CornerRings::Corner& c) {
             return glued_[std::size_t(c.chart)][std::size_t(c.next)] >= 0;

@@ -22,8 +22,11 @@ namespace taut {
 /// does not hold it would have a maximum of its own.
 ///
 /// Inwards means along some direction that leads into the surface. Where several charts meet at the
-/// border the directions from its two sides may lead to either side of a notch; if heights grow
-/// along what the charts share there, too, they grow along all that is between.
+/// border the directions from its two sides may lead to either side of a notch, more than half a
+/// turn apart through the surface. If heights grow along what the charts share there, too, they
+/// grow along all that is between; or if they grow straight inwards from both ends of the border
+/// there: then the gradient itself leads inwards, less than half a turn from each of these
+/// directions, for charts that go round the point once at most.
 ///
 /// From parts of the border to which nothing of the branch is glued, so that beyond them no plane
 /// touches, heights may fall: if along these they have no local minimum, the highest points of

@@ -93,9 +93,7 @@ std::optional<CornerRings::Corner> CornerRings::step(const Corner& from, int& ed
   const bool is_a = glue.a == from.chart && glue.at_a == int(from.next);
   const Side side = Side(is_a ? glue.at_b : glue.at_a);
   const bool upper = at_upper_end(from.other) != glue.reversed;
-  const Corner next{is_a ? glue.b : glue.a,
-                    along_v(side) ? (upper ? Side::v1 : Side::v0) : (upper ? Side::u1 : Side::u0),
-                    side};
+  const Corner next{is_a ? glue.b : glue.a, side_at_end(side, upper), side};
   const Chart& chart = branches_.chart(next.chart);
   if (!is_at(chart, next.next)) return std::nullopt;
   const Corner at_pole{next.chart, opposite(side), next.next};
