@@ -158,6 +158,9 @@ std::vector<Known> known_maps() {
        0},
       {"sphere_that_touches_another", two_spheres(1, 0.5, 0.5), 1, 0, 0},
       {"box_in_a_sphere", box_in_a_sphere(), 1, 0, 0},
+      // Arcs that end where their contacts meet.
+      {"moment_curve", {{}, {twisted_cubic()}, {}}, 1, 1, 0},
+      {"dented_ellipsoid", dented_ellipsoid(), 1, 1, 0},
   };
 }
 
@@ -179,16 +182,6 @@ TEST_P(KnownMaps, AreFound) { expect_known(GetParam(), GetParam().shape); }
 INSTANTIATE_TEST_SUITE_P(Clean, KnownMaps, testing::ValuesIn(known_maps()),
                          [](const auto& info) { return info.param.name; });
 
-/// Arcs that end where their contacts meet: turned and rounded, cells there are told as nodes
-/// still.
-std::vector<Known> known_maps_with_free_ends() {
-  return {{"moment_curve", {{}, {twisted_cubic()}, {}}, 1, 1, 0},
-          {"dented_ellipsoid", dented_ellipsoid(), 1, 1, 0}};
-}
-
-INSTANTIATE_TEST_SUITE_P(FreeEnds, KnownMaps, testing::ValuesIn(known_maps_with_free_ends()),
-                         [](const auto& info) { return info.param.name; });
-
 class KnownMapsTurned : public testing::TestWithParam<Known> {};
 
 TEST_P(KnownMapsTurned, AreFound) {
@@ -201,6 +194,20 @@ TEST_P(KnownMapsTurned, AreFound) {
 
 INSTANTIATE_TEST_SUITE_P(Turned, KnownMapsTurned, testing::ValuesIn(known_maps()),
                          [](const auto& info) { return info.param.name; });
+
+/// Where an arc ends cells are of one contact or two, as it happens.
+TEST(FreeEnds, AreFoundTurned) {
+  for (const std::uint64_t seed : {9, 10}) {
+    taut_test::Random random(seed);
+    for (const Variant variant : {Variant::turned, Variant::float32, Variant::decimals}) {
+      SCOPED_TRACE(std::to_string(seed) + name_of(variant));
+      for (const Known& known : {Known{"", {{}, {twisted_cubic()}, {}}, 1, 1, 0},
+                                 Known{"", dented_ellipsoid(), 1, 1, 0}}) {
+        expect_known(known, placed({scaled(known.shape, 10)}, variant, random).shape);
+      }
+    }
+  }
+}
 
 /// A shape beside another one, at a distance.
 struct Neighbors {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/disjoint_sets.h"
 #include "taut/hull/decide/cell_tree.h"
+#include "taut/hull/decide/top_parts.h"
 
 namespace taut {
 namespace {
@@ -22,6 +24,7 @@ class Assembly {
       : map_(map),
         tree_(map.cells),
         query_(geometry.scene(), stop),
+        top_parts_(geometry),
         first_(first_contacts(map.cells)),
         regions_(std::size_t(first_.back())),
         clusters_(map.cells.size()),
@@ -46,6 +49,12 @@ class Assembly {
   }
 
  private:
+  /// A cell's arc passes the part of its border between two directions.
+  struct Crossing {
+    int arc, cell;
+    dvec3 from, to;
+  };
+
   /// Contacts of all cells are numbered through.
   static std::vector<int> first_contacts(const std::vector<MapCell>& cells) {
     std::vector<int> first = {0};
@@ -91,10 +100,13 @@ class Assembly {
 
   /// Number of the contact of a cell that supports in a direction on its border.
   int winner(int k, const dvec3& d) {
-    const std::vector<Box>& contacts = cell(k).contacts;
-    const int first = first_[std::size_t(k)];
-    if (contacts.size() < 2 || cell(k).kind == MapCellKind::region) return first;
-    return first + int(cell(k).contact_of(d, point(d)));
+    const bool is_one = cell(k).contacts.size() < 2 || cell(k).kind == MapCellKind::region;
+    return is_one ? first_[std::size_t(k)] : winner(k, d, point(d));
+  }
+
+  /// x supports in d. @pre the cell has contacts
+  int winner(int k, const dvec3& d, const dvec3& x) const {
+    return first_[std::size_t(k)] + int(cell(k).contact_of(d, x));
   }
 
   /// The point that supports in a direction, which is asked for from several cells.
@@ -123,6 +135,8 @@ class Assembly {
     }
     const std::vector<int> crossed = arcs_between(a, own);
     const std::vector<int> crossed_there = arcs_between(b, others);
+    if (crossed.size() == 1) crossings_.push_back({crossed[0], a, side.from, side.to});
+    if (crossed_there.size() == 1) crossings_.push_back({crossed_there[0], b, side.from, side.to});
     if (is_open(a) && is_open(b)) {
       clusters_.unite(a, b);
     } else if (is_open(a) || is_open(b)) {
@@ -238,6 +252,7 @@ class Assembly {
       result_.arcs[std::size_t(arcs.at(arcs_.find(end.arc)))].nodes.push_back(node);
       ++result_.nodes[std::size_t(node)].arcs;
     }
+    drop_shallow_arcs(arcs);
     drop_arcs_within_facets();
     std::set<int> regions;
     for (int k = 0; k < first_.back(); ++k) {
@@ -263,6 +278,60 @@ class Assembly {
       if (within) node.arcs -= 2;
       return within;
     });
+  }
+
+  /// Beside where an arc ends for want of resolution cells may tell contacts apart that are one
+  /// within it: pieces of arcs between such ends are none if nowhere more than the resolution is
+  /// between their contacts. `numbers`: of arcs in the result.
+  void drop_shallow_arcs(const std::map<int, int>& numbers) {
+    std::vector<std::vector<const Crossing*>> crossings(result_.arcs.size());
+    for (const Crossing& c : crossings_) {
+      const auto number = numbers.find(arcs_.find(c.arc));
+      if (number != numbers.end()) crossings[std::size_t(number->second)].push_back(&c);
+    }
+    std::vector<MapArc> left;
+    for (std::size_t k = 0; k < crossings.size(); ++k) {
+      const MapArc& arc = result_.arcs[k];
+      if (!ends_freely(arc) || !is_shallow(crossings[k])) {
+        left.push_back(arc);
+        continue;
+      }
+      for (const int node : arc.nodes) --result_.nodes[std::size_t(node)].arcs;
+    }
+    result_.arcs.swap(left);
+  }
+
+  /// In cells in which two contacts are one.
+  bool ends_freely(const MapArc& arc) const {
+    return !arc.nodes.empty() && std::all_of(arc.nodes.begin(), arc.nodes.end(), [&](int node) {
+      const std::vector<int>& cells = result_.nodes[std::size_t(node)].cells;
+      return std::all_of(cells.begin(), cells.end(), [&](int k) {
+        return cell(k).kind == MapCellKind::region || cell(k).kind == MapCellKind::arc;
+      });
+    });
+  }
+
+  bool is_shallow(const std::vector<const Crossing*>& crossings) {
+    if (crossings.empty()) return false;
+    // In the middle an arc is deepest, mostly.
+    const auto middle = crossings.begin() + std::ptrdiff_t(crossings.size() / 2);
+    return is_shallow(**middle) && std::all_of(crossings.begin(), crossings.end(),
+                                               [&](const Crossing* c) { return is_shallow(*c); });
+  }
+
+  /// Both contacts are in one piece of what is within the resolution of the plane.
+  bool is_shallow(const Crossing& crossing) {
+    std::array<dvec3, 2> d = {unit(crossing.from), unit(crossing.to)};
+    std::array<dvec3, 2> x = {point(d[0]), point(d[1])};
+    const int first = winner(crossing.cell, crossing.from);
+    for (int k = 0; k < std::numeric_limits<double>::digits; ++k) {
+      const dvec3 middle = unit(d[0] + d[1]);
+      const dvec3 there = query_(middle, hint_).point;
+      const std::size_t side = winner(crossing.cell, middle, there) == first ? 0 : 1;
+      d[side] = middle;
+      x[side] = there;
+    }
+    return top_parts_.hang_together(d[0], x[0], x[1], map_.resolution);
   }
 
   /// Open cells without a facet in which arcs do not end: two between the same contacts are one
@@ -299,11 +368,13 @@ class Assembly {
   const DirectionMap& map_;
   CellTree tree_;
   SupportQuery query_;
+  TopParts top_parts_;
   std::vector<int> first_;  // contact of each cell
   DisjointSets regions_, clusters_, arcs_;
   std::vector<bool> supports_;  // by contact
   std::vector<bool> has_arc_;   // by arc
   std::vector<bool> merges_;    // by cell: where an arc ends for want of resolution
+  std::vector<Crossing> crossings_;
   std::vector<End> ends_;
   std::map<std::array<long long, 3>, dvec3> points_;
   Contact hint_;

@@ -28,7 +28,8 @@ struct MapTopology {
 };
 
 /// Puts the cells of a map together. Where two contacts that one cell tells apart are one to that
-/// beside it, within the resolution, an arc ends in a node of its own. What a side between two
+/// beside it, within the resolution, an arc ends in a node of its own; of what lies between two
+/// such ends and is nowhere deeper than the resolution there is no arc. What a side between two
 /// cells shows is told from its ends: two arcs that both cross one side, and that no cell tells,
 /// are missed.
 /// @pre the map is of the geometry @throws Cancelled

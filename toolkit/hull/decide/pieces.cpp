@@ -9,18 +9,11 @@
 #include "taut/bounds/vector_net.h"
 #include "taut/core/disjoint_sets.h"
 #include "taut/hull/decide/nearly_straight.h"
+#include "taut/hull/decide/placed_net.h"
 #include "taut/hull/decide/translates.h"
 
 namespace taut {
 namespace {
-
-std::vector<dvec4> points_of(const SceneNet& net) {
-  std::vector<dvec4> points;
-  for (std::size_t k = 0; k < net.x.size(); ++k) {
-    points.emplace_back(net.x[k], net.y[k], net.z[k], net.w[k]);
-  }
-  return points;
-}
 
 /// The derivative across a side, into the patch, as a net along the side.
 std::vector<dvec4> inward_net(NetShape shape, const std::vector<dvec4>& points, Side side,
@@ -218,22 +211,11 @@ void MapPieces::add(MapElement element, MapPiece::Root root) {
   elements_.push_back(std::move(element));
 }
 
-std::vector<dvec4> MapPieces::placed(const Contact& c, const std::vector<dvec4>& points) const {
-  const SceneInstance& instance = geometry_.scene().content().instances[std::size_t(c.instance)];
-  std::vector<dvec4> result;
-  result.reserve(points.size());
-  for (const dvec4& p : points) {
-    const dvec3 x = instance.rotated ? instance.rotation * dvec3(p) : dvec3(p);
-    result.emplace_back(x + p.w * instance.translation, p.w);
-  }
-  return result;
-}
-
 std::vector<dvec4> MapPieces::placed_patch(const Contact& c, NetShape& shape) const {
   const SceneContent& content = geometry_.scene().content();
   const SceneElement& e = content.part_of(c.instance).elements[std::size_t(content.element(c))];
   shape = e.shape;
-  return placed(c, points_of(e.net));
+  return placed_net(content, c.instance, e);
 }
 
 std::vector<dvec3> MapPieces::control_points() const {
@@ -241,8 +223,7 @@ std::vector<dvec3> MapPieces::control_points() const {
   std::vector<dvec3> result;
   for (const int i : content.distinct_instances) {
     for (const SceneElement& e : content.part_of(i).elements) {
-      const std::vector<dvec4> net = placed({i, e.kind, e.index, 0, 0}, points_of(e.net));
-      for (const dvec4& p : net) result.push_back(euclidean(p));
+      for (const dvec4& p : placed_net(content, i, e)) result.push_back(euclidean(p));
     }
   }
   for (const MapElement& e : elements_) {

@@ -105,7 +105,6 @@ class MapPieces {
   void find_beside();
   void find_beyond();
   void find_surfaces();
-  std::vector<dvec4> placed(const Contact& c, const std::vector<dvec4>& points) const;
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);
   void let_ends_stand();

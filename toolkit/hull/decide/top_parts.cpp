@@ -1,0 +1,108 @@
+#include "taut/hull/decide/top_parts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "taut/bounds/scene_content.h"
+#include "taut/bounds/vector_net.h"
+#include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/placed_net.h"
+
+namespace taut {
+namespace {
+
+/// Parts of a model that are looked at for one plane.
+constexpr int looked_at_parts = 20'000;
+/// Of those that are found heights differ by no more than this share of the depth.
+constexpr double height_share = 0.25;
+
+Box box_of(const std::vector<dvec4>& net) {
+  Box box;
+  for (const dvec4& p : net) box.include(euclidean(p));
+  return box;
+}
+
+Interval heights(const std::vector<dvec4>& net, const dvec3& d) {
+  Interval result = {infinity, -infinity};
+  for (const dvec4& p : net) {
+    const double h = glm::dot(euclidean(p), d);
+    result = {std::min(result.lower, h), std::max(result.upper, h)};
+  }
+  return result;
+}
+
+double gap(const Box& a, const Box& b) {
+  return glm::length(glm::max(glm::max(a.lower - b.upper, b.lower - a.upper), dvec3(0.0)));
+}
+
+/// Along which the longest of a net's rows and columns runs.
+Direction longest_way(NetShape shape, const std::vector<dvec4>& net) {
+  const int row = shape.q + 1;
+  const auto length = [&](int first, int count, int step) {
+    double sum = 0;
+    for (int k = first + step; k <= first + count * step; k += step) {
+      sum += glm::distance(euclidean(net[std::size_t(k - step)]), euclidean(net[std::size_t(k)]));
+    }
+    return sum;
+  };
+  double along_u = 0;
+  double along_v = 0;
+  for (int j = 0; j <= shape.q; ++j) along_u = std::max(along_u, length(j, shape.p, row));
+  for (int i = 0; i <= shape.p; ++i) along_v = std::max(along_v, length(i * row, shape.q, 1));
+  return along_u >= along_v ? Direction::u : Direction::v;
+}
+
+}  // namespace
+
+TopParts::TopParts(const ContactGeometry& geometry) {
+  const SceneContent& content = geometry.scene().content();
+  for (const int i : content.distinct_instances) {
+    for (const SceneElement& e : content.part_of(i).elements) {
+      const Contact own = {i, e.kind, e.index, 0, 0};
+      if (e.kind == SourceKind::edge ? geometry.is_straight(own) : geometry.is_ruled(own)) continue;
+      std::vector<dvec4> net = placed_net(content, i, e);
+      const Box box = box_of(net);
+      parts_.push_back({e.shape, std::move(net), box});
+    }
+  }
+}
+
+bool TopParts::find(const dvec3& d, double height, double depth, std::vector<Box>& found) const {
+  std::vector<Part> waiting;
+  const auto look = [&](const Part& part) {
+    const Interval of_part = heights(part.net, d);
+    if (of_part.upper < height - depth) return;
+    const double lowest = height - (1 + height_share) * depth;
+    of_part.lower >= lowest ? found.push_back(part.box) : waiting.push_back(part);
+  };
+  for (const Part& part : parts_) look(part);
+  for (int looked = 0; !waiting.empty(); ++looked) {
+    if (looked == looked_at_parts) return false;
+    Part upper = std::move(waiting.back());
+    waiting.pop_back();
+    Part lower = upper;
+    const bool along_u = longest_way(upper.shape, upper.net) == Direction::u;
+    along_u ? halve_u(upper.shape, upper.net.data(), lower.net.data())
+            : halve_v(upper.shape, upper.net.data(), lower.net.data());
+    for (Part* half : {&lower, &upper}) {
+      half->box = box_of(half->net);
+      look(*half);
+    }
+  }
+  return true;
+}
+
+bool TopParts::hang_together(const dvec3& d, const dvec3& x, const dvec3& y, double depth) const {
+  const double height = std::max(glm::dot(x, d), glm::dot(y, d));
+  std::vector<Box> found = {{x, x}, {y, y}};
+  if (!find(d, height, depth, found)) return false;
+  DisjointSets pieces(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (gap(found[i], found[j]) <= depth) pieces.unite(int(i), int(j));
+    }
+  }
+  return pieces.find(0) == pieces.find(1);
+}
+
+}  // namespace taut
