@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "models.h"
+#include "taut/bounds/support_query.h"
 
 namespace {
 
@@ -46,9 +47,11 @@ void expect_dip(const Shape& shape, double a) {
   const Scene scene(make_model(shape));
   const ContactGeometry geometry(scene);
   const TopParts parts(geometry);
+  const auto highest = [&](int side) {
+    return taut::SupportQuery(scene)(taut::unit({1e-3 * std::pow(a, 3) * side, 1, 0})).contact;
+  };
   const auto hang_together = [&](double share) {
-    return parts.hang_together({0, 1, 0}, scene.frame().to_frame({-a, 0, 0}),
-                               scene.frame().to_frame({a, 0, 0}),
+    return parts.hang_together({0, 1, 0}, highest(-1), highest(1),
                                scene.frame().length_to_frame(share * std::pow(a, 4)));
   };
   EXPECT_FALSE(hang_together(0.01));
@@ -68,10 +71,11 @@ TEST(TopParts, HangTogetherWhereADipIsShallow) {
 TEST(TopParts, DoNotHangTogetherWhereThereAreTwo) {
   const Scene scene(make_model(two_spheres(1, 1, 3)));
   const ContactGeometry geometry(scene);
-  const dvec3 x = scene.frame().to_frame({0, 1, 0});
-  const dvec3 y = scene.frame().to_frame({0, 1, 3});
-  EXPECT_FALSE(TopParts(geometry).hang_together({0, 1, 0}, x, y, 1e-3));
-  EXPECT_TRUE(TopParts(geometry).hang_together({0, 1, 0}, x, x, 1e-3));
+  const auto highest = [&](double z) {
+    return taut::SupportQuery(scene)(taut::unit({0, 1, z})).contact;
+  };
+  EXPECT_FALSE(TopParts(geometry).hang_together({0, 1, 0}, highest(-1e-9), highest(1e-9), 1e-3));
+  EXPECT_TRUE(TopParts(geometry).hang_together({0, 1, 0}, highest(1e-9), highest(2e-9), 1e-3));
 }
 
 }  // namespace

@@ -293,10 +293,10 @@ PatchJet3 jet3(const BezierPatch& patch, double u, double v) {
 
 dvec3 unit_normal(const BezierPatch& patch, double u, double v) {
   const NormalNoise noise(patch);
-  const PatchJet2 j = jet2(patch, u, v);
-  const dvec3 N = noise.cleaned_normal(j);
+  const dvec3 N = noise.cleaned_normal(jet1(patch, u, v));
   if (N != dvec3(0.0)) return N;
 
+  const PatchJet2 j = jet2(patch, u, v);
   // N vanishes: its derivative along the line to the centre points where the limit does.
   const dvec2 inward = dvec2(0.5) - dvec2(u, v);
   const dvec3 Nu = glm::cross(j.Suu, j.Sv) + glm::cross(j.Su, j.Suv);

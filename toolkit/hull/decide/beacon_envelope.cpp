@@ -1,30 +1,46 @@
 #include "taut/hull/decide/beacon_envelope.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace taut {
 
 void BeaconEnvelope::find(std::span<const Corners> points) {
   vertices_ = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
   known_.clear();
-  highest_.assign(points.size(), false);
+  highest_.assign(points.size(), true);
+  rivals_.resize(points.size());
+  std::iota(rivals_.begin(), rivals_.end(), std::size_t(0));
+  const auto middle = [](const Corners& y) { return y[1] + y[2]; };
+  std::size_t first = 0;
+  // The highest ones at the corners and in the middle leave nothing of most others.
+  const auto put_first = [&](const auto& height) {
+    if (points.empty()) return;
+    const auto best = std::max_element(
+        rivals_.begin(), rivals_.end(),
+        [&](std::size_t a, std::size_t b) { return height(points[a]) < height(points[b]); });
+    if (std::size_t(best - rivals_.begin()) < first) return;
+    std::swap(rivals_[first++], *best);
+  };
   for (std::size_t c = 0; c < 4; ++c) {
+    put_first([c](const Corners& y) { return y[c]; });
     vertices_[c].height = -infinity;
     for (const Corners& y : points) vertices_[c].height = std::max(vertices_[c].height, y[c]);
   }
+  put_first(middle);
   for (std::size_t i = 0; i < points.size(); ++i) {
     polygon_ = {{0, 0, -1}, {1, 0, -2}, {1, 1, -3}, {0, 1, -4}};
     bool is_left = true;
-    for (std::size_t j = 0; j < points.size() && is_left; ++j) {
-      if (j == i) continue;
+    for (std::size_t k = 0; k < rivals_.size() && is_left; ++k) {
+      const std::size_t j = rivals_[k];
+      if (j == i || !highest_[j]) continue;
       Corners above;
       for (std::size_t c = 0; c < 4; ++c) above[c] = points[i][c] - points[j][c];
       const bool equal = std::all_of(above.begin(), above.end(), [](double x) { return x == 0; });
       is_left = equal ? i < j : clip(above, int(j));
     }
-    if (!is_left) continue;
-    highest_[i] = true;
-    add_vertices(int(i), points[i]);
+    highest_[i] = is_left;
+    if (is_left) add_vertices(int(i), points[i]);
   }
 }
 

@@ -41,6 +41,7 @@ class BeaconEnvelope {
   std::vector<Vertex> vertices_;
   std::vector<std::array<int, 3>> known_;  // what meets at the vertices behind the cell's corners
   std::vector<bool> highest_;
+  std::vector<std::size_t> rivals_;               // scratch: points in the order they are tried in
   std::vector<PolygonCorner> polygon_, clipped_;  // scratch
   std::vector<double> over_;                      // scratch
 };

@@ -115,6 +115,7 @@ void Branches::find(const CellView& view) {
 
 void Branches::glue(const MapPieces& pieces) {
   glues_.clear();
+  sort_charts();
   for (int k = 0; k < int(charts_.size()); ++k) {
     if (charts_[std::size_t(k)].kind == SourceKind::face) glue_face(pieces, k);
     if (charts_[std::size_t(k)].kind == SourceKind::edge) glue_edge(pieces, k);
@@ -156,6 +157,7 @@ Branches Branches::alone(const Branch& branch) const {
 }
 
 bool Branches::extend(const MapPieces& pieces, const std::vector<std::pair<int, Side>>& beyond) {
+  sort_charts();
   for (const auto& [chart, side] : beyond) {
     if (!extend(pieces, chart, side)) return false;
   }
@@ -179,23 +181,33 @@ bool Branches::extend(const MapPieces& pieces, const std::vector<std::pair<int, 
 
 /// Charts of one element that have grown together are one.
 bool Branches::join_touching() {
-  const auto before = charts_.size();
-  for (std::size_t k = 0; k < charts_.size(); ++k) {
-    for (std::size_t other = k + 1; other < charts_.size();) {
-      Chart& own = charts_[k];
+  sort_charts();
+  std::vector<bool> goes(charts_.size(), false);
+  bool any = false;
+  for (std::size_t k = 0; k < of_elements_.size(); ++k) {
+    const int index = of_elements_[k].second;
+    if (goes[std::size_t(index)]) continue;
+    Chart& own = charts_[std::size_t(index)];
+    for (std::size_t l = k + 1; l < of_elements_.size() && of_elements_[l].first == own.element;) {
+      const auto other = std::size_t(of_elements_[l++].second);
       const Chart& next = charts_[other];
-      if (own.element != next.element || !touches(own.u, next.u) || !touches(own.v, next.v)) {
-        ++other;
-        continue;
-      }
+      if (goes[other] || !touches(own.u, next.u) || !touches(own.v, next.v)) continue;
       include(own.u, next.u);
       include(own.v, next.v);
       own.pieces.insert(own.pieces.end(), next.pieces.begin(), next.pieces.end());
-      charts_.erase(charts_.begin() + std::ptrdiff_t(other));
-      other = k + 1;
+      goes[other] = any = true;
+      l = k + 1;
     }
   }
-  return charts_.size() < before;
+  if (!any) return false;
+  std::size_t left = 0;
+  for (std::size_t k = 0; k < charts_.size(); ++k) {
+    if (goes[k]) continue;
+    if (left != k) charts_[left] = std::move(charts_[k]);
+    ++left;
+  }
+  charts_.resize(left);
+  return true;
 }
 
 bool Branches::extend(const MapPieces& pieces, int index, Side side) {
@@ -225,6 +237,8 @@ bool Branches::extend(const MapPieces& pieces, int index, Side side) {
     include(charts_[std::size_t(known)].u, next.u);
     include(charts_[std::size_t(known)].v, next.v);
   } else {
+    const std::pair<int, int> own(element, int(charts_.size()));
+    of_elements_.insert(std::upper_bound(of_elements_.begin(), of_elements_.end(), own), own);
     charts_.push_back(std::move(next));
   }
   return true;
@@ -236,45 +250,66 @@ void Branches::make_charts(const CellView& view) {
   const auto piece = [&](int k) -> const MapPiece& { return *seen[std::size_t(k)].piece; };
   rest_.resize(seen.size());
   std::iota(rest_.begin(), rest_.end(), 0);
-  while (!rest_.empty()) {
-    const int first = rest_.front();
-    rest_.erase(rest_.begin());
-    const MapPiece& own = piece(first);
-    Chart chart{own.element, pieces.element(own.element).contact.kind, own.u, own.v, {first}, -1};
-    for (std::size_t next = 0; next < chart.pieces.size(); ++next) {
-      const MapPiece& from = piece(chart.pieces[next]);
-      std::erase_if(rest_, [&](int k) {
-        const MapPiece& other = piece(k);
-        if (other.element != from.element || !touches(from.u, other.u) ||
-            !touches(from.v, other.v)) {
-          return false;
+  std::stable_sort(rest_.begin(), rest_.end(),
+                   [&](int a, int b) { return piece(a).element < piece(b).element; });
+  // Those of one element; -1: in a chart already.
+  for (auto begin = rest_.begin(); begin != rest_.end();) {
+    const int element = piece(*begin).element;
+    const auto end =
+        std::find_if(begin, rest_.end(), [&](int k) { return piece(k).element != element; });
+    const SourceKind kind = pieces.element(element).contact.kind;
+    for (auto first = begin; first != end; ++first) {
+      if (*first < 0) continue;
+      Chart chart{element, kind, piece(*first).u, piece(*first).v, {*first}, -1};
+      *first = -1;
+      for (std::size_t next = 0; next < chart.pieces.size(); ++next) {
+        const MapPiece& from = piece(chart.pieces[next]);
+        for (auto k = first + 1; k != end; ++k) {
+          if (*k < 0 || !touches(from.u, piece(*k).u) || !touches(from.v, piece(*k).v)) continue;
+          chart.pieces.push_back(*k);
+          include(chart.u, piece(*k).u);
+          include(chart.v, piece(*k).v);
+          *k = -1;
         }
-        chart.pieces.push_back(k);
-        include(chart.u, other.u);
-        include(chart.v, other.v);
-        return true;
-      });
+      }
+      charts_.push_back(std::move(chart));
     }
-    charts_.push_back(std::move(chart));
+    begin = end;
   }
+  // In the order of their first pieces.
+  std::sort(charts_.begin(), charts_.end(),
+            [](const Chart& a, const Chart& b) { return a.pieces.front() < b.pieces.front(); });
 }
 
+void Branches::sort_charts() {
+  of_elements_.clear();
+  for (const Chart& chart : charts_) {
+    of_elements_.emplace_back(chart.element, int(of_elements_.size()));
+  }
+  std::sort(of_elements_.begin(), of_elements_.end());
+}
+
+/// The first of those, -1 if there is none. @pre the charts are sorted
 int Branches::chart_touching(int element, const Interval& u, const Interval& v) const {
   if (element < 0) return -1;
-  for (int k = 0; k < int(charts_.size()); ++k) {
-    const Chart& chart = charts_[std::size_t(k)];
-    if (chart.element == element && touches(chart.u, u) && touches(chart.v, v)) return k;
+  auto own = std::lower_bound(of_elements_.begin(), of_elements_.end(), std::pair(element, 0));
+  for (; own != of_elements_.end() && own->first == element; ++own) {
+    const Chart& chart = charts_[std::size_t(own->second)];
+    if (touches(chart.u, u) && touches(chart.v, v)) return own->second;
   }
   return -1;
 }
 
-/// What two charts tell of each other counts once.
+/// What two charts tell of each other counts once: it has been told if the other one came first.
 void Branches::add(const Glue& glue) {
-  const bool known = std::any_of(glues_.begin(), glues_.end(), [&](const Glue& g) {
-    return g.kind == glue.kind && g.a == glue.b && g.b == glue.a && g.at_a == glue.at_b &&
-           g.at_b == glue.at_a;
-  });
-  if (!known) glues_.push_back(glue);
+  const auto first = std::lower_bound(glues_.begin(), glues_.end(), glue.b,
+                                      [](const Glue& g, int chart) { return g.a < chart; });
+  for (auto g = first; g != glues_.end() && g->a == glue.b; ++g) {
+    if (g->kind == glue.kind && g->b == glue.a && g->at_a == glue.at_b && g->at_b == glue.at_a) {
+      return;
+    }
+  }
+  glues_.push_back(glue);
 }
 
 void Branches::glue_face(const MapPieces& pieces, int index) {

@@ -77,12 +77,14 @@ class Branches {
   void find_boxes(const CellView& view);
   bool extend(const MapPieces& pieces, int chart, Side side);
   bool join_touching();
+  void sort_charts();
   int chart_touching(int element, const Interval& u, const Interval& v) const;
 
   std::vector<Chart> charts_;
   std::vector<Branch> branches_;
   std::vector<Glue> glues_;
-  std::vector<int> rest_;  // scratch
+  std::vector<std::pair<int, int>> of_elements_;  ///< elements and their charts, sorted
+  std::vector<int> rest_;                         // scratch
 };
 
 /// How far a branch is moved to be another one, to within rounding of the model's coordinates; none

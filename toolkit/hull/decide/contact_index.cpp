@@ -268,29 +268,16 @@ bool ContactIndex::is_whole(const Branches& branches, const Glue& glue) {
                        : own.lower == b.lower && own.upper == b.upper;
 }
 
-bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
+bool ContactIndex::find_glued(const Branches& branches, const Branch& branch) {
   view_branches_ = &branches;
-  // Two charts of one element that overlap count twice what is in both.
-  for (const int a : branch.charts) {
-    for (const int b : branch.charts) {
-      const Chart& s = branches.chart(a);
-      const Chart& t = branches.chart(b);
-      if (a < b && s.element == t.element && s.kind == SourceKind::face && s.u.lower < t.u.upper &&
-          t.u.lower < s.u.upper && s.v.lower < t.v.upper && t.v.lower < s.v.upper) {
-        return false;
-      }
-    }
-  }
   glued_.assign(branches.charts().size(), {-1, -1, -1, -1});
   beside_.clear();
-  DisjointSets sets(branches.charts().size());
-  int arcs = 0;
+  glue_count_ = 0;
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
     if (glue.kind == Glue::Kind::face_vertex) continue;
     if (!is_whole(branches, glue)) return false;
-    ++arcs;
-    sets.unite(glue.a, glue.b);
+    ++glue_count_;
     int& at_a = glued_[std::size_t(glue.a)][std::size_t(glue.at_a)];
     if (at_a >= 0) return false;
     at_a = g;
@@ -302,19 +289,48 @@ bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
       beside_.emplace_back(glue.b, glue.a);
     }
   }
+  return true;
+}
+
+/// Two charts of one element that overlap: what is in both would count twice.
+bool ContactIndex::any_overlap(const Branches& branches, const Branch& branch) {
+  std::vector<int> order = branch.charts;
+  const auto element = [&](int k) { return branches.chart(k).element; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return element(a) < element(b); });
+  for (std::size_t a = 0; a < order.size(); ++a) {
+    const Chart& s = branches.chart(order[a]);
+    if (s.kind != SourceKind::face) continue;
+    for (std::size_t b = a + 1; b < order.size() && element(order[b]) == s.element; ++b) {
+      const Chart& t = branches.chart(order[b]);
+      if (s.u.lower < t.u.upper && t.u.lower < s.u.upper && s.v.lower < t.v.upper &&
+          t.v.lower < s.v.upper) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool ContactIndex::is_disc(const Branches& branches, const Branch& branch) {
+  if (any_overlap(branches, branch) || !find_glued(branches, branch)) return false;
+  DisjointSets sets(branches.charts().size());
+  for (const int g : branch.glues) {
+    const Glue& glue = branches.glue(g);
+    if (glue.kind != Glue::Kind::face_vertex) sets.unite(glue.a, glue.b);
+  }
   for (const int k : branch.charts) {
     if (sets.find(k) != sets.find(branch.charts.front())) return false;
   }
-  const CornerRings rings(pieces_, branches, branch, glued_);
-  find_ends(branches, branch, rings);
-  for (const auto& [chart, side] : rings.poles()) {
+  rings_.find(branches, branch, glued_);
+  if (int(branch.charts.size()) - glue_count_ + rings_.count() != 1) return false;
+  find_ends(branches, branch);
+  for (const auto& [chart, side] : rings_.poles()) {
     glued_[std::size_t(chart)][std::size_t(side)] = 0;  // no border is there
   }
-  return int(branch.charts.size()) - arcs + rings.count() == 1;
+  return true;
 }
 
-void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
-                             const CornerRings& rings) {
+void ContactIndex::find_ends(const Branches& branches, const Branch& branch) {
   ends_.clear();
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
@@ -322,8 +338,8 @@ void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
     const Side side = Side(glue.at_a);
     for (const bool upper : {false, true}) {
       const Side border = side_at_end(side, upper);
-      if (rings.is_inside(glue.a, side, border)) continue;
-      std::optional<CornerRings::Fan> fan = rings.fan(glue.a, side, border);
+      if (rings_.is_inside(glue.a, side, border)) continue;
+      std::optional<CornerRings::Fan> fan = rings_.fan(glue.a, side, border);
       if (!fan && !is_at(branches.chart(glue.a), border)) {
         const Side there = Side(glue.at_b);
         fan = {
@@ -339,8 +355,9 @@ void ContactIndex::find_ends(const Branches& branches, const Branch& branch,
   }
 }
 
-bool ContactIndex::is_cap(const CellView& view, const Branches& branches, const Branch& branch) {
-  if (!is_disc(branches, branch)) return false;
+bool ContactIndex::bends_down(const CellView& view, const Branches& branches,
+                              const Branch& branch) {
+  view_branches_ = &branches;
   const double size = glm::distance(branch.lower, branch.upper);
   double kinks = 0;
   for (const int g : branch.glues) {
@@ -424,21 +441,37 @@ bool ContactIndex::is_one(const CellView& view, const Branches& branches, const 
 }
 
 bool ContactIndex::are_one_of_more(const CellView& view, Branches branches) {
+  for (const Branch& branch : branches.all()) {
+    if (!bends_down(view, branches, branch)) return false;
+  }
   std::vector<std::pair<int, Side>> beyond;
   for (int round = 0; round < extension_limit; ++round) {
     beyond.clear();
+    tilt_ = 0;
     const bool one = branches.all().size() == 1;
     for (const Branch& branch : branches.all()) {
-      if (!is_cap(view, branches, branch) || !add_falling(view, branch, one, beyond)) return false;
+      if (!find_glued(branches, branch) || !add_falling(view, branch, one, beyond)) return false;
     }
-    if (beyond.empty()) return one && joins_rise(view);
+    if (beyond.empty()) {
+      // Now it is to be a cap, of which less may be a border and heights have to grow by more.
+      const Branch& all = branches.all().front();
+      if (!one || !is_cap(view, branches, all) || !add_falling(view, all, true, beyond))
+        return false;
+      if (beyond.empty()) return joins_rise(view);
+    }
     if (!branches.extend(pieces_, beyond)) return false;
   }
   return false;
 }
 
-/// The sides of a cap beyond which it has to reach further: from which heights do not grow inwards,
-/// and if it is `alone` not from where it matters. False if they do not so from edges or vertices.
+/// Nothing is beyond it.
+bool ContactIndex::is_pole(const Chart& chart, Side side) const {
+  return is_at(chart, side) && pieces_.is_pole(pieces_.element(chart.element), side);
+}
+
+/// The sides of a branch beyond which it has to reach further: from which heights do not grow
+/// inwards, and if it is `alone` not from where it matters. False if they do not so from edges or
+/// vertices.
 bool ContactIndex::add_falling(const CellView& view, const Branch& branch, bool alone,
                                std::vector<std::pair<int, Side>>& sides) {
   for (const int k : branch.charts) {
@@ -449,7 +482,7 @@ bool ContactIndex::add_falling(const CellView& view, const Branch& branch, bool 
     show(k);
     const NetShape shape = pieces_.element(chart.element).root->exact.shape;
     for (const Side side : all_sides) {
-      if (glued_[std::size_t(k)][std::size_t(side)] >= 0) continue;
+      if (glued_[std::size_t(k)][std::size_t(side)] >= 0 || is_pole(chart, side)) continue;
       if (!side_rises(view, shape, side)) sides.emplace_back(k, side);
     }
   }

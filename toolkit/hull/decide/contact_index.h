@@ -42,7 +42,7 @@ class ContactIndex {
  public:
   /// `resolution`: kinks of joins that amount to less over a branch are none.
   ContactIndex(const MapPieces& pieces, double resolution)
-      : pieces_(pieces), regions_(pieces), stand_ins_(pieces), rho_(resolution) {}
+      : pieces_(pieces), regions_(pieces), stand_ins_(pieces), rho_(resolution), rings_(pieces) {}
 
   /// True is certain.
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
@@ -70,18 +70,25 @@ class ContactIndex {
     dvec4 corner;
     dvec3 next, other;
   };
+  /// What is glued to the sides of its charts, which span the same stretches there.
+  bool find_glued(const Branches& branches, const Branch& branch);
+  static bool is_whole(const Branches& branches, const Glue& glue);
   /// The charts hang together to a surface of Euler characteristic one, with a border.
   bool is_disc(const Branches& branches, const Branch& branch);
-  static bool is_whole(const Branches& branches, const Glue& glue);
-  void find_ends(const Branches& branches, const Branch& branch, const CornerRings& rings);
-  /// They are joined to a disc, smoothly, and curved, or nearly so.
-  bool is_cap(const CellView& view, const Branches& branches, const Branch& branch);
+  static bool any_overlap(const Branches& branches, const Branch& branch);
+  void find_ends(const Branches& branches, const Branch& branch);
+  /// They are joined smoothly, and curved, or nearly so.
+  bool bends_down(const CellView& view, const Branches& branches, const Branch& branch);
+  bool is_cap(const CellView& view, const Branches& branches, const Branch& branch) {
+    return bends_down(view, branches, branch) && is_disc(branches, branch);
+  }
   bool is_curved(const CellView& view, const Chart& chart);
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   bool border_rises(const CellView& view, int chart);
   bool joins_rise(const CellView& view);
   CornerRays rays(const CornerRings::Corner& corner);
   bool join_rises(const CellView& view, const JoinEnd& end);
+  bool is_pole(const Chart& chart, Side side) const;
   bool add_falling(const CellView& view, const Branch& branch, bool alone,
                    std::vector<std::pair<int, Side>>& sides);
   bool face_border_rises(const CellView& view, int chart);
@@ -102,6 +109,8 @@ class ContactIndex {
   double rho_;
   double tilt_ = 0;  ///< by which heights have to grow from the border of the last cap
   CornerRings::Glued glued_;
+  int glue_count_ = 0;  ///< of those that charts hang together by
+  CornerRings rings_;
   std::vector<JoinEnd> ends_;
   /// An edge or vertex, and a chart of the branch that ends there.
   std::vector<std::pair<int, int>> beside_;

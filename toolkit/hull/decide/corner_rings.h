@@ -1,9 +1,7 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -30,9 +28,11 @@ class CornerRings {
   /// sides `next` there are no others.
   using Fan = std::array<Corner, 2>;
 
-  /// All must outlive it.
-  CornerRings(const MapPieces& pieces, const Branches& branches, const Branch& branch,
-              const Glued& glued);
+  /// The pieces must outlive it.
+  explicit CornerRings(const MapPieces& pieces) : pieces_(pieces) {}
+
+  /// Those of a branch. The branches must stay until they are asked for no more.
+  void find(const Branches& branches, const Branch& branch, const Glued& glued);
 
   int count() const { return count_; }
   /// At some corner three charts of patches or more meet, but not all around: there the branch is
@@ -40,12 +40,12 @@ class CornerRings {
   bool any_is_reentrant() const { return reentrant_; }
   /// The corner of a chart is such a point, be it a pole or not.
   bool is_inside(int chart, Side side, Side other) const {
-    return inside_.contains({chart, int(side), int(other)});
+    return inside_[place(chart, side, other)];
   }
   /// That of which the corner of a chart is part, if there is one; none where edges bound it.
   std::optional<Fan> fan(int chart, Side side, Side other) const {
-    const auto found = fans_.find({chart, int(side), int(other)});
-    return found == fans_.end() ? std::nullopt : std::optional(found->second);
+    const int found = fan_at_[place(chart, side, other)];
+    return found < 0 ? std::nullopt : std::optional(fans_[std::size_t(found)]);
   }
   /// Charts and their sides at poles that are such points.
   const std::vector<std::pair<int, Side>>& poles() const { return poles_; }
@@ -59,23 +59,29 @@ class CornerRings {
     int edge = -1;
   };
 
+  /// Where what is known of a chart with two of its sides stands.
+  static std::size_t place(int chart, Side side, Side other) {
+    return std::size_t(16 * chart + 4 * int(side) + int(other));
+  }
   void visit(int chart, Side u, Side v);
-  void add_fan(const Way& way, const Way& back);
-  Way walk(const Corner& from) const;
+  void add_fan();
+  void walk(const Corner& from, Way& way) const;
   std::optional<Corner> step(const Corner& from, int& edge) const;
   bool is_pole(const Corner& c) const;
   bool meet(int edge, int other) const;
 
   const MapPieces& pieces_;
-  const Branches& branches_;
-  const Branch& branch_;
-  const Glued& glued_;
+  const Branches* branches_ = nullptr;
+  const Branch* branch_ = nullptr;
+  const Glued* glued_ = nullptr;
   int count_ = 0;
   bool reentrant_ = false;
   std::vector<std::pair<int, Side>> poles_;
-  std::set<std::array<int, 3>> passed_;
-  std::set<std::array<int, 3>> inside_;     ///< charts with two sides
-  std::map<std::array<int, 3>, Fan> fans_;  ///< by the same
+  std::vector<Fan> fans_;
+  /// By place().
+  std::vector<bool> passed_, inside_;
+  std::vector<int> fan_at_;
+  Way way_, back_;  // scratch
 };
 
 }  // namespace taut

@@ -322,16 +322,16 @@ class Assembly {
   /// Both contacts are in one piece of what is within the resolution of the plane.
   bool is_shallow(const Crossing& crossing) {
     std::array<dvec3, 2> d = {unit(crossing.from), unit(crossing.to)};
-    std::array<dvec3, 2> x = {point(d[0]), point(d[1])};
+    std::array<Contact, 2> contacts = {query_(d[0], hint_).contact, query_(d[1], hint_).contact};
     const int first = winner(crossing.cell, crossing.from);
     for (int k = 0; k < std::numeric_limits<double>::digits; ++k) {
       const dvec3 middle = unit(d[0] + d[1]);
-      const dvec3 there = query_(middle, hint_).point;
-      const std::size_t side = winner(crossing.cell, middle, there) == first ? 0 : 1;
+      const Support there = query_(middle, hint_);
+      const std::size_t side = winner(crossing.cell, middle, there.point) == first ? 0 : 1;
       d[side] = middle;
-      x[side] = there;
+      contacts[side] = there.contact;
     }
-    return top_parts_.hang_together(d[0], x[0], x[1], map_.resolution);
+    return top_parts_.hang_together(d[0], contacts[0], contacts[1], map_.resolution);
   }
 
   /// Open cells without a facet in which arcs do not end: two between the same contacts are one

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "taut/core/disjoint_sets.h"
-#include "taut/hull/decide/corner_rings.h"
 #include "taut/hull/decide/parameter_hull.h"
 
 namespace taut {
@@ -146,15 +145,19 @@ bool NearConcavity::spans(const Branches& branches, const Glue& glue, bool same)
 /// to rise, against slopes that are the same on the two sides; what slopes may grow by between them
 /// counts over the branch.
 /// The chart in such a corner may be left for either of two others.
-bool NearConcavity::is_reentrant(const Branches& branches, const Branch& branch) const {
+bool NearConcavity::is_reentrant(const Branches& branches, const Branch& branch) {
   CornerRings::Glued glued(branches.charts().size(), {-1, -1, -1, -1});
+  int joins = 0;
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
     if (glue.kind != Glue::Kind::faces) continue;
     glued[std::size_t(glue.a)][std::size_t(glue.at_a)] = g;
     glued[std::size_t(glue.b)][std::size_t(glue.at_b)] = g;
+    ++joins;
   }
-  return CornerRings(pieces_, branches, branch, glued).any_is_reentrant();
+  if (joins < 2) return false;  // three charts do not meet
+  rings_.find(branches, branch, glued);
+  return rings_.any_is_reentrant();
 }
 
 bool NearConcavity::is_one(const CellView& view, const Branches& branches, const Branch& branch) {

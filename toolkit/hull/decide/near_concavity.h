@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/corner_rings.h"
 #include "taut/hull/decide/height_bends.h"
 
 namespace taut {
@@ -12,7 +13,8 @@ namespace taut {
 /// what they share is the highest of one of them.
 class NearConcavity {
  public:
-  NearConcavity(const MapPieces& pieces, double resolution) : pieces_(pieces), rho_(resolution) {}
+  NearConcavity(const MapPieces& pieces, double resolution)
+      : pieces_(pieces), rho_(resolution), rings_(pieces) {}
 
   /// True is certain.
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
@@ -20,7 +22,7 @@ class NearConcavity {
  private:
   bool is_nearly_concave(const CellView& view, const Chart& chart, double size,
                          const std::vector<dvec2>& region);
-  bool is_reentrant(const Branches& branches, const Branch& branch) const;
+  bool is_reentrant(const Branches& branches, const Branch& branch);
   static std::vector<Interval> stretches(const CellView& view, const Chart& chart);
   bool find_chain(const CellView& view, const Branches& branches, const Branch& branch,
                   const std::vector<bool>& held);
@@ -34,6 +36,7 @@ class NearConcavity {
 
   const MapPieces& pieces_;
   double rho_;
+  CornerRings rings_;
   std::vector<dvec4> net_;                         // scratch
   NetBends bends_;                                 // scratch
   std::vector<std::pair<double, dvec4>> polygon_;  ///< of a chain, by its parameter

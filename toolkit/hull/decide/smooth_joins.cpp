@@ -164,7 +164,7 @@ void SmoothJoins::pair_sides(const Contact& edge) {
   const auto add = [&](std::size_t from, const Contact& to, const Match& match) {
     const std::size_t other = from == match.a ? match.b : match.a;
     sides_[{patches[from].instance, patches[from].element, all[from].side}] = {
-        to, all[other].side, all[from].reversed != all[other].reversed, match.kink};
+        {to, all[other].side, all[from].reversed != all[other].reversed}, match.kink};
   };
   for (const Match& match : found.mutual) {
     add(match.a, patches[match.b], match);
@@ -251,7 +251,8 @@ bool SmoothJoins::is_surrounded(const Contact& vertex) const {
 
 /// At as many places as tell whether there is none (JoinSmoothness::is_smooth), the ends among
 /// them, where what vanishes at some places between is largest.
-double SmoothJoins::kink(const Contact& face, taut::Side side, const Border& border) const {
+double SmoothJoins::measured_kink(const Contact& face, taut::Side side,
+                                  const Border& border) const {
   const Contact beyond{face.instance, face.kind, border.neighbor, 0, 0};
   const auto degree = [&](const Contact& c, taut::Side of) {
     const BezierPatch& patch = geometry_.patch(c).bezier;
@@ -273,13 +274,18 @@ double SmoothJoins::kink(const Contact& face, taut::Side side, const Border& bor
 std::optional<SmoothJoins::Side> SmoothJoins::beyond(const Contact& face, taut::Side side) const {
   const Border& border = geometry_.patch(face).borders[std::size_t(side)];
   if (border.kind == BorderKind::smooth) {
-    return Side{{face.instance, face.kind, border.neighbor, 0, 0},
-                border.neighbor_side,
-                border.reversed,
-                kink(face, side, border)};
+    return Side{
+        {face.instance, face.kind, border.neighbor, 0, 0}, border.neighbor_side, border.reversed};
   }
   const auto found = sides_.find({face.instance, face.element, side});
-  return found == sides_.end() ? std::nullopt : std::optional(found->second);
+  return found == sides_.end() ? std::nullopt : std::optional(found->second.beyond);
+}
+
+double SmoothJoins::kink(const Contact& face, taut::Side side) const {
+  const Border& border = geometry_.patch(face).borders[std::size_t(side)];
+  if (border.kind == BorderKind::smooth) return measured_kink(face, side, border);
+  const auto found = sides_.find({face.instance, face.element, side});
+  return found == sides_.end() ? 0 : found->second.kink;
 }
 
 std::optional<SmoothJoins::End> SmoothJoins::beyond(const Contact& piece, int end) const {

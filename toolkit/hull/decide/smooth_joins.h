@@ -19,16 +19,17 @@ class SmoothJoins {
   /// The geometry must outlive it.
   explicit SmoothJoins(const ContactGeometry& geometry);
 
-  /// A side of a patch that another one goes on from, and the largest angle between the tangent
-  /// planes on its two sides, as measured at some places.
+  /// A side of a patch that another one goes on from.
   struct Side {
     Contact patch;  ///< of instance -1 where the other goes on into an equal of this one
     taut::Side side = taut::Side::u0;
     bool reversed = false;
-    double kink = 0;
   };
   /// What goes on beyond a side of a patch. @pre kind face
   std::optional<Side> beyond(const Contact& face, taut::Side side) const;
+  /// The largest angle between the tangent planes on the two sides of where a patch goes on beyond
+  /// its side, as measured at some places: the same from both; 0 where it does not.
+  double kink(const Contact& face, taut::Side side) const;
 
   /// An end of a piece, 0 or 1.
   struct End {
@@ -54,11 +55,15 @@ class SmoothJoins {
   bool is_smooth(const Contact& piece) const {
     return geometry_.piece(piece).edge < 0 || passes(piece);
   }
-  double kink(const Contact& face, taut::Side side, const Border& border) const;
+  double measured_kink(const Contact& face, taut::Side side, const Border& border) const;
 
   using Key = std::tuple<SourceKind, int, int>;
   const ContactGeometry& geometry_;
-  std::map<std::tuple<int, int, taut::Side>, Side> sides_;
+  struct Paired {
+    Side beyond;
+    double kink = 0;
+  };
+  std::map<std::tuple<int, int, taut::Side>, Paired> sides_;
   std::map<std::tuple<int, int, int>, End> ends_;
   std::set<Key> passed_;
 };

@@ -54,28 +54,57 @@ Direction longest_way(NetShape shape, const std::vector<dvec4>& net) {
 
 }  // namespace
 
-TopParts::TopParts(const ContactGeometry& geometry) {
+TopParts::TopParts(const ContactGeometry& geometry) : geometry_(geometry) {
   const SceneContent& content = geometry.scene().content();
   for (const int i : content.distinct_instances) {
     for (const SceneElement& e : content.part_of(i).elements) {
       const Contact own = {i, e.kind, e.index, 0, 0};
       if (e.kind == SourceKind::edge ? geometry.is_straight(own) : geometry.is_ruled(own)) continue;
-      std::vector<dvec4> net = placed_net(content, i, e);
-      const Box box = box_of(net);
-      parts_.push_back({e.shape, std::move(net), box});
+      index_.emplace(place(own), int(parts_.size()));
+      parts_.push_back({e.shape, placed_net(content, i, e)});
     }
   }
+  find_bodies();
 }
 
-bool TopParts::find(const dvec3& d, double height, double depth, std::vector<Box>& found) const {
+void TopParts::find_bodies() {
+  DisjointSets sets(parts_.size());
+  std::map<std::array<int, 2>, int> at_vertices;
+  for (const auto& [own, part] : index_) {
+    const auto unite = [&, &first = part](const Place& other) {
+      const auto found = index_.find(other);
+      if (found != index_.end()) sets.unite(first, found->second);
+    };
+    const Contact c = {own[0], SourceKind(own[1]), own[2], 0, 0};
+    if (c.kind == SourceKind::face) {
+      for (const Border& border : geometry_.patch(c).borders) {
+        unite({c.instance, int(c.kind), border.neighbor});
+      }
+      continue;
+    }
+    const EdgePiece& piece = geometry_.piece(c);
+    for (const int next : piece.end_neighbor) unite({c.instance, int(c.kind), next});
+    for (const int vertex : piece.end_vertex) {
+      if (vertex < 0) continue;
+      const auto [known, is_new] = at_vertices.try_emplace({c.instance, vertex}, part);
+      if (!is_new) sets.unite(part, known->second);
+    }
+  }
+  for (int k = 0; k < int(parts_.size()); ++k) bodies_.push_back(sets.find(k));
+}
+
+bool TopParts::find(int body, const dvec3& d, double height, double depth,
+                    std::vector<Box>& found) const {
   std::vector<Part> waiting;
   const auto look = [&](const Part& part) {
     const Interval of_part = heights(part.net, d);
     if (of_part.upper < height - depth) return;
     const double lowest = height - (1 + height_share) * depth;
-    of_part.lower >= lowest ? found.push_back(part.box) : waiting.push_back(part);
+    of_part.lower >= lowest ? found.push_back(box_of(part.net)) : waiting.push_back(part);
   };
-  for (const Part& part : parts_) look(part);
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    if (bodies_[k] == body) look(parts_[k]);
+  }
   for (int looked = 0; !waiting.empty(); ++looked) {
     if (looked == looked_at_parts) return false;
     Part upper = std::move(waiting.back());
@@ -84,18 +113,22 @@ bool TopParts::find(const dvec3& d, double height, double depth, std::vector<Box
     const bool along_u = longest_way(upper.shape, upper.net) == Direction::u;
     along_u ? halve_u(upper.shape, upper.net.data(), lower.net.data())
             : halve_v(upper.shape, upper.net.data(), lower.net.data());
-    for (Part* half : {&lower, &upper}) {
-      half->box = box_of(half->net);
-      look(*half);
-    }
+    for (const Part* half : {&lower, &upper}) look(*half);
   }
   return true;
 }
 
-bool TopParts::hang_together(const dvec3& d, const dvec3& x, const dvec3& y, double depth) const {
-  const double height = std::max(glm::dot(x, d), glm::dot(y, d));
+bool TopParts::hang_together(const dvec3& d, const Contact& a, const Contact& b,
+                             double depth) const {
+  const auto own = index_.find(place(a));
+  const auto other = index_.find(place(b));
+  if (own == index_.end() || other == index_.end()) return false;
+  const int body = bodies_[std::size_t(own->second)];
+  if (bodies_[std::size_t(other->second)] != body) return false;
+  const dvec3 x = geometry_.point(a);
+  const dvec3 y = geometry_.point(b);
   std::vector<Box> found = {{x, x}, {y, y}};
-  if (!find(d, height, depth, found)) return false;
+  if (!find(body, d, std::max(glm::dot(x, d), glm::dot(y, d)), depth, found)) return false;
   DisjointSets pieces(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

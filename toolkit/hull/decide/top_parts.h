@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <vector>
 
 #include "taut/bounds/contact_geometry.h"
@@ -13,20 +15,25 @@ class TopParts {
  public:
   explicit TopParts(const ContactGeometry& geometry);
 
-  /// Two points are in one piece of what lies within `depth` of the supporting plane across d on
-  /// which both are, or is told to be so for depths up to a fourth larger. False where that is
-  /// too much to look at.
-  bool hang_together(const dvec3& d, const dvec3& x, const dvec3& y, double depth) const;
+  /// Two contacts are in one piece of what lies within `depth` of the supporting plane across d on
+  /// which both are: of one surface, over its edges, or of one curve. It may also be told so for
+  /// depths up to a fourth larger. False where that is too much to look at.
+  bool hang_together(const dvec3& d, const Contact& a, const Contact& b, double depth) const;
 
  private:
   struct Part {
     NetShape shape;
     std::vector<dvec4> net;
-    Box box;
   };
-  bool find(const dvec3& d, double height, double depth, std::vector<Box>& found) const;
+  using Place = std::array<int, 3>;  ///< instance, kind, and element
+  static Place place(const Contact& c) { return {c.instance, int(c.kind), c.element}; }
+  void find_bodies();
+  bool find(int body, const dvec3& d, double height, double depth, std::vector<Box>& found) const;
 
+  const ContactGeometry& geometry_;
   std::vector<Part> parts_;
+  std::map<Place, int> index_;
+  std::vector<int> bodies_;  ///< by part: the same for what hangs together
 };
 
 }  // namespace taut

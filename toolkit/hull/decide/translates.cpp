@@ -88,7 +88,12 @@ double apart(const Shape& a, const Shape& b) {
   return largest + apart_by_weights(a, b);
 }
 
-bool are_translates(const Shape& a, const Shape& b, double budget) { return apart(a, b) <= budget; }
+bool are_translates(const Shape& a, const Shape& b, double budget) {
+  for (std::size_t k = 0; k < a.offsets.size(); ++k) {
+    if (!(glm::distance(a.offsets[k], b.offsets[k]) <= budget)) return false;
+  }
+  return apart(a, b) <= budget;
+}
 
 /// A point of the convex hull of some points, as a mean of up to four.
 struct Mean {
