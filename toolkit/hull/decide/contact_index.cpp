@@ -339,18 +339,18 @@ void ContactIndex::find_ends(const Branches& branches, const Branch& branch) {
     for (const bool upper : {false, true}) {
       const Side border = side_at_end(side, upper);
       if (rings_.is_inside(glue.a, side, border)) continue;
+      const Side there = Side(glue.at_b);
+      const Side border_there = side_at_end(there, upper != glue.reversed);
       std::optional<CornerRings::Fan> fan = rings_.fan(glue.a, side, border);
       if (!fan && !is_at(branches.chart(glue.a), border)) {
-        const Side there = Side(glue.at_b);
-        fan = {
-            {{glue.a, border, side}, {glue.b, side_at_end(there, upper != glue.reversed), there}}};
+        fan = {{{glue.a, border, side}, {glue.b, border_there, there}}};
       }
       if (fan && std::any_of(fan->begin(), fan->end(), [&](const CornerRings::Corner& c) {
             return glued_[std::size_t(c.chart)][std::size_t(c.next)] >= 0;
           })) {
         fan.reset();  // not the last ones
       }
-      ends_.push_back({{glue.a, side, border}, fan});
+      ends_.push_back({{glue.a, side, border}, {glue.b, border_there}, fan});
     }
   }
 }
@@ -441,27 +441,39 @@ bool ContactIndex::is_one(const CellView& view, const Branches& branches, const 
 }
 
 bool ContactIndex::are_one_of_more(const CellView& view, Branches branches) {
-  for (const Branch& branch : branches.all()) {
-    if (!bends_down(view, branches, branch)) return false;
-  }
   std::vector<std::pair<int, Side>> beyond;
   for (int round = 0; round < extension_limit; ++round) {
     beyond.clear();
-    tilt_ = 0;
     const bool one = branches.all().size() == 1;
     for (const Branch& branch : branches.all()) {
-      if (!find_glued(branches, branch) || !add_falling(view, branch, one, beyond)) return false;
+      if (!bends_down(view, branches, branch) || !find_glued(branches, branch)) return false;
+      tilt_ = 0;
+      if (!add_falling(view, branch, one, beyond)) return false;
     }
     if (beyond.empty()) {
       // Now it is to be a cap, of which less may be a border and heights have to grow by more.
       const Branch& all = branches.all().front();
-      if (!one || !is_cap(view, branches, all) || !add_falling(view, all, true, beyond))
-        return false;
-      if (beyond.empty()) return joins_rise(view);
+      if (!one || !is_cap(view, branches, all) || !add_falling(view, all, true, beyond)) return false;
+      if (beyond.empty() && !add_ends(view, beyond)) return false;
+      if (beyond.empty()) return true;
     }
     if (!branches.extend(pieces_, beyond)) return false;
   }
   return false;
+}
+
+/// The borders beside joins from whose ends the heights do not grow inwards. False if there are
+/// none.
+bool ContactIndex::add_ends(const CellView& view, std::vector<std::pair<int, Side>>& sides) {
+  for (const JoinEnd& end : ends_) {
+    if (join_rises(view, end)) continue;
+    const std::size_t before = sides.size();
+    for (const std::pair<int, Side>& side : {std::pair(end.at.chart, end.at.other), end.beside}) {
+      if (glued_[std::size_t(side.first)][std::size_t(side.second)] < 0) sides.push_back(side);
+    }
+    if (sides.size() == before) return false;
+  }
+  return true;
 }
 
 /// Nothing is beyond it.

@@ -64,6 +64,7 @@ class ContactIndex {
   /// that meet there, as far as is known.
   struct JoinEnd {
     CornerRings::Corner at;
+    std::pair<int, Side> beside;  ///< of the chart on the other side, what its border is there
     std::optional<CornerRings::Fan> fan;
   };
   struct CornerRays {
@@ -89,6 +90,7 @@ class ContactIndex {
   CornerRays rays(const CornerRings::Corner& corner);
   bool join_rises(const CellView& view, const JoinEnd& end);
   bool is_pole(const Chart& chart, Side side) const;
+  bool add_ends(const CellView& view, std::vector<std::pair<int, Side>>& sides);
   bool add_falling(const CellView& view, const Branch& branch, bool alone,
                    std::vector<std::pair<int, Side>>& sides);
   bool face_border_rises(const CellView& view, int chart);
