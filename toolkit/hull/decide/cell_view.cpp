@@ -146,6 +146,8 @@ void CellView::add_corners(const SeenPiece& seen) {
 
 bool CellView::sharpen(double depth) {
   for (const SeenPiece& seen : seen_) add_corners(seen);
+  std::sort(beacons_.begin(), beacons_.end());
+  beacons_.erase(std::unique(beacons_.begin(), beacons_.end()), beacons_.end());
   envelope_.find(beacons_);
   std::size_t left = 0;
   for (std::size_t k = 0; k < beacons_.size(); ++k) {
