@@ -28,18 +28,42 @@ void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
   q_ = q;
   beacons_.clear();
   for (const dvec3& beacon : beacons) beacons_.push_back(heights({beacon, 1}, q_, d_));
-  envelope_.find(beacons_);
+  find_envelope();
   depth_ = noise_;
   seen_.clear();
   values_.clear();
   highest_ = {};
 }
 
-/// Its control points are below the envelope of the beacons, and if it stands for others those of
-/// what it stands for.
-bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
+void CellView::find_envelope() {
+  envelope_.find(beacons_);
+  limits_.clear();
+  for (const BeaconEnvelope::Vertex& v : envelope_.vertices()) {
+    const dvec3 d = d_[0] + v.s * (d_[2] - d_[0]) + v.t * (d_[1] - d_[0]);
+    limits_.push_back({d, v.height + glm::dot(q_, d)});
+  }
+}
+
+/// By which a piece has to be below the envelope, with what it stands for.
+double CellView::depth_of(const MapPiece& piece) const {
   const bool stands = pieces_.element_of(piece).likeness.stands_for_others;
-  const double depth = depth_ + (stands ? pieces_.covered_above() * longest_direction() : 0);
+  return depth_ + (stands ? pieces_.covered_above() * longest_direction() : 0);
+}
+
+/// The box of its control points is below the envelope of the beacons: tells less than is_beaten(),
+/// at once.
+bool CellView::box_is_beaten(const MapPiece& piece) const {
+  const double depth = depth_of(piece);
+  const dvec3 center = 0.5 * (piece.box.lower + piece.box.upper);
+  const dvec3 half = 0.5 * (piece.box.upper - piece.box.lower);
+  return std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
+    return glm::dot(center, limit.d) + glm::dot(half, glm::abs(limit.d)) < limit.height - depth;
+  });
+}
+
+/// Its control points are below the envelope.
+bool CellView::is_beaten(const SeenPiece& seen, const MapPiece& piece) const {
+  const double depth = depth_of(piece);
   const auto& corners = envelope_.vertices();
   for (std::size_t c = 0; c < 4; ++c) {
     if (!(seen.top[c] < corners[c].height - depth)) return false;
@@ -76,7 +100,7 @@ bool CellView::is_surpassed(const MapElement& element) const {
 
 void CellView::look(const MapPiece& piece) {
   ++looked_;
-  if (is_surpassed(pieces_.element_of(piece))) return;
+  if (is_surpassed(pieces_.element_of(piece)) || box_is_beaten(piece)) return;
   const dvec4* p = piece.net.points;
   SeenPiece seen{&piece, values_.size(), {}, {}};
   seen.top.fill(-infinity);
@@ -148,7 +172,7 @@ bool CellView::sharpen(double depth) {
   for (const SeenPiece& seen : seen_) add_corners(seen);
   std::sort(beacons_.begin(), beacons_.end());
   beacons_.erase(std::unique(beacons_.begin(), beacons_.end()), beacons_.end());
-  envelope_.find(beacons_);
+  find_envelope();
   std::size_t left = 0;
   for (std::size_t k = 0; k < beacons_.size(); ++k) {
     if (envelope_.is_highest(k)) beacons_[left++] = beacons_[k];

@@ -55,6 +55,9 @@ class CellView {
 
  private:
   double longest_direction() const;
+  void find_envelope();
+  double depth_of(const MapPiece& piece) const;
+  bool box_is_beaten(const MapPiece& piece) const;
   bool is_beaten(const SeenPiece& seen, const MapPiece& piece) const;
   void add_corners(const SeenPiece& seen);
   bool is_surpassed(const MapElement& element) const;
@@ -66,6 +69,12 @@ class CellView {
   dvec3 q_ = dvec3(0.0);
   std::vector<Corners> beacons_;
   BeaconEnvelope envelope_;
+  /// A vertex of the envelope: its direction, and a plane across it as high as the envelope.
+  struct Limit {
+    dvec3 d;
+    double height;
+  };
+  std::vector<Limit> limits_;
   double depth_ = 0;  ///< by which what is dropped is below the envelope
   std::vector<SeenPiece> seen_;
   std::vector<SeenPiece> before_;  // scratch

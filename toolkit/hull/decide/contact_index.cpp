@@ -453,7 +453,8 @@ bool ContactIndex::are_one_of_more(const CellView& view, Branches branches) {
     if (beyond.empty()) {
       // Now it is to be a cap, of which less may be a border and heights have to grow by more.
       const Branch& all = branches.all().front();
-      if (!one || !is_cap(view, branches, all) || !add_falling(view, all, true, beyond)) return false;
+      if (!one || !is_cap(view, branches, all) || !add_falling(view, all, true, beyond))
+        return false;
       if (beyond.empty() && !add_ends(view, beyond)) return false;
       if (beyond.empty()) return true;
     }

@@ -19,6 +19,9 @@ namespace {
 
 /// Cells that are decided at once, on several threads.
 constexpr std::size_t batch_limit = 256;
+/// Coordinates of directions of a face of the cube whose support points the first cells have for
+/// beacons.
+constexpr double first_beacons[] = {-0.9, -0.3, 0.3, 0.9};
 
 /// Decides cells level by level, so that what costs too much to be decided takes nothing from the
 /// rest.
@@ -57,11 +60,19 @@ class MapMaker {
       if (!e.likeness.covered) all.push_back(e.root);
     }
     const auto whole = std::make_shared<const std::vector<const MapPiece*>>(std::move(all));
+    SupportQuery query(pieces_.geometry().scene(), options_.stop);
     for (int face = 0; face < 6; ++face) {
       MapCell root;
       root.face = face;
-      waiting_.push_back({std::move(root), whole, {}, {}});
+      std::vector<dvec3> beacons;
+      for (const double s : first_beacons) {
+        for (const double t : first_beacons) {
+          beacons.push_back(query(unit(DirectionMap::direction(face, s, t))).point);
+        }
+      }
+      waiting_.push_back({std::move(root), whole, std::move(beacons), {}});
     }
+    map_.statistics.queries += query.queries();
   }
 
   /// To within the resolution the ends of a needle are all that touches, and they exchange where

@@ -152,11 +152,15 @@ void MapPieces::find_beside() {
 }
 
 void MapPieces::find_beyond() {
-  for (int k = 0; k < int(elements_.size()); ++k) {
-    MapElement& element = elements_[std::size_t(k)];
+  for (MapElement& element : elements_) {
     const Contact& c = element.contact;
     for (const Side side : all_sides) {
-      if (c.kind == SourceKind::face) find_beyond(k, side);
+      if (c.kind != SourceKind::face) break;
+      const std::optional<SmoothJoins::Side> beyond = joins_.beyond(c, side);
+      if (!beyond) continue;
+      element.kink[std::size_t(side)] = joins_.kink(c, side);
+      if (beyond->patch.instance < 0) continue;
+      element.beyond[std::size_t(side)] = {find(beyond->patch), beyond->side, beyond->reversed};
     }
     for (const int end : {0, 1}) {
       if (c.kind != SourceKind::edge) break;
@@ -165,24 +169,6 @@ void MapPieces::find_beyond() {
       element.kink[std::size_t(end)] = joins_.kink(c, end);
     }
   }
-}
-
-void MapPieces::find_beyond(int index, Side side) {
-  MapElement& element = elements_[std::size_t(index)];
-  const std::optional<SmoothJoins::Side> beyond = joins_.beyond(element.contact, side);
-  if (!beyond) return;
-  double& kink = element.kink[std::size_t(side)];
-  const int next = beyond->patch.instance < 0 ? -1 : find(beyond->patch);
-  if (next >= 0) {
-    const MapElement& other = elements_[std::size_t(next)];
-    const MapElement::Beyond& back = other.beyond[std::size_t(beyond->side)];
-    element.beyond[std::size_t(side)] = {next, beyond->side, beyond->reversed};
-    if (back.element == index && back.side == side) {
-      kink = other.kink[std::size_t(beyond->side)];
-      return;
-    }
-  }
-  kink = joins_.kink(element.contact, side);
 }
 
 void MapPieces::find_surfaces() {

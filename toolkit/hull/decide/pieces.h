@@ -104,7 +104,6 @@ class MapPieces {
   void add_vertex(const Contact& c);
   void find_beside();
   void find_beyond();
-  void find_beyond(int index, Side side);
   void find_surfaces();
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);

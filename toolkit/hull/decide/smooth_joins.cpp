@@ -6,6 +6,7 @@
 
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/poles.h"
+#include "taut/bounds/scene_content.h"
 #include "taut/core/tolerances.h"
 #include "taut/surface/side_joins.h"
 
@@ -281,11 +282,18 @@ std::optional<SmoothJoins::Side> SmoothJoins::beyond(const Contact& face, taut::
   return found == sides_.end() ? std::nullopt : std::optional(found->second.beyond);
 }
 
-double SmoothJoins::kink(const Contact& face, taut::Side side) const {
+double SmoothJoins::kink(const Contact& face, taut::Side side) {
   const Border& border = geometry_.patch(face).borders[std::size_t(side)];
-  if (border.kind == BorderKind::smooth) return measured_kink(face, side, border);
-  const auto found = sides_.find({face.instance, face.element, side});
-  return found == sides_.end() ? 0 : found->second.kink;
+  if (border.kind != BorderKind::smooth) {
+    const auto found = sides_.find({face.instance, face.element, side});
+    return found == sides_.end() ? 0 : found->second.kink;
+  }
+  const int part = geometry_.scene().content().instances[std::size_t(face.instance)].part;
+  const std::array own = {part, face.element, int(side)};
+  const std::array other = {part, border.neighbor, int(border.neighbor_side)};
+  const auto [known, is_new] = measured_.try_emplace(std::min(own, other), 0);
+  if (is_new) known->second = measured_kink(face, side, border);
+  return known->second;
 }
 
 std::optional<SmoothJoins::End> SmoothJoins::beyond(const Contact& piece, int end) const {

@@ -29,7 +29,7 @@ class SmoothJoins {
   std::optional<Side> beyond(const Contact& face, taut::Side side) const;
   /// The largest angle between the tangent planes on the two sides of where a patch goes on beyond
   /// its side, as measured at some places: the same from both; 0 where it does not.
-  double kink(const Contact& face, taut::Side side) const;
+  double kink(const Contact& face, taut::Side side);
 
   /// An end of a piece, 0 or 1.
   struct End {
@@ -66,6 +66,8 @@ class SmoothJoins {
   std::map<std::tuple<int, int, taut::Side>, Paired> sides_;
   std::map<std::tuple<int, int, int>, End> ends_;
   std::set<Key> passed_;
+  /// By part, and the first of the two patches and its side.
+  std::map<std::array<int, 3>, double> measured_;
 };
 
 }  // namespace taut
