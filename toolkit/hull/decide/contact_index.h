@@ -1,12 +1,14 @@
 #pragma once
 
-#include <array>
 #include <utility>
 #include <vector>
 
+#include "taut/hull/decide/border_heights.h"
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/chart_glue.h"
 #include "taut/hull/decide/corner_rings.h"
 #include "taut/hull/decide/curved_regions.h"
+#include "taut/hull/decide/rectangle_sides.h"
 #include "taut/hull/decide/stand_in_normals.h"
 
 namespace taut {
@@ -42,7 +44,13 @@ class ContactIndex {
  public:
   /// `resolution`: kinks of joins that amount to less over a branch are none.
   ContactIndex(const MapPieces& pieces, double resolution)
-      : pieces_(pieces), regions_(pieces), stand_ins_(pieces), rho_(resolution), rings_(pieces) {}
+      : pieces_(pieces),
+        regions_(pieces),
+        stand_ins_(pieces),
+        rho_(resolution),
+        rings_(pieces),
+        border_(pieces),
+        rectangle_(pieces) {}
 
   /// True is certain.
   bool is_one(const CellView& view, const Branches& branches, const Branch& branch);
@@ -59,24 +67,8 @@ class ContactIndex {
   bool is_one_of_pieces(const CellView& view, const Branches& branches, const Branch& branch);
 
  private:
-  class Growth;
-  /// Where a side at which charts meet ends on the border, and the first and the last of those
-  /// that meet there, as far as is known.
-  struct JoinEnd {
-    CornerRings::Corner at;
-    std::pair<int, Side> beside;  ///< of the chart on the other side, what its border is there
-    std::optional<CornerRings::Fan> fan;
-  };
-  struct CornerRays {
-    dvec4 corner;
-    dvec3 next, other;
-  };
-  /// What is glued to the sides of its charts, which span the same stretches there.
-  bool find_glued(const Branches& branches, const Branch& branch);
-  static bool is_whole(const Branches& branches, const Glue& glue);
   /// The charts hang together to a surface of Euler characteristic one, with a border.
   bool is_disc(const Branches& branches, const Branch& branch);
-  static bool any_overlap(const Branches& branches, const Branch& branch);
   void find_ends(const Branches& branches, const Branch& branch);
   /// They are joined smoothly, and curved, or nearly so.
   bool bends_down(const CellView& view, const Branches& branches, const Branch& branch);
@@ -85,38 +77,22 @@ class ContactIndex {
   }
   bool is_curved(const CellView& view, const Chart& chart);
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
-  bool border_rises(const CellView& view, int chart);
-  bool joins_rise(const CellView& view);
-  CornerRays rays(const CornerRings::Corner& corner);
-  bool join_rises(const CellView& view, const JoinEnd& end);
-  bool is_pole(const Chart& chart, Side side) const;
-  bool add_ends(const CellView& view, std::vector<std::pair<int, Side>>& sides);
-  bool add_falling(const CellView& view, const Branch& branch, bool alone,
-                   std::vector<std::pair<int, Side>>& sides);
-  bool face_border_rises(const CellView& view, int chart);
-  bool side_rises(const CellView& view, const NetShape& shape, Side side,
-                  bool obliquely = true) const;
-  bool side_has_no_low(const CellView& view, const NetShape& shape, Side side) const;
-  void show(int chart);
-  void show(int element, const Interval& u, const Interval& v);
-  bool edge_border_rises(const CellView& view, int chart);
-  bool vertex_border_rises(const CellView& view, int chart);
-  bool is_beside(int chart, int element) const;
-  static bool fold_outwards(const Growth& growth, const std::vector<std::vector<dvec4>>& inward);
-  double kink(const Glue& glue);
+  double kink(const Branches& branches, const Glue& glue);
+  void close_poles(const Branches& branches, const Branch& branch);
+  using Sides = std::vector<std::pair<int, Side>>;  ///< of charts
+  bool add_ends(Sides& sides);
+  bool add_falling(const Branches& branches, const Branch& branch, bool alone, Sides& sides);
 
   const MapPieces& pieces_;
   CurvedRegions regions_;
   StandInNormals stand_ins_;
   double rho_;
-  double tilt_ = 0;  ///< by which heights have to grow from the border of the last cap
-  CornerRings::Glued glued_;
-  int glue_count_ = 0;  ///< of those that charts hang together by
+  double tilt_ = 0;  ///< by which heights have to grow from the border of the last that bends down
+  ChartGlue glue_;
   CornerRings rings_;
-  std::vector<JoinEnd> ends_;
-  /// An edge or vertex, and a chart of the branch that ends there.
-  std::vector<std::pair<int, int>> beside_;
-  const Branches* view_branches_ = nullptr;
+  std::vector<JoinEnd> ends_;  ///< of the last disc
+  BorderHeights border_;
+  RectangleSides rectangle_;
   std::vector<dvec4> net_;  // scratch
 };
 

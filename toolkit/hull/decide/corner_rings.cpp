@@ -9,7 +9,8 @@ Side opposite(Side side) { return Side(int(side) ^ 1); }
 
 }  // namespace
 
-void CornerRings::find(const Branches& branches, const Branch& branch, const Glued& glued) {
+void CornerRings::find(const Branches& branches, const Branch& branch,
+                       const ChartGlue::Table& glued) {
   branches_ = &branches;
   branch_ = &branch;
   glued_ = &glued;

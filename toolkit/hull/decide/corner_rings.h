@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "taut/hull/decide/branches.h"
+#include "taut/hull/decide/chart_glue.h"
 
 namespace taut {
 
 /// Points at which the charts of a branch meet all around: corners of patches, poles, vertices.
 class CornerRings {
  public:
-  /// By chart, and by its sides or ends: the glue there, or -1.
-  using Glued = std::vector<std::array<int, 4>>;
-
   /// A corner of a chart, seen on the way around: the side over which the next step leads, and the
   /// other one, which is one point at a pole.
   struct Corner {
@@ -32,7 +30,7 @@ class CornerRings {
   explicit CornerRings(const MapPieces& pieces) : pieces_(pieces) {}
 
   /// Those of a branch. The branches must stay until they are asked for no more.
-  void find(const Branches& branches, const Branch& branch, const Glued& glued);
+  void find(const Branches& branches, const Branch& branch, const ChartGlue::Table& glued);
 
   int count() const { return count_; }
   /// At some corner three charts of patches or more meet, but not all around: there the branch is
@@ -73,7 +71,7 @@ class CornerRings {
   const MapPieces& pieces_;
   const Branches* branches_ = nullptr;
   const Branch* branch_ = nullptr;
-  const Glued* glued_ = nullptr;
+  const ChartGlue::Table* glued_ = nullptr;
   int count_ = 0;
   bool reentrant_ = false;
   std::vector<std::pair<int, Side>> poles_;

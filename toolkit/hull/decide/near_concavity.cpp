@@ -146,7 +146,7 @@ bool NearConcavity::spans(const Branches& branches, const Glue& glue, bool same)
 /// counts over the branch.
 /// The chart in such a corner may be left for either of two others.
 bool NearConcavity::is_reentrant(const Branches& branches, const Branch& branch) {
-  CornerRings::Glued glued(branches.charts().size(), {-1, -1, -1, -1});
+  ChartGlue::Table glued(branches.charts().size(), {-1, -1, -1, -1});
   int joins = 0;
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
