@@ -25,6 +25,47 @@ std::optional<double> size_in(const RoundShape& shape, const RoundShape& other, 
   return size;
 }
 
+/// What of a branch may be moved: the elements that are translates of others, or of one round shape
+/// together; none where one is no translate.
+std::vector<const Likeness*> movable(const MapPieces& pieces, const Branches& branches,
+                                     const Branch& branch) {
+  std::vector<const Likeness*> result;
+  for (const int chart : branch.charts) {
+    const Likeness& own = pieces.element(branches.chart(chart).element).likeness;
+    if (own.group < 0) return {};
+    if (std::none_of(result.begin(), result.end(), [&](const Likeness* other) {
+          return other->group == own.group && other->place == own.place;
+        })) {
+      result.push_back(&own);
+    }
+  }
+  return result;
+}
+
+/// How far a branch is moved to be another one, to within rounding of the model's coordinates; none
+/// if they are no translates of each other.
+std::optional<Box> translation(const MapPieces& pieces, const Branches& branches,
+                               const Branch& from, const Branch& to, double tolerance) {
+  const std::vector<const Likeness*> own = movable(pieces, branches, from);
+  const std::vector<const Likeness*> others = movable(pieces, branches, to);
+  if (own.empty() || own.size() != others.size()) return std::nullopt;
+  for (const Likeness* first : others) {
+    if (first->group != own.front()->group) continue;
+    const dvec3 off = first->place - own.front()->place;
+    Box box;
+    const bool all_move = std::all_of(own.begin(), own.end(), [&](const Likeness* a) {
+      return std::any_of(others.begin(), others.end(), [&](const Likeness* b) {
+        const dvec3 moved = b->place - a->place;
+        if (a->group != b->group || !(glm::distance(moved, off) <= tolerance)) return false;
+        box.include(moved);
+        return true;
+      });
+    });
+    if (all_move) return box;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const RoundShape* BranchDifferences::round(const Branch& branch) const {

@@ -29,23 +29,6 @@ Interval turned(const Interval& t, bool reversed) {
 
 Interval& along(Chart& chart, Side side) { return along_v(side) ? chart.v : chart.u; }
 
-/// What of a branch may be moved: the elements that are translates of others, or of one round shape
-/// together; none where one is no translate.
-std::vector<const Likeness*> movable(const MapPieces& pieces, const Branches& branches,
-                                     const Branch& branch) {
-  std::vector<const Likeness*> result;
-  for (const int chart : branch.charts) {
-    const Likeness& own = pieces.element(branches.chart(chart).element).likeness;
-    if (own.group < 0) return {};
-    if (std::none_of(result.begin(), result.end(), [&](const Likeness* other) {
-          return other->group == own.group && other->place == own.place;
-        })) {
-      result.push_back(&own);
-    }
-  }
-  return result;
-}
-
 /// The strip of no width along a side.
 std::array<Interval, 2> strip(Side side, const Interval& t) {
   const double fixed = at_upper_end(side) ? 1 : 0;
@@ -64,28 +47,6 @@ Side side_at_end(Side side, bool upper) {
 bool is_at(const Chart& chart, Side side) {
   const Interval& across = along_v(side) ? chart.u : chart.v;
   return at_upper_end(side) ? across.upper == 1 : across.lower == 0;
-}
-
-std::optional<Box> translation(const MapPieces& pieces, const Branches& branches,
-                               const Branch& from, const Branch& to, double tolerance) {
-  const std::vector<const Likeness*> own = movable(pieces, branches, from);
-  const std::vector<const Likeness*> others = movable(pieces, branches, to);
-  if (own.empty() || own.size() != others.size()) return std::nullopt;
-  for (const Likeness* first : others) {
-    if (first->group != own.front()->group) continue;
-    const dvec3 off = first->place - own.front()->place;
-    Box box;
-    const bool all_move = std::all_of(own.begin(), own.end(), [&](const Likeness* a) {
-      return std::any_of(others.begin(), others.end(), [&](const Likeness* b) {
-        const dvec3 moved = b->place - a->place;
-        if (a->group != b->group || !(glm::distance(moved, off) <= tolerance)) return false;
-        box.include(moved);
-        return true;
-      });
-    });
-    if (all_move) return box;
-  }
-  return std::nullopt;
 }
 
 void Branches::clear() {

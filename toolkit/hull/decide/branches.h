@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -86,11 +85,6 @@ class Branches {
   std::vector<std::pair<int, int>> of_elements_;  ///< elements and their charts, sorted
   std::vector<int> rest_;                         // scratch
 };
-
-/// How far a branch is moved to be another one, to within rounding of the model's coordinates; none
-/// if they are no translates of each other.
-std::optional<Box> translation(const MapPieces& pieces, const Branches& branches,
-                               const Branch& from, const Branch& to, double tolerance);
 
 /// In units of the resolution: what the kinks of a branch that may have one contact amount to over
 /// its extent, together. A dent that they make is as deep as a quarter of that.
