@@ -153,23 +153,29 @@ bool CellView::rises_inward(const SeenPiece& seen) const {
   });
 }
 
-void CellView::add_corners(const SeenPiece& seen) {
+/// The one that is highest in the middle of the cell.
+void CellView::add_highest_corner(const SeenPiece& seen) {
   const MapPiece& piece = *seen.piece;
   const int p = piece.net.shape.p;
   const int q = piece.net.shape.q;
-  for (const bool upper_u : {false, true}) {
-    for (const bool upper_v : {false, true}) {
-      if ((upper_u && p == 0) || (upper_v && q == 0)) continue;
-      const int k = (upper_u ? p : 0) * (q + 1) + (upper_v ? q : 0);
+  Corners best = {};
+  double highest = -infinity;
+  for (const int i : {0, p}) {
+    for (const int j : {0, q}) {
+      const int k = i * (q + 1) + j;
       Corners y = values(seen)[k];
       for (double& height : y) height /= piece.net.points[k].w;
-      beacons_.push_back(y);
+      const double middle = y[1] + y[2];
+      if (!(middle > highest)) continue;
+      highest = middle;
+      best = y;
     }
   }
+  beacons_.push_back(best);
 }
 
 bool CellView::sharpen(double depth) {
-  for (const SeenPiece& seen : seen_) add_corners(seen);
+  for (const SeenPiece& seen : seen_) add_highest_corner(seen);
   std::sort(beacons_.begin(), beacons_.end());
   beacons_.erase(std::unique(beacons_.begin(), beacons_.end()), beacons_.end());
   find_envelope();

@@ -59,7 +59,7 @@ class CellView {
   double depth_of(const MapPiece& piece) const;
   bool box_is_beaten(const MapPiece& piece) const;
   bool is_beaten(const SeenPiece& seen, const MapPiece& piece) const;
-  void add_corners(const SeenPiece& seen);
+  void add_highest_corner(const SeenPiece& seen);
   bool is_surpassed(const MapElement& element) const;
   bool rises_inward(const SeenPiece& seen) const;
 
