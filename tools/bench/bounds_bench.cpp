@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "taut/bounds/coons_bvh.h"
 #include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/cull/culling.h"

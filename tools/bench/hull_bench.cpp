@@ -21,6 +21,7 @@
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/polytope/point_hull.h"
 #include "taut/hull/precise_hull.h"
+#include "taut/hull/sample/sampled_hull.h"
 #include "teapot.h"
 
 namespace {
