@@ -79,10 +79,6 @@ Foot foot_on(const BezierPatch& patch, const dvec3& x) {
   return {best, unit_normal(patch, u, v), glm::length(glm::cross(jet.Su, jet.Sv)) / most, 0};
 }
 
-double distance(const Box& box, const dvec3& x) {
-  return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
-}
-
 /// Patches with the boxes of their control points.
 class FacePatches {
  public:

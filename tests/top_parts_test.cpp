@@ -78,4 +78,18 @@ TEST(TopParts, DoNotHangTogetherWhereThereAreTwo) {
   EXPECT_TRUE(TopParts(geometry).hang_together({0, 1, 0}, highest(1e-9), highest(2e-9), 1e-3));
 }
 
+/// Each within the depth of the other, and they cross.
+TEST(TopParts, OfTwoCurvesDoNotHangTogether) {
+  const Shape one = {{}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0})}, {}};
+  const Scene scene(make_model(one + shifted(one, {1e-5, 0, 0})));
+  const ContactGeometry geometry(scene);
+  const TopParts parts(geometry);
+  const auto highest = [&](double x) {
+    return taut::SupportQuery(scene)(taut::unit({x, 1, 0})).contact;
+  };
+  ASSERT_FALSE(taut::same_element(highest(-1e-9), highest(1e-9)));
+  EXPECT_FALSE(parts.hang_together({0, 1, 0}, highest(-1e-9), highest(1e-9), 1e-3));
+  EXPECT_TRUE(parts.hang_together({0, 1, 0}, highest(1e-9), highest(2e-9), 1e-3));
+}
+
 }  // namespace

@@ -24,10 +24,6 @@ constexpr double newton_end = 1e-15;
 constexpr double near_share = 0.05;
 constexpr double least_gap = 1024 * rounding_unit;
 
-double distance_to(const Box& box, const dvec3& x) {
-  return glm::length(glm::max(dvec3(0.0), glm::max(box.lower - x, x - box.upper)));
-}
-
 }  // namespace
 
 bool SurfaceDistance::done(double lower) const {
@@ -51,7 +47,7 @@ double SurfaceDistance::lower_bound(const dvec4* net, std::size_t size) const {
   for (std::size_t k = 0; k < size; ++k) {
     beyond_middle = std::min(beyond_middle, glm::dot(x_ - euclidean(net[k]), to_middle));
   }
-  return std::max({distance_to(box, x_), beyond, beyond_middle});
+  return std::max({distance(box, x_), beyond, beyond_middle});
 }
 
 void SurfaceDistance::offer(const dvec3& point) {
@@ -172,7 +168,7 @@ DistanceRange SurfaceDistance::operator()(const dvec3& x, const DistanceGoal& go
   for (std::size_t k = 0; k < surface_.patches.size(); ++k) {
     const PlacedPatch& patch = surface_.patches[k];
     if (body >= 0 && patch.body != body) continue;
-    const double lower = distance_to(patch.box, x);
+    const double lower = distance(patch.box, x);
     if (lower <= within + surface_.rounding) order.emplace_back(lower, int(k));
   }
   std::sort(order.begin(), order.end());

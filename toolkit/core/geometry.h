@@ -44,6 +44,15 @@ struct Box {
   dvec3 center() const { return 0.5 * lower + 0.5 * upper; }
 };
 
+/// The gaps between two boxes along the axes, zero where they overlap. @pre neither is empty
+inline dvec3 box_gaps(const Box& a, const Box& b) {
+  return glm::max(glm::max(a.lower - b.upper, b.lower - a.upper), dvec3(0.0));
+}
+/// The distance of a point from a box, zero inside. @pre not empty
+inline double distance(const Box& box, const dvec3& x) {
+  return glm::length(box_gaps(box, {x, x}));
+}
+
 /// Length of the box's diagonal, correct also where its square would over- or underflow.
 /// Zero for an empty box.
 double diagonal(const Box& box);

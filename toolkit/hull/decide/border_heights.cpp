@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "taut/bounds/vector_net.h"
+#include "taut/hull/decide/height_growth.h"
 
 namespace taut {
 namespace {

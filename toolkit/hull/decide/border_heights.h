@@ -6,7 +6,6 @@
 
 #include "taut/hull/decide/chart_glue.h"
 #include "taut/hull/decide/corner_rings.h"
-#include "taut/hull/decide/height_growth.h"
 #include "taut/hull/decide/rectangle_sides.h"
 
 namespace taut {

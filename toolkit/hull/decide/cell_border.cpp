@@ -123,9 +123,9 @@ int CellBorder::branch_of(const dvec3& x) const {
   double least = infinity;
   for (int b = 0; b < int(count()); ++b) {
     const Branch& branch = branches_.all()[std::size_t(b)];
-    const dvec3 gap = glm::max(glm::max(branch.lower - x, x - branch.upper), dvec3(0.0));
-    if (glm::length(gap) >= least) continue;
-    least = glm::length(gap);
+    const double own = distance(Box{branch.lower, branch.upper}, x);
+    if (own >= least) continue;
+    least = own;
     best = b;
   }
   return best;

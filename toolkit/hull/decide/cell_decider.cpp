@@ -28,12 +28,13 @@ constexpr std::size_t line_limit = 8;
 /// Heights are differences of two support values, and of sums of some coefficients.
 constexpr double noise_units = 4;
 
+Box box_of(const Branch& branch) { return {branch.lower, branch.upper}; }
+
 /// A point of a contact tells by its place which of them it is of.
 bool boxes_part(const std::vector<Branch>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i + 1; j < all.size(); ++j) {
-      const dvec3 gap = glm::max(all[i].lower - all[j].upper, all[j].lower - all[i].upper);
-      if (!(std::max({gap.x, gap.y, gap.z}) > 0)) return false;
+      if (box_gaps(box_of(all[i]), box_of(all[j])) == dvec3(0.0)) return false;
     }
   }
   return true;
@@ -130,7 +131,7 @@ void CellDecider::finish(MapCell& cell, MapCellKind kind) const {
     cell.normal = plane.normal;
     cell.width = plane.width;
   }
-  for (const Branch& b : branches_.all()) cell.contacts.push_back({b.lower, b.upper});
+  for (const Branch& b : branches_.all()) cell.contacts.push_back(box_of(b));
   cell.apart = int(cell.contacts.size());
   cell.contacts.insert(cell.contacts.end(), dominated_.begin(), dominated_.end());
   if (kind != MapCellKind::region && kind != MapCellKind::undecided) {
@@ -244,7 +245,7 @@ std::optional<MapCellKind> CellDecider::kind_without_dominated() {
   branches_.keep(left);
   const std::optional<MapCellKind> kind = kind_of_branches(true);
   for (std::size_t b = 0; b < all.size() && kind; ++b) {
-    if (!left[b]) dominated_.push_back({all[b].lower, all[b].upper});
+    if (!left[b]) dominated_.push_back(box_of(all[b]));
   }
   return kind;
 }
@@ -360,8 +361,7 @@ bool CellDecider::hang_together(const std::vector<Branch>& all) const {
 }
 
 bool CellDecider::come_near(const Branch& a, const Branch& b) const {
-  const dvec3 gap = glm::max(glm::max(a.lower - b.upper, b.lower - a.upper), dvec3(0.0));
-  if (glm::length(gap) > options_.resolution) return false;
+  if (glm::length(box_gaps(box_of(a), box_of(b))) > options_.resolution) return false;
   const std::vector<dvec3> own = corners_of_pieces(a);
   const std::vector<dvec3> other = corners_of_pieces(b);
   return std::any_of(own.begin(), own.end(), [&](const dvec3& x) {

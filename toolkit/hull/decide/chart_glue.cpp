@@ -5,17 +5,26 @@
 namespace taut {
 namespace {
 
-/// Two charts span the same stretch of what they share.
-bool is_whole(const Branches& branches, const Glue& glue) {
-  if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::face_edge) return true;
-  const Interval& own = along(branches.chart(glue.a), Side(glue.at_a));
+/// Of what two charts share, what each spans, in the parameter of the first.
+std::array<Interval, 2> stretches(const Branches& branches, const Glue& glue) {
+  if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::face_edge) return {};
   const Chart& other = branches.chart(glue.b);
+  const Interval& own = along(branches.chart(glue.a), Side(glue.at_a));
   const Interval& b = glue.kind == Glue::Kind::faces ? along(other, Side(glue.at_b)) : other.u;
-  return glue.reversed ? own.lower == 1 - b.upper && own.upper == 1 - b.lower
-                       : own.lower == b.lower && own.upper == b.upper;
+  return {own, glue.reversed ? Interval{1 - b.upper, 1 - b.lower} : b};
 }
 
 }  // namespace
+
+bool span_the_same(const Branches& branches, const Glue& glue) {
+  const auto [own, there] = stretches(branches, glue);
+  return own.lower == there.lower && own.upper == there.upper;
+}
+
+bool spans(const Branches& branches, const Glue& glue) {
+  const auto [own, there] = stretches(branches, glue);
+  return own.lower <= there.lower && there.upper <= own.upper;
+}
 
 bool ChartGlue::find(const Branches& branches, const Branch& branch) {
   branches_ = &branches;
@@ -25,7 +34,7 @@ bool ChartGlue::find(const Branches& branches, const Branch& branch) {
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
     if (glue.kind == Glue::Kind::face_vertex) continue;
-    if (!is_whole(branches, glue)) return false;
+    if (!span_the_same(branches, glue)) return false;
     ++count_;
     int& at_a = table_[std::size_t(glue.a)][std::size_t(glue.at_a)];
     if (at_a >= 0) return false;

@@ -8,6 +8,11 @@
 
 namespace taut {
 
+/// Two charts that are glued span the same stretch of the side that they share; or the second one
+/// no more of it than the first. What they share is one point: yes.
+bool span_the_same(const Branches& branches, const Glue& glue);
+bool spans(const Branches& branches, const Glue& glue);
+
 /// What is glued to the sides and ends of the charts of a branch.
 class ChartGlue {
  public:

@@ -37,11 +37,9 @@ std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {
                          [&](const Round& a, const Round& b) { return height(a) < height(b); });
     return std::size_t(highest - rounds.begin());
   }
-  const auto gap = [&](const Box& box) {
-    return glm::length(glm::max(glm::max(box.lower - x, x - box.upper), dvec3(0.0)));
-  };
-  const auto best = std::min_element(contacts.begin(), contacts.end(),
-                                     [&](const Box& a, const Box& b) { return gap(a) < gap(b); });
+  const auto best =
+      std::min_element(contacts.begin(), contacts.end(),
+                       [&](const Box& a, const Box& b) { return distance(a, x) < distance(b, x); });
   return farthest_translate(translates, std::size_t(best - contacts.begin()), d);
 }
 

@@ -171,7 +171,7 @@ class Assembly {
     int found = -1;
     const std::vector<Box>& contacts = cell(other).contacts;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
-      const dvec3 gap = glm::max(contacts[c].lower - own.upper, own.lower - contacts[c].upper);
+      const dvec3 gap = box_gaps(contacts[c], own);
       if (std::max({gap.x, gap.y, gap.z}) > map_.resolution) continue;
       if (found >= 0) return -1;
       found = first_[std::size_t(other)] + int(c);

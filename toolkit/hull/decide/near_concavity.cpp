@@ -77,7 +77,7 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, 
 /// leads from there into the two sides is opposite: it is the highest of the one they fall into.
 bool NearConcavity::meet_once(const CellView& view, const Branches& branches, const Branch& branch,
                               const Glue& glue) const {
-  if (!spans(branches, glue, true)) return false;
+  if (!span_the_same(branches, glue)) return false;
   const Interval& common = along(branches.chart(glue.a), Side(glue.at_a));
   const double size = glm::distance(branch.lower, branch.upper);
   for (const bool upper : {false, true}) {
@@ -127,24 +127,7 @@ ContactJet NearConcavity::jet_at(const Branches& branches, int chart, Side side,
   return pieces_.geometry().jet({c.instance, c.kind, c.element, uv.x, uv.y});
 }
 
-/// The charts span the same stretch of what they share; or the second one no more of it than the
-/// first.
-bool NearConcavity::spans(const Branches& branches, const Glue& glue, bool same) {
-  if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::face_edge) return true;
-  const Chart& other = branches.chart(glue.b);
-  const Interval& own = along(branches.chart(glue.a), Side(glue.at_a));
-  const Interval& b = glue.kind == Glue::Kind::faces ? along(other, Side(glue.at_b)) : other.u;
-  const Interval there = glue.reversed ? Interval{1 - b.upper, 1 - b.lower} : b;
-  return same ? own.lower == there.lower && own.upper == there.upper
-              : own.lower <= there.lower && there.upper <= own.upper;
-}
-
-/// An edge in a patch, or a vertex in a patch or an edge, adds nothing to it, and nothing hangs
-/// together by it: from a vertex between two edges both may rise. What hangs together goes on into
-/// each other smoothly. From a chart that meets two others in what is highest of it both would have
-/// to rise, against slopes that are the same on the two sides; what slopes may grow by between them
-/// counts over the branch.
-/// The chart in such a corner may be left for either of two others.
+/// From a corner that is re-entrant a chart may be left for either of two others.
 bool NearConcavity::is_reentrant(const Branches& branches, const Branch& branch) {
   ChartGlue::Table glued(branches.charts().size(), {-1, -1, -1, -1});
   int joins = 0;
@@ -160,6 +143,11 @@ bool NearConcavity::is_reentrant(const Branches& branches, const Branch& branch)
   return rings_.any_is_reentrant();
 }
 
+/// An edge in a patch, or a vertex in a patch or an edge, adds nothing to it, and nothing hangs
+/// together by it: from a vertex between two edges both may rise. What hangs together goes on into
+/// each other smoothly. From a chart that meets two others in what is highest of it both would have
+/// to rise, against slopes that are the same on the two sides; what slopes may grow by between them
+/// counts over the branch.
 bool NearConcavity::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
   DisjointSets sets(branches.charts().size());
   std::vector<bool> held(branches.charts().size(), false);
@@ -168,7 +156,7 @@ bool NearConcavity::is_one(const CellView& view, const Branches& branches, const
   for (const int g : branch.glues) {
     const Glue& glue = branches.glue(g);
     if (glue.kind != Glue::Kind::faces && glue.kind != Glue::Kind::edges) {
-      if (spans(branches, glue, false)) held[std::size_t(glue.b)] = true;
+      if (spans(branches, glue)) held[std::size_t(glue.b)] = true;
       continue;
     }
     if (glue.kind == Glue::Kind::edges) {

@@ -27,7 +27,6 @@ class NearConcavity {
   bool find_chain(const CellView& view, const Branches& branches, const Branch& branch,
                   const std::vector<bool>& held);
   bool chain_is_nearly_concave(const CellView& view);
-  static bool spans(const Branches& branches, const Glue& glue, bool same);
   bool meet_once(const CellView& view, const Branches& branches, const Branch& branch,
                  const Glue& glue) const;
   bool both_rise(const CellView& view, const Branches& branches, const Branch& branch,

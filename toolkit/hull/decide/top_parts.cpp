@@ -11,8 +11,8 @@
 namespace taut {
 namespace {
 
-/// Parts of a model that are looked at for one plane.
-constexpr int looked_at_parts = 20'000;
+/// Parts of a model that are split for one plane. Of those that are found all pairs are compared.
+constexpr int looked_at_parts = 4000;
 /// Of those that are found heights differ by no more than this share of the depth.
 constexpr double height_share = 0.25;
 
@@ -29,10 +29,6 @@ Interval heights(const std::vector<dvec4>& net, const dvec3& d) {
     result = {std::min(result.lower, h), std::max(result.upper, h)};
   }
   return result;
-}
-
-double gap(const Box& a, const Box& b) {
-  return glm::length(glm::max(glm::max(a.lower - b.upper, b.lower - a.upper), dvec3(0.0)));
 }
 
 /// Along which the longest of a net's rows and columns runs.
@@ -132,7 +128,7 @@ bool TopParts::hang_together(const dvec3& d, const Contact& a, const Contact& b,
   DisjointSets pieces(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (gap(found[i], found[j]) <= depth) pieces.unite(int(i), int(j));
+      if (glm::length(box_gaps(found[i], found[j])) <= depth) pieces.unite(int(i), int(j));
     }
   }
   return pieces.find(0) == pieces.find(1);

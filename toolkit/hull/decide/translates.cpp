@@ -88,6 +88,7 @@ double apart(const Shape& a, const Shape& b) {
   return largest + apart_by_weights(a, b);
 }
 
+/// Most that are none differ in a point that comes early.
 bool are_translates(const Shape& a, const Shape& b, double budget) {
   for (std::size_t k = 0; k < a.offsets.size(); ++k) {
     if (!(glm::distance(a.offsets[k], b.offsets[k]) <= budget)) return false;
