@@ -22,6 +22,7 @@
 #include "judge/sweeps.h"
 #include "models.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/decide/map_graph.h"
 #include "taut/hull/decide/map_topology.h"
 #include "taut/surface/resolution.h"
 
@@ -173,6 +174,13 @@ void expect_known(const Known& known, const Shape& shape) {
   EXPECT_EQ(topology.arcs.size(), std::size_t(known.arcs));
   EXPECT_EQ(nodes, known.nodes);
   EXPECT_EQ(mapped.map.statistics.of_kind[std::size_t(MapCellKind::undecided)], 0);
+  taut::SupportQuery query(mapped.scene);
+  const taut::MapGraph graph = taut::map_graph(mapped.map, query);
+  nodes = 0;
+  for (const auto& node : graph.nodes) nodes += node.is_facet || node.ends.size() > 2 ? 1 : 0;
+  EXPECT_EQ(graph.regions(), known.regions);
+  EXPECT_EQ(graph.arcs.size(), std::size_t(known.arcs));
+  EXPECT_EQ(nodes, known.nodes);
 }
 
 class KnownMaps : public testing::TestWithParam<Known> {};

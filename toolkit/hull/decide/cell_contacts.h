@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/decide/direction_map.h"
+
+namespace taut {
+
+/// Which of the contacts of a map's cells support on the cells' borders. Contacts are told by their
+/// numbers in MapCell::contacts.
+class CellContacts {
+ public:
+  /// Both must outlive it.
+  CellContacts(const DirectionMap& map, SupportQuery& query) : map_(map), query_(query) {}
+
+  const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
+
+  /// What is inside of the cell is told by its border: it has one contact, or several that are told
+  /// apart and exchange along arcs which pass through.
+  bool is_closed(int k) const;
+  /// The cell holds, or may hold, the normal of a plane that more than three contacts touch.
+  bool is_of_facet(int k) const;
+
+  /// The contact that supports in a direction.
+  int winner(int k, const dvec3& d);
+  /// The same where x supports in it. @pre the cell has contacts
+  int winner(int k, const dvec3& d, const dvec3& x) const;
+
+  /// The contacts that support one after the other on the way from one direction to another, both
+  /// on a side of the cell. @pre the cell is closed
+  std::vector<int> passed(int k, const dvec3& from, const dvec3& to);
+
+ private:
+  const dvec3& point(const dvec3& d);
+
+  const DirectionMap& map_;
+  SupportQuery& query_;
+  std::map<std::array<long long, 3>, dvec3> points_;
+  Contact hint_;
+};
+
+/// Grid on which directions that are computed in several ways are one.
+std::array<long long, 3> rounded_direction(const dvec3& d);
+
+}  // namespace taut

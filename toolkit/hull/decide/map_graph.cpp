@@ -1,0 +1,505 @@
+#include "taut/hull/decide/map_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "taut/core/disjoint_sets.h"
+#include "taut/hull/decide/cell_contacts.h"
+#include "taut/hull/decide/cell_tree.h"
+
+namespace taut {
+namespace {
+
+/// A side between two cells, with what crosses it from its beginning to its end.
+struct CrossedSide {
+  std::array<int, 2> cell;  // the finer, and the other
+  std::array<dvec3, 2> ends;
+  bool first_is_left = false;  // the finer cell, seen from outside
+  std::vector<int> crossings;
+};
+
+/// Where an arc crosses a side.
+struct SideCrossing {
+  int side;
+  int teller;                        // the cell that tells its contacts
+  std::array<int, 2> contact;        // towards the side's beginning and its end
+  std::array<int, 2> arc;            // of those of either cell; none that the cell tells
+  std::array<int, 2> next = {none, none};  // crossing beyond either cell, or none: a node
+  static constexpr int none = -1;
+};
+
+class Weaving {
+ public:
+  Weaving(const DirectionMap& map, SupportQuery& query)
+      : map_(map),
+        tree_(map.cells),
+        contacts_(map, query),
+        clusters_(map.cells.size()),
+        sides_of_(map.cells.size()) {}
+
+  MapGraph run() {
+    find_sides();
+    join_facets();
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (contacts_.is_closed(k)) pass(k);
+    }
+    make_nodes();
+    make_arcs();
+    drop_arcs_within_facets();
+    join_arcs_that_pass();
+    return std::move(graph_);
+  }
+
+ private:
+  const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
+  CrossedSide& side(int k) { return sides_[std::size_t(k)]; }
+  SideCrossing& crossing(int k) { return crossings_[std::size_t(k)]; }
+
+  void find_sides() {
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      for (int number = 0; number < 4; ++number) {
+        CellTree::CellSide found;
+        if (tree_.side(k, number, found)) add(found);
+      }
+    }
+  }
+
+  void add(const CellTree::CellSide& found) {
+    const auto d = DirectionMap::corners(cell(found.finer));
+    CrossedSide own{{found.finer, found.other}, {found.from, found.to}, false, {}};
+    own.first_is_left = glm::dot(glm::cross(found.from, found.to), d[0] + d[1] + d[2] + d[3]) > 0;
+    const int index = int(sides_.size());
+    std::array<std::vector<int>, 2> passed;
+    for (const std::size_t i : {0u, 1u}) {
+      sides_of_[std::size_t(own.cell[i])].push_back(index);
+      if (!contacts_.is_closed(own.cell[i])) continue;
+      passed[i] = contacts_.passed(own.cell[i], found.from, found.to);
+    }
+    if (passed[0].empty() && passed[1].empty()) clusters_.unite(own.cell[0], own.cell[1]);
+    const std::size_t teller = passed[0].size() >= passed[1].size() ? 0 : 1;
+    const bool agree = passed[0].size() == passed[1].size();
+    for (std::size_t k = 0; k + 1 < passed[teller].size(); ++k) {
+      SideCrossing c{index, own.cell[teller], {passed[teller][k], passed[teller][k + 1]}, {}};
+      for (const std::size_t i : {0u, 1u}) {
+        c.arc[i] = i == teller || agree ? std::min(passed[i][k], passed[i][k + 1])
+                                        : SideCrossing::none;
+      }
+      own.crossings.push_back(int(crossings_.size()));
+      crossings_.push_back(c);
+    }
+    sides_.push_back(std::move(own));
+  }
+
+  /// Cells of one facet may touch in a corner only, or have others between them. Three of its
+  /// contacts may make a node beside it, or be told apart from the others, which all but support.
+  void join_facets() {
+    std::vector<int> facets, others;
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (contacts_.is_of_facet(k)) facets.push_back(k);
+      if (cell(k).has_plane()) others.push_back(k);
+    }
+    for (const int facet : facets) {
+      for (const int other : others) {
+        if (cell(facet).shares_plane(cell(other), map_.resolution)) clusters_.unite(facet, other);
+      }
+    }
+  }
+
+  std::size_t number_of(const SideCrossing& c, int k) const {
+    return sides_[std::size_t(c.side)].cell[0] == k ? 0 : 1;
+  }
+
+  /// Each of the cell's arcs goes on from crossing to crossing.
+  void pass(int k) {
+    std::map<int, std::vector<int>> of_arc;
+    for (const int s : sides_of_[std::size_t(k)]) {
+      for (const int c : side(s).crossings) {
+        const int arc = crossing(c).arc[number_of(crossing(c), k)];
+        if (arc != SideCrossing::none) of_arc[arc].push_back(c);
+      }
+    }
+    for (auto& [arc, left] : of_arc) {
+      while (left.size() > 1) pass_nearest(k, left);
+    }
+  }
+
+  /// The two of them that are nearest to each other.
+  void pass_nearest(int k, std::vector<int>& left) {
+    std::pair<std::size_t, std::size_t> best = {0, 1};
+    double least = infinity;
+    for (std::size_t a = 0; a < left.size(); ++a) {
+      for (std::size_t b = a + 1; b < left.size(); ++b) {
+        const double gap = left.size() == 2 ? 0 : glm::distance(middle(left[a]), middle(left[b]));
+        if (gap >= least) continue;
+        least = gap;
+        best = {a, b};
+      }
+    }
+    const int a = left[best.first];
+    const int b = left[best.second];
+    crossing(a).next[number_of(crossing(a), k)] = b;
+    crossing(b).next[number_of(crossing(b), k)] = a;
+    left.erase(left.begin() + std::ptrdiff_t(best.second));
+    left.erase(left.begin() + std::ptrdiff_t(best.first));
+  }
+
+  dvec3 middle(int k) {
+    const CrossedSide& own = side(crossing(k).side);
+    return unit(own.ends[0]) + unit(own.ends[1]);
+  }
+
+  void make_nodes() {
+    std::map<int, std::vector<int>> clusters;
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (!contacts_.is_closed(k)) {
+        clusters[clusters_.find(k)].push_back(k);
+      } else if (has_left_over(k)) {
+        clusters[k] = {k};
+      }
+    }
+    for (auto& [first, cells] : clusters) {
+      MapGraph::Node node;
+      node.cells = std::move(cells);
+      for (const int k : node.cells) node.is_facet = node.is_facet || contacts_.is_of_facet(k);
+      const std::vector<int> around = border_of(node);
+      if (around.empty() && !node.is_facet) continue;
+      for (const int c : around) {
+        const std::size_t i = end_at(crossing(c), node.cells);
+        node_of_[{c, int(i)}] = int(graph_.nodes.size());
+      }
+      around_.push_back(around);
+      graph_.nodes.push_back(std::move(node));
+    }
+  }
+
+  bool has_left_over(int k) {
+    for (const int s : sides_of_[std::size_t(k)]) {
+      for (const int c : side(s).crossings) {
+        if (crossing(c).next[number_of(crossing(c), k)] == SideCrossing::none) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Which of the two cells at a crossing is among these. @pre one is
+  std::size_t end_at(const SideCrossing& c, const std::vector<int>& cells) {
+    return std::binary_search(cells.begin(), cells.end(), side(c.side).cell[0]) ? 0 : 1;
+  }
+
+  /// The crossings of the border of a node that end there, counter-clockwise from outside.
+  std::vector<int> border_of(const MapGraph::Node& node) {
+    using Key = std::array<long long, 3>;
+    std::map<Key, std::vector<std::vector<int>>> from;  // crossings of a side, by its beginning
+    std::map<Key, std::vector<Key>> to;
+    std::vector<Key> starts;
+    int loops = 0;
+    for (const int k : node.cells) {
+      for (const int s : sides_of_[std::size_t(k)]) {
+        const CrossedSide& own = side(s);
+        const bool first = own.cell[0] == k;
+        if (std::binary_search(node.cells.begin(), node.cells.end(), own.cell[first ? 1 : 0])) {
+          continue;
+        }
+        const bool ahead = first == own.first_is_left;
+        std::vector<int> ending;
+        for (const int c : own.crossings) {
+          if (crossing(c).next[first ? 0 : 1] == SideCrossing::none) ending.push_back(c);
+        }
+        if (!ahead) std::reverse(ending.begin(), ending.end());
+        const Key begin = rounded_direction(own.ends[ahead ? 0 : 1]);
+        from[begin].push_back(std::move(ending));
+        to[begin].push_back(rounded_direction(own.ends[ahead ? 1 : 0]));
+        starts.push_back(begin);
+      }
+    }
+    std::vector<int> around;
+    for (const Key& start : starts) {
+      if (from[start].empty()) continue;
+      ++loops;
+      for (Key at = start; !from[at].empty();) {
+        const std::vector<int>& ending = from[at].back();
+        around.insert(around.end(), ending.begin(), ending.end());
+        const Key next = to[at].back();
+        from[at].pop_back();
+        to[at].pop_back();
+        at = next;
+      }
+    }
+    if (loops > 1) sort_about(node, around);
+    return around;
+  }
+
+  /// By the angle about the middle of the node's cells.
+  void sort_about(const MapGraph::Node& node, std::vector<int>& around) {
+    dvec3 n(0.0);
+    for (const int k : node.cells) {
+      const auto d = DirectionMap::corners(cell(k));
+      n += cell(k).has_plane() ? cell(k).normal : unit(d[0] + d[3]);
+    }
+    const std::array<dvec3, 2> frame = tangent_frame(unit(n));
+    std::map<int, double> angle;
+    for (const int c : around) {
+      const dvec3 d = middle(c);
+      angle[c] = std::atan2(glm::dot(d, frame[1]), glm::dot(d, frame[0]));
+    }
+    std::stable_sort(around.begin(), around.end(),
+                     [&](int a, int b) { return angle[a] < angle[b]; });
+  }
+
+  void make_arcs() {
+    std::vector<bool> done(crossings_.size(), false);
+    for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
+      for (const int c : around_[k]) {
+        if (!done[std::size_t(c)]) follow(c, end_at(crossing(c), graph_.nodes[k].cells), done);
+      }
+    }
+    for (int c = 0; c < int(crossings_.size()); ++c) {
+      if (!done[std::size_t(c)]) follow(c, 0, done);
+    }
+    for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
+      MapGraph::Node& node = graph_.nodes[k];
+      for (const int c : around_[k]) {
+        const int i = int(end_at(crossing(c), node.cells));
+        node.ends.push_back(end_of_.at({c, i}));
+      }
+    }
+  }
+
+  /// Follows an arc over a crossing out of one of its cells, to a node or back to where it began.
+  void follow(int c, std::size_t out_of, std::vector<bool>& done) {
+    const int index = int(graph_.arcs.size());
+    MapGraph::Arc arc;
+    const auto begin = node_of_.find({c, int(out_of)});
+    if (begin != node_of_.end()) {
+      arc.node[0] = begin->second;
+      end_of_[{c, int(out_of)}] = {index, 0};
+    }
+    for (int at = c;;) {
+      done[std::size_t(at)] = true;
+      arc.crossings.push_back(passed(at, out_of));
+      const std::size_t into = 1 - out_of;
+      const int next = crossing(at).next[into];
+      if (next == SideCrossing::none) {
+        arc.node[1] = node_of_.at({at, int(into)});
+        end_of_[{at, int(into)}] = {index, 1};
+        break;
+      }
+      if (done[std::size_t(next)]) break;
+      out_of = number_of(crossing(next), side(crossing(at).side).cell[into]);
+      at = next;
+    }
+    graph_.arcs.push_back(std::move(arc));
+  }
+
+  MapCrossing passed(int k, std::size_t out_of) {
+    const SideCrossing& own = crossing(k);
+    const CrossedSide& across = side(own.side);
+    MapCrossing result{across.ends, own.teller, own.contact};
+    // Out of a cell to the left of the side, its beginning is to the right of the way.
+    if ((out_of == 0) != across.first_is_left) {
+      std::swap(result.ends[0], result.ends[1]);
+      std::swap(result.contact[0], result.contact[1]);
+    }
+    return result;
+  }
+
+  /// Arcs between cells of one facet that are no longer than these.
+  void drop_arcs_within_facets() {
+    std::set<int> dropped;
+    for (int k = 0; k < int(graph_.arcs.size()); ++k) {
+      const MapGraph::Arc& arc = graph_.arcs[std::size_t(k)];
+      if (arc.is_closed() || arc.node[0] != arc.node[1]) continue;
+      const MapGraph::Node& node = graph_.nodes[std::size_t(arc.node[0])];
+      if (!node.is_facet) continue;
+      double reach = 0;
+      for (const int own : node.cells) reach = std::max(reach, std::ldexp(2.0, 1 - cell(own).level));
+      const bool within = std::all_of(arc.crossings.begin(), arc.crossings.end(), [&](const auto& c) {
+        return std::any_of(node.cells.begin(), node.cells.end(), [&](int own) {
+          return glm::distance(cell(own).normal, unit(unit(c.ends[0]) + unit(c.ends[1]))) <= reach;
+        });
+      });
+      if (within) dropped.insert(k);
+    }
+    drop(dropped);
+  }
+
+  /// Removes arcs, and nodes that are nothing without them.
+  void drop(const std::set<int>& dropped) {
+    if (dropped.empty()) return;
+    std::vector<int> number(graph_.arcs.size(), -1);
+    std::vector<MapGraph::Arc> arcs;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      if (dropped.count(int(k)) > 0) continue;
+      number[k] = int(arcs.size());
+      arcs.push_back(std::move(graph_.arcs[k]));
+    }
+    graph_.arcs.swap(arcs);
+    std::vector<int> place(graph_.nodes.size(), -1);
+    std::vector<MapGraph::Node> nodes;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      MapGraph::Node& node = graph_.nodes[k];
+      std::erase_if(node.ends,
+                    [&](const MapGraph::End& end) { return number[std::size_t(end.arc)] < 0; });
+      for (MapGraph::End& end : node.ends) end.arc = number[std::size_t(end.arc)];
+      if (node.ends.empty() && !node.is_facet) continue;
+      place[k] = int(nodes.size());
+      nodes.push_back(std::move(node));
+    }
+    graph_.nodes.swap(nodes);
+    for (MapGraph::Arc& arc : graph_.arcs) {
+      for (int& node : arc.node) {
+        if (node >= 0) node = place[std::size_t(node)];
+      }
+    }
+  }
+
+  /// Through nodes in which nothing ends: two arcs alone, or each two that follow each other there
+  /// between the same contacts. (Of three contacts whose support functions have independent
+  /// gradients, each two exchange along one curve, and these meet in three or pass each other.)
+  void join_arcs_that_pass() {
+    std::map<std::pair<int, int>, MapGraph::End> on;
+    std::set<int> passed;
+    for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
+      const MapGraph::Node& node = graph_.nodes[k];
+      if (node.is_facet) continue;
+      std::vector<MapGraph::End> left = node.ends;
+      std::vector<std::pair<MapGraph::End, MapGraph::End>> pairs;
+      for (std::size_t i = 0; i < left.size() && left.size() > 1;) {
+        const std::size_t j = (i + 1) % left.size();
+        if (left.size() > 2 && !go_on(left[i], left[j])) {
+          ++i;
+          continue;
+        }
+        pairs.emplace_back(left[i], left[j]);
+        left.erase(left.begin() + std::ptrdiff_t(std::max(i, j)));
+        left.erase(left.begin() + std::ptrdiff_t(std::min(i, j)));
+        i = 0;
+      }
+      if (!left.empty()) continue;
+      passed.insert(int(k));
+      for (const auto& [a, b] : pairs) {
+        on[{a.arc, a.end}] = b;
+        on[{b.arc, b.end}] = a;
+      }
+    }
+    if (!passed.empty()) join(on, passed);
+  }
+
+  /// Between the same contacts: what is to the right of the way out along the one is to the left of
+  /// that along the other.
+  bool go_on(const MapGraph::End& a, const MapGraph::End& b) const {
+    return are_near(contact_beside(a, 0), contact_beside(b, 1)) &&
+           are_near(contact_beside(a, 1), contact_beside(b, 0));
+  }
+  bool are_near(const Box& a, const Box& b) const {
+    const dvec3 gap = box_gaps(a, b);
+    return std::max({gap.x, gap.y, gap.z}) <= map_.resolution;
+  }
+  /// To the right (0) or left of the way out of the node.
+  const Box& contact_beside(const MapGraph::End& end, int side) const {
+    const MapGraph::Arc& arc = graph_.arcs[std::size_t(end.arc)];
+    const MapCrossing& c = end.end == 0 ? arc.crossings.front() : arc.crossings.back();
+    const int contact = c.contact[std::size_t(end.end == 0 ? side : 1 - side)];
+    return cell(c.cell).contacts[std::size_t(contact)];
+  }
+
+  void join(const std::map<std::pair<int, int>, MapGraph::End>& on, const std::set<int>& passed) {
+    std::vector<MapGraph::Arc> before;
+    before.swap(graph_.arcs);
+    std::vector<bool> done(before.size(), false);
+    std::map<std::pair<int, int>, MapGraph::End> ends;  // as they were: as they are
+    const auto follow = [&](MapGraph::End at) {
+      const int index = int(graph_.arcs.size());
+      MapGraph::Arc arc;
+      arc.node[0] = before[std::size_t(at.arc)].node[std::size_t(at.end)];
+      ends[{at.arc, at.end}] = {index, 0};
+      while (!done[std::size_t(at.arc)]) {
+        done[std::size_t(at.arc)] = true;
+        MapGraph::Arc& own = before[std::size_t(at.arc)];
+        if (at.end == 1) reverse(own);
+        arc.crossings.insert(arc.crossings.end(), own.crossings.begin(), own.crossings.end());
+        arc.node[1] = own.node[1];
+        const MapGraph::End out = {at.arc, 1 - at.end};
+        ends[{out.arc, out.end}] = {index, 1};
+        const auto next = on.find({out.arc, out.end});
+        if (next == on.end()) break;
+        at = next->second;
+        arc.node[1] = -1;
+      }
+      if (arc.node[1] < 0) arc.node[0] = -1;
+      graph_.arcs.push_back(std::move(arc));
+    };
+    for (int k = 0; k < int(before.size()); ++k) {
+      for (int end = 0; end < 2; ++end) {
+        if (!done[std::size_t(k)] && on.count({k, end}) == 0) follow({k, end});
+      }
+    }
+    for (int k = 0; k < int(before.size()); ++k) {
+      if (!done[std::size_t(k)]) follow({k, 0});
+    }
+    std::vector<int> place(graph_.nodes.size(), -1);
+    std::vector<MapGraph::Node> nodes;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      if (passed.count(int(k)) > 0) continue;
+      MapGraph::Node& node = graph_.nodes[k];
+      for (MapGraph::End& end : node.ends) end = ends.at({end.arc, end.end});
+      place[k] = int(nodes.size());
+      nodes.push_back(std::move(node));
+    }
+    graph_.nodes.swap(nodes);
+    for (MapGraph::Arc& arc : graph_.arcs) {
+      for (int& node : arc.node) {
+        if (node >= 0) node = place[std::size_t(node)];
+      }
+    }
+  }
+
+  static void reverse(MapGraph::Arc& arc) {
+    std::reverse(arc.crossings.begin(), arc.crossings.end());
+    for (MapCrossing& c : arc.crossings) {
+      std::swap(c.ends[0], c.ends[1]);
+      std::swap(c.contact[0], c.contact[1]);
+    }
+    std::swap(arc.node[0], arc.node[1]);
+  }
+
+  const DirectionMap& map_;
+  CellTree tree_;
+  CellContacts contacts_;
+  DisjointSets clusters_;
+  std::vector<CrossedSide> sides_;
+  std::vector<SideCrossing> crossings_;
+  std::vector<std::vector<int>> sides_of_;  // by cell
+  std::vector<std::vector<int>> around_;    // by node: crossings in order
+  std::map<std::pair<int, int>, int> node_of_;              // by crossing and its cell
+  std::map<std::pair<int, int>, MapGraph::End> end_of_;     // the same
+  MapGraph graph_;
+};
+
+}  // namespace
+
+int MapGraph::regions() const {
+  DisjointSets parts(nodes.size() + arcs.size());
+  int vertices = int(nodes.size());
+  for (std::size_t k = 0; k < arcs.size(); ++k) {
+    const int own = int(nodes.size() + k);
+    if (arcs[k].is_closed()) {
+      ++vertices;  // one of it is a node
+      continue;
+    }
+    for (const int node : arcs[k].node) parts.unite(own, node);
+  }
+  std::set<int> components;
+  for (int k = 0; k < int(nodes.size() + arcs.size()); ++k) components.insert(parts.find(k));
+  return 1 + int(components.size()) - vertices + int(arcs.size());
+}
+
+MapGraph map_graph(const DirectionMap& map, SupportQuery& query) {
+  return Weaving(map, query).run();
+}
+
+}  // namespace taut

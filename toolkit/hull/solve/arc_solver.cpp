@@ -1,0 +1,151 @@
+#include "taut/hull/solve/arc_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/exit_margins.h"
+#include "taut/hull/contact/rulings_between.h"
+
+namespace taut {
+namespace {
+
+/// Halvings of the way between two rulings, after which they are next to each other.
+constexpr int division_limit = 40;
+/// Share of the way between two rulings by which the one in the middle may be off theirs.
+constexpr double middle_share = 0.1;
+/// Largest turn between neighbours, in radians.
+constexpr double largest_turn = 0.4;
+/// How far before the way or beyond it a change may be by rounding, as a share.
+constexpr double way_slack = 1e-9;
+
+bool are_of_same_elements(const Ruling& a, const Ruling& b) {
+  return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
+}
+
+double gap(const Ruling& a, const Ruling& b) {
+  const auto square = [](const dvec3& x) { return glm::dot(x, x); };
+  return std::sqrt(square(a.n - b.n) + square(a.point[0] - b.point[0]) +
+                   square(a.point[1] - b.point[1]));
+}
+
+/// How far along the way from one ruling to another a third one is, as a share.
+double share_of_way(const Ruling& from, const Ruling& to, const Ruling& r) {
+  const auto along = [&](const Ruling& x) {
+    return glm::dot(x.n - from.n, to.n - from.n) +
+           glm::dot(x.point[0] - from.point[0], to.point[0] - from.point[0]) +
+           glm::dot(x.point[1] - from.point[1], to.point[1] - from.point[1]);
+  };
+  const double whole = along(to);
+  return whole > 0 ? along(r) / whole : 0;
+}
+
+Ruling middle_of(const Ruling& a, const Ruling& b) {
+  Ruling r = a;
+  r.n = 0.5 * (a.n + b.n);
+  for (std::size_t i = 0; i < 2; ++i) r.point[i] = 0.5 * (a.point[i] + b.point[i]);
+  return r;
+}
+
+bool are_vertices(const Ruling& r) {
+  return r.contact[0].kind == SourceKind::vertex && r.contact[1].kind == SourceKind::vertex;
+}
+
+}  // namespace
+
+ArcSolver::ArcSolver(const RulingSearch& search, const Ruling& first)
+    : search_(search), geometry_(search.geometry()), pieces_({ArcPiece{{first}}}) {}
+
+void ArcSolver::go_on(const Ruling& to) { go_on(to, 0); }
+
+void ArcSolver::go_on(const Ruling& to, int depth) {
+  if (depth == division_limit) return jump(to);
+  if (!are_of_same_elements(last(), to)) {
+    if (step_over(to)) return go_on(to, depth + 1);
+    return divide(to, depth);
+  }
+  if (is_smooth(to)) return append(to);
+  divide(to, depth);
+}
+
+bool ArcSolver::is_smooth(const Ruling& to) const {
+  const double way = gap(last(), to);
+  if (glm::distance(last().n, to.n) > largest_turn) return false;
+  if (way <= same_contact || are_vertices(to)) return true;
+  const std::optional<Ruling> middle = ruling_at_share(search_.system(), last(), to, 0.5);
+  if (!middle) return false;
+  return gap(*middle, middle_of(last(), to)) <= middle_share * way &&
+         search_.depth(*middle) <= geometry_.tie();
+}
+
+void ArcSolver::divide(const Ruling& to, int depth) {
+  const double way = gap(last(), to);
+  const std::optional<FoundRuling> middle = search_.between(last(), to);
+  if (!middle || !(way > same_contact) || gap(last(), middle->ruling) >= way ||
+      gap(middle->ruling, to) >= way) {
+    return jump(to);
+  }
+  go_on(middle->ruling, depth + 1);
+  go_on(to, depth + 1);
+}
+
+/// The two are neighbours for all that is known.
+void ArcSolver::jump(const Ruling& to) {
+  const double way =
+      std::max(glm::distance(last().point[0], to.point[0]), glm::distance(last().point[1], to.point[1]));
+  if (way > search_.map().contact_extent()) {
+    unresolved_.push_back({to.n, "rulings between two others are not found"});
+  }
+  if (are_of_same_elements(last(), to)) return append(to);
+  pieces_.push_back({{to}});
+}
+
+/// Goes on to the first change of elements on the way.
+bool ArcSolver::step_over(const Ruling& to) {
+  std::optional<Change> first;
+  bool leads_there = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (same_element(last().contact[i], to.contact[i])) continue;
+    for (const ContactExit& exit : exits(geometry_, last().contact[i])) {
+      const std::optional<Change> found = change(to, i, exit);
+      if (!found) continue;
+      const bool arrives = same_element(found->after.contact[i], to.contact[i]);
+      if (first && (arrives == leads_there ? found->way >= first->way : leads_there)) continue;
+      first = found;
+      leads_there = arrives;
+    }
+  }
+  if (!first) return false;
+  go_on(first->before, division_limit / 2);
+  pieces_.push_back({{first->after}});
+  return true;
+}
+
+std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t i,
+                                                   const ContactExit& exit) const {
+  CommonSupport s(geometry_, last());
+  s.contact[i] = at_exit(s.contact[i], exit);
+  s.evaluate(geometry_);
+  const bool solved = search_.system().solve(s, [&](const CommonSupport& now) {
+    return exit_margin(geometry_, now, int(i), exit);
+  });
+  if (!solved) return std::nullopt;
+  for (Contact& c : s.contact) {
+    if (glm::distance(parameters(c), parameters(clamped(c))) > way_slack) return std::nullopt;
+    c = clamped(c);
+  }
+  s.contact[i] = at_exit(s.contact[i], exit);
+  s.evaluate(geometry_);
+  Change found{s.ruling(), s.ruling(), 0};
+  found.way = share_of_way(last(), to, found.before);
+  if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
+  const std::optional<Contact> next = beyond(geometry_, s.contact[i], exit);
+  if (!next || search_.depth(found.before) > geometry_.tie()) return std::nullopt;
+  found.after.contact[i] = *next;
+  found.after.point[i] = geometry_.point(*next);
+  return found;
+}
+
+}  // namespace taut

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "taut/hull/solve/ruling_search.h"
+
+namespace taut {
+
+/// A separating curve as it becomes known, from ruling to ruling.
+class ArcSolver {
+ public:
+  /// It must outlive this. Begins with a ruling.
+  ArcSolver(const RulingSearch& search, const Ruling& first);
+
+  /// Goes on to a ruling of the same curve: with others between, so dense that they follow each
+  /// other smoothly, and a piece for each pair of elements that the contacts are in.
+  void go_on(const Ruling& to);
+
+  std::vector<ArcPiece> take() { return std::move(pieces_); }
+  /// Where neighbouring rulings are not of one curve, or one is not the model's.
+  const std::vector<Unresolved>& unresolved() const { return unresolved_; }
+
+ private:
+  /// Where a contact passes from one element into the next.
+  struct Change {
+    Ruling before, after;
+    double way = 0;  ///< share of that to where it leads
+  };
+  const Ruling& last() const { return pieces_.back().rulings.back(); }
+  void append(const Ruling& r) { pieces_.back().rulings.push_back(r); }
+  void go_on(const Ruling& to, int depth);
+  bool is_smooth(const Ruling& to) const;
+  bool step_over(const Ruling& to);
+  void divide(const Ruling& to, int depth);
+  void jump(const Ruling& to);
+  std::optional<Change> change(const Ruling& to, std::size_t i, const ContactExit& exit) const;
+
+  const RulingSearch& search_;
+  const ContactGeometry& geometry_;
+  std::vector<ArcPiece> pieces_;
+  std::vector<Unresolved> unresolved_;
+};
+
+}  // namespace taut

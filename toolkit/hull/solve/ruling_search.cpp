@@ -1,0 +1,152 @@
+#include "taut/hull/solve/ruling_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
+
+namespace taut {
+namespace {
+
+/// Halvings of the angle between two directions until they are next to each other.
+constexpr int halving_limit = std::numeric_limits<double>::digits;
+/// Every so often the angle is halved, whatever the contacts' planes tell.
+constexpr int secant_steps = 2;
+/// How often Newton's method begins anew with contacts that have left their elements.
+constexpr int element_limit = 6;
+/// How far parameters may leave [0, 1] by rounding.
+constexpr double parameter_rounding = 1e-9;
+/// How much wider than the way between two rulings a bracket between them may be, at most.
+constexpr double widest_bracket = 8;
+
+bool is_in_element(const Contact& c) {
+  const auto within = [](double t) {
+    return t >= -parameter_rounding && t <= 1 + parameter_rounding;
+  };
+  return within(c.u) && within(c.v);
+}
+
+/// Where the great arc between two directions passes the plane in which both points are as high;
+/// in the middle, where it does not.
+dvec3 exchange(const SupportingContact& a, const SupportingContact& b) {
+  const dvec3 middle = unit(a.n + b.n);
+  const dvec3 d = a.x - b.x;
+  const double before = glm::dot(a.n, d);
+  const double after = glm::dot(b.n, d);
+  if (!(before > 0 && after < 0)) return middle;
+  return unit(before * b.n - after * a.n);
+}
+
+}  // namespace
+
+SupportingContact RulingSearch::supporting(const dvec3& n, const Contact& hint) const {
+  const Support s = query_(n, hint);
+  const Contact c = geometry_.first(at_rest(geometry_, s.contact, n));
+  return {n, c, geometry_.point(c)};
+}
+
+double RulingSearch::depth(const Ruling& ruling) const {
+  const double h = query_(ruling.n, ruling.contact[0]).h;
+  return h - std::min(glm::dot(ruling.point[0], ruling.n), glm::dot(ruling.point[1], ruling.n));
+}
+
+std::optional<Ruling> RulingSearch::polished(const dvec3& n,
+                                             const std::array<Contact, 2>& contacts,
+                                             const dvec3& across) const {
+  CommonSupport start;
+  start.n = n;
+  for (const Contact& c : contacts) start.add(geometry_, c);
+  LinearEquation equation;
+  equation.n = unit(across);
+  for (int k = 0; k < element_limit; ++k) {
+    CommonSupport s = start;
+    const bool solved = system_.solve(s, [&](const CommonSupport& now) {
+      equation.residual = glm::dot(equation.n, now.n);
+      return equation;
+    });
+    if (!solved) return std::nullopt;
+    bool moved = false;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (is_in_element(s.contact[i])) continue;
+      // It has run over into another element.
+      const std::optional<Contact> there = climbed(geometry_, clamped(s.contact[i]), s.n);
+      if (!there || same_element(*there, start.contact[i])) return std::nullopt;
+      s.contact[i] = geometry_.first(*there);
+      moved = true;
+    }
+    if (!moved) {
+      for (Contact& c : s.contact) c = clamped(c);
+      s.evaluate(geometry_);
+      const Ruling found = s.ruling();
+      if (glm::length(s.d()) <= same_contact || depth(found) > geometry_.tie()) return std::nullopt;
+      return found;
+    }
+    s.evaluate(geometry_);
+    start = s;
+  }
+  return std::nullopt;
+}
+
+FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
+                                    const Which& which) const {
+  const dvec3 across = glm::cross(right.n, left.n);
+  for (int k = 0; k < halving_limit * secant_steps; ++k) {
+    const bool halves = k % (secant_steps + 1) == secant_steps;
+    const dvec3 n = halves ? unit(right.n + left.n) : exchange(right, left);
+    if (const auto found = polished(n, {right.contact, left.contact}, across)) {
+      const double way = glm::dot(right.n, left.n);
+      if (glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way) {
+        return {*found, 0};
+      }
+    }
+    if (n == right.n || n == left.n) {
+      if (halves) break;
+      continue;
+    }
+    const SupportingContact there = supporting(n, right.contact);
+    (which(there) == 0 ? right : left) = there;
+  }
+  Ruling r{unit(right.n + left.n), {right.contact, left.contact}, {right.x, left.x}};
+  return {r, depth(r)};
+}
+
+FoundRuling RulingSearch::at(const MapCrossing& crossing) const {
+  const MapCell& cell = map_.cells[std::size_t(crossing.cell)];
+  const auto& [first, second] = crossing.contact;
+  const auto which = [&, from = first, to = second](const SupportingContact& s) {
+    const int contact = int(cell.contact_of(s.n, s.x));
+    // Of contacts in line those on the way before the first are to its side.
+    return (contact - from) * (to - from) <= 0 ? 0 : 1;
+  };
+  const SupportingContact right = supporting(unit(crossing.ends[0]), {});
+  const SupportingContact left = supporting(unit(crossing.ends[1]), right.contact);
+  return bracketed(right, left, which);
+}
+
+std::optional<FoundRuling> RulingSearch::between(const Ruling& from, const Ruling& to) const {
+  const dvec3 n = unit(from.n + to.n);
+  const std::array<dvec3, 2> x = {0.5 * (from.point[0] + to.point[0]),
+                                  0.5 * (from.point[1] + to.point[1])};
+  const dvec3 d = x[0] - x[1];
+  const dvec3 right = unit(d - glm::dot(d, n) * n);
+  const dvec3 across = glm::cross(n, right);
+  std::array<Contact, 2> contacts;
+  for (std::size_t i = 0; i < 2; ++i) {
+    contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
+  }
+  if (const auto found = polished(n, contacts, across)) return FoundRuling{*found, 0};
+  const auto which = [&](const SupportingContact& s) {
+    return glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
+  };
+  const double way = glm::distance(from.n, to.n);
+  for (double width = 1; width <= widest_bracket; width *= 2) {
+    const SupportingContact a = supporting(unit(n + width * way * right), from.contact[0]);
+    const SupportingContact b = supporting(unit(n - width * way * right), from.contact[1]);
+    if (which(a) == 0 && which(b) == 1) return bracketed(a, b, which);
+  }
+  return std::nullopt;
+}
+
+}  // namespace taut

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/decide/map_graph.h"
+
+namespace taut {
+
+/// A point of the model that supports in a direction.
+struct SupportingContact {
+  dvec3 n = dvec3(0.0);
+  Contact contact;  ///< at rest: inside of no straight segment
+  dvec3 x = dvec3(0.0);
+};
+
+/// A ruling, and how far its two contacts are below the supporting plane at most.
+struct FoundRuling {
+  Ruling ruling;
+  double off = 0;
+};
+
+/// Finds rulings between directions in which different contacts support. There is always one: the
+/// support function itself brackets it.
+class RulingSearch {
+ public:
+  /// All must outlive it.
+  RulingSearch(const ContactSystem& system, SupportQuery& query, const DirectionMap& map)
+      : system_(system), geometry_(system.geometry()), query_(query), map_(map) {}
+
+  const ContactSystem& system() const { return system_; }
+  const ContactGeometry& geometry() const { return geometry_; }
+  const DirectionMap& map() const { return map_; }
+  SupportQuery& query() const { return query_; }
+
+  SupportingContact supporting(const dvec3& n, const Contact& hint) const;
+
+  /// Where an arc passes between two cells. By Newton's method with what supports on either side,
+  /// or where that fails by bisection down to rounding.
+  FoundRuling at(const MapCrossing& crossing) const;
+
+  /// Between two rulings of an arc, near the middle of their directions, across the way from the
+  /// one to the other. None if the same contact supports to both sides of it.
+  std::optional<FoundRuling> between(const Ruling& from, const Ruling& to) const;
+
+  /// The ruling with contacts near these, n in the plane across `across`. None if Newton's method
+  /// does not converge, the contacts are one, or others support.
+  std::optional<Ruling> polished(const dvec3& n, const std::array<Contact, 2>& contacts,
+                                 const dvec3& across) const;
+
+  /// How far the contacts are below the supporting plane.
+  double depth(const Ruling& ruling) const;
+
+ private:
+  /// 0 or 1: which of two contacts it is that supports.
+  using Which = std::function<int(const SupportingContact&)>;
+  FoundRuling bracketed(SupportingContact right, SupportingContact left, const Which& which) const;
+
+  const ContactSystem& system_;
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  const DirectionMap& map_;
+};
+
+}  // namespace taut
