@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 #include "taut/bounds/contact_exits.h"
@@ -97,6 +99,16 @@ void ArcSolver::jump(const Ruling& to) {
       std::max(glm::distance(last().point[0], to.point[0]), glm::distance(last().point[1], to.point[1]));
   if (way > search_.map().contact_extent()) {
     unresolved_.push_back({to.n, "rulings between two others are not found"});
+    if (getenv("DBG")) {
+      for (const Ruling* r : {&last(), &to}) {
+        printf("   n %.9f %.9f %.9f depth %.2e:", r->n.x, r->n.y, r->n.z, search_.depth(*r));
+        for (int i = 0; i < 2; ++i)
+          printf(" [i%d k%d e%d %.9f %.9f | %.6f %.6f %.6f]", r->contact[i].instance, int(r->contact[i].kind),
+                 r->contact[i].element, r->contact[i].u, r->contact[i].v, r->point[i].x, r->point[i].y,
+                 r->point[i].z);
+        puts("");
+      }
+    }
   }
   if (are_of_same_elements(last(), to)) return append(to);
   pieces_.push_back({{to}});
@@ -123,6 +135,21 @@ bool ArcSolver::step_over(const Ruling& to) {
   return true;
 }
 
+/// On the way to a ruling the contact moves over the exit.
+bool ArcSolver::leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
+                       const ContactExit& exit) const {
+  const std::optional<CurveTangent> tangent = search_.system().tangent(s, nullptr);
+  if (!tangent) return false;
+  const Ruling& from = last();
+  const double sense = glm::dot(tangent->n, to.n - from.n) +
+                       glm::dot(tangent->x[0], to.point[0] - from.point[0]) +
+                       glm::dot(tangent->x[1], to.point[1] - from.point[1]);
+  const LinearEquation margin = exit_margin(geometry_, s, int(i), exit);
+  double rate = glm::dot(margin.n, tangent->n);
+  for (const std::size_t k : {0u, 1u}) rate += glm::dot(margin.parameter[k], tangent->parameter[k]);
+  return sense * rate < 0;
+}
+
 std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t i,
                                                    const ContactExit& exit) const {
   CommonSupport s(geometry_, last());
@@ -142,7 +169,8 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   found.way = share_of_way(last(), to, found.before);
   if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
   const std::optional<Contact> next = beyond(geometry_, s.contact[i], exit);
-  if (!next || search_.depth(found.before) > geometry_.tie()) return std::nullopt;
+  const bool arrives = next && same_element(*next, to.contact[i]);
+  if (!next || (!arrives && !leaves(s, to, i, exit)) || search_.depth(found.before) > geometry_.tie()) return std::nullopt;
   found.after.contact[i] = *next;
   found.after.point[i] = geometry_.point(*next);
   return found;

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "taut/bounds/contact_exits.h"
 #include "taut/hull/solve/ruling_search.h"
 
 namespace taut {
@@ -34,6 +35,8 @@ class ArcSolver {
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);
   void jump(const Ruling& to);
+  bool leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
+              const ContactExit& exit) const;
   std::optional<Change> change(const Ruling& to, std::size_t i, const ContactExit& exit) const;
 
   const RulingSearch& search_;

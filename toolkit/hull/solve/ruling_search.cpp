@@ -6,6 +6,7 @@
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/joined_elements.h"
 
 namespace taut {
 namespace {
@@ -18,6 +19,8 @@ constexpr int secant_steps = 2;
 constexpr int element_limit = 6;
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_rounding = 1e-9;
+/// Turn, in radians, into a contact's own region.
+constexpr double beside_turn = 1e-6;
 /// How much wider than the way between two rulings a bracket between them may be, at most.
 constexpr double widest_bracket = 8;
 
@@ -26,6 +29,12 @@ bool is_in_element(const Contact& c) {
     return t >= -parameter_rounding && t <= 1 + parameter_rounding;
   };
   return within(c.u) && within(c.v);
+}
+
+/// The contact is on no border of its element.
+bool is_off_borders(const Contact& c) {
+  const auto within = [](double t) { return t > 0 && t < 1; };
+  return c.kind == SourceKind::face && within(c.u) && within(c.v);
 }
 
 /// Where the great arc between two directions passes the plane in which both points are as high;
@@ -89,6 +98,19 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n,
   return std::nullopt;
 }
 
+Ruling RulingSearch::settled(Ruling ruling) const {
+  const dvec3 d = ruling.point[0] - ruling.point[1];
+  const dvec3 right = unit(d - glm::dot(d, ruling.n) * ruling.n);
+  for (const std::size_t i : {0u, 1u}) {
+    const Contact own = geometry_.first(snapped(geometry_, ruling.contact[i], parameter_rounding));
+    if (is_off_borders(own)) continue;
+    const dvec3 beside = unit(ruling.n + (i == 0 ? beside_turn : -beside_turn) * right);
+    const Contact there = geometry_.first(climb(geometry_, own, beside).contact);
+    if (const auto expressed = expressed_in(geometry_, own, there)) ruling.contact[i] = *expressed;
+  }
+  return ruling;
+}
+
 FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
                                     const Which& which) const {
   const dvec3 across = glm::cross(right.n, left.n);
@@ -98,7 +120,7 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
     if (const auto found = polished(n, {right.contact, left.contact}, across)) {
       const double way = glm::dot(right.n, left.n);
       if (glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way) {
-        return {*found, 0};
+        return {settled(*found), 0};
       }
     }
     if (n == right.n || n == left.n) {
@@ -136,7 +158,7 @@ std::optional<FoundRuling> RulingSearch::between(const Ruling& from, const Rulin
   for (std::size_t i = 0; i < 2; ++i) {
     contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
   }
-  if (const auto found = polished(n, contacts, across)) return FoundRuling{*found, 0};
+  if (const auto found = polished(n, contacts, across)) return FoundRuling{settled(*found), 0};
   const auto which = [&](const SupportingContact& s) {
     return glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
   };

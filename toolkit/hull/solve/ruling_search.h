@@ -51,6 +51,10 @@ class RulingSearch {
   std::optional<Ruling> polished(const dvec3& n, const std::array<Contact, 2>& contacts,
                                  const dvec3& across) const;
 
+  /// The ruling with contacts that lie on a border, or where others end, told as ones of the
+  /// element into which their own regions extend.
+  Ruling settled(Ruling ruling) const;
+
   /// How far the contacts are below the supporting plane.
   double depth(const Ruling& ruling) const;
 

@@ -1,6 +1,8 @@
 #include "taut/hull/solve/solved_graph.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/map_graph.h"
 #include "taut/hull/solve/arc_solver.h"
+#include "taut/hull/solve/touching_plane.h"
 #include "taut/hull/trace/arc_pieces.h"
 #include "taut/hull/trace/merging.h"
 
@@ -38,7 +41,14 @@ class GraphSolver {
       }
     }
     planes_ = contact_planes(geometry_, query_);
-    for (const MapGraph::Node& node : told_.nodes) add(node);
+    for (const MapGraph::Node& node : told_.nodes) {
+      if (getenv("DBG")) {
+        printf("node %d facet %d cells %zu ends:\n", int(number_.size()), node.is_facet, node.cells.size());
+        for (int z = 0; z < int(node.cells.size()) && z < 4; ++z) { const MapCell& c = map_.cells[std::size_t(node.cells[z])]; auto d = DirectionMap::corners(c); dvec3 m = unit(d[0]+d[3]); printf("   cell l%d k%d %.6f %.6f %.6f contacts %zu/%d normal %.6f %.6f %.6f\n", c.level, int(c.kind), m.x, m.y, m.z, c.contacts.size(), c.apart, c.normal.x, c.normal.y, c.normal.z); }
+        for (auto& e : node.ends) { const Ruling& r = ruling_at(e); printf("   arc %d end %d of %zu: n %.6f %.6f %.6f", e.arc, e.end, rulings_[e.arc].size(), r.n.x, r.n.y, r.n.z); for (int i = 0; i < 2; ++i) { int j = contact_beside(e, i); printf(" [k%d e%d %.4f %.4f | %.4f %.4f %.4f]", int(r.contact[j].kind), r.contact[j].element, r.contact[j].u, r.contact[j].v, r.point[j].x, r.point[j].y, r.point[j].z);} printf(" depth %.1e\n", search_.depth(r)); }
+      }
+      add(node);
+    }
     for (std::size_t k = 0; k < told_.arcs.size(); ++k) solve(k);
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);
@@ -66,6 +76,15 @@ class GraphSolver {
       if (node.ends.size() != 1) fail(dvec3(0.0), "a node is neither a facet nor a free end");
       return;
     }
+    const std::vector<std::size_t> sides = sides_of(*facet, node);
+    if (sides.size() != node.ends.size()) {
+      fail(facet->n, "not as many arcs leave a facet as it has straight sides");
+      number_.push_back(-1);
+      return;
+    }
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      facet->slots[sides[k]] = {node.ends[k].arc, node.ends[k].end};
+    }
     number_.push_back(int(graph_.nodes.size()));
     graph_.nodes.push_back(std::move(*facet));
   }
@@ -90,33 +109,25 @@ class GraphSolver {
   /// Contacts between arcs that follow each other are its corners.
   std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
     const std::size_t count = node.ends.size();
-    std::vector<std::array<Contact, 2>> candidates;
-    std::vector<dvec3> points;
+    std::vector<Contact> corners;
+    dvec3 n(0.0);
     for (std::size_t k = 0; k < count; ++k) {
       const MapGraph::End& own = node.ends[k];
-      const MapGraph::End& before = node.ends[(k + count - 1) % count];
-      candidates.push_back({ruling_at(own).contact[contact_beside(own, 0)],
-                            ruling_at(before).contact[contact_beside(before, 1)]});
-      points.push_back(ruling_at(own).point[contact_beside(own, 0)]);
+      corners.push_back(ruling_at(own).contact[contact_beside(own, 0)]);
+      n += ruling_at(own).n;
     }
-    const std::array<std::size_t, 3> wide = widest(points);
-    CommonSupport pair;
-    pair.n = ruling_at(node.ends[wide[0]]).n;
-    for (const std::size_t k : {wide[0], wide[1]}) pair.add(geometry_, candidates[k][0]);
-    const auto plane = common_plane(system_, query_, pair, candidates[wide[2]][0]);
-    if (!plane) {
-      fail(pair.n, "the plane of a facet is not found");
-      return std::nullopt;
+    for (const int k : node.cells) {
+      const MapCell& cell = map_.cells[std::size_t(k)];
+      if (cell.has_plane()) n = cell.normal;
+    }
+    const TouchingPlane plane = touching_plane(geometry_, query_, unit(n), corners);
+    if (plane.off() > geometry_.tie()) {
+      if (getenv("DBG")) printf("spread %.2e above %.2e in line %d\n", plane.spread, plane.above, plane.in_line);
+      fail(plane.n, "the contacts of a facet lie in no plane");
     }
     FacetNode facet;
-    facet.n = plane->n;
-    for (const auto& [first, second] : candidates) {
-      const ClimbedContact a = climb(geometry_, first, facet.n);
-      const ClimbedContact b = climb(geometry_, second, facet.n);
-      const ClimbedContact& c = b.h > a.h + geometry_.tie() ? b : a;
-      if (c.h < glm::dot(plane->jet[0].x, facet.n) - geometry_.tie()) {
-        fail(facet.n, "the contacts of a facet lie in no plane");
-      }
+    facet.n = plane.n;
+    for (const ClimbedContact& c : plane.contacts) {
       facet.contacts.push_back(c.contact);
       facet.points.push_back(c.x);
     }
@@ -124,38 +135,33 @@ class GraphSolver {
     return facet;
   }
 
-  static std::array<std::size_t, 3> widest(const std::vector<dvec3>& points) {
-    std::array<std::size_t, 3> best = {0, 1, 2};
-    for (std::size_t k = 1; k < points.size(); ++k) {
-      if (glm::distance(points[k], points[0]) > glm::distance(points[best[1]], points[0])) best[1] = k;
+  /// The side of a facet across which each of the node's arcs leaves: they follow each other as the
+  /// sides do that are not curved.
+  std::vector<std::size_t> sides_of(const FacetNode& facet, const MapGraph::Node& node) const {
+    std::vector<std::size_t> straight;
+    for (std::size_t k = 0; k < facet.points.size(); ++k) {
+      if (!facet.is_curved(k)) straight.push_back(k);
     }
-    double largest = -1;
-    for (std::size_t k = 1; k < points.size(); ++k) {
-      const double area =
-          glm::length(glm::cross(points[k] - points[0], points[best[1]] - points[0]));
-      if (k == best[1] || area <= largest) continue;
-      largest = area;
-      best[2] = k;
-    }
-    return best;
-  }
-
-  /// The side of a facet across which the arc's end leaves: the one between whose corners its
-  /// ruling is.
-  std::size_t side_of(const FacetNode& facet, const MapGraph::End& end) const {
-    const Ruling& r = ruling_at(end);
+    const std::size_t count = node.ends.size();
+    if (straight.size() != count || count == 0) return {};
+    const auto gap = [&](std::size_t end, std::size_t side) {
+      const Ruling& r = ruling_at(node.ends[end]);
+      const dvec3& next = facet.points[(side + 1) % facet.points.size()];
+      return glm::distance(r.point[contact_beside(node.ends[end], 0)], facet.points[side]) +
+             glm::distance(r.point[contact_beside(node.ends[end], 1)], next);
+    };
     std::size_t best = 0;
     double least = infinity;
-    for (std::size_t k = 0; k < facet.points.size(); ++k) {
-      if (facet.is_curved(k)) continue;
-      const dvec3& next = facet.points[(k + 1) % facet.points.size()];
-      const double gap = glm::distance(r.point[contact_beside(end, 0)], facet.points[k]) +
-                         glm::distance(r.point[contact_beside(end, 1)], next);
-      if (gap >= least) continue;
-      least = gap;
-      best = k;
+    for (std::size_t turn = 0; turn < count; ++turn) {
+      double sum = 0;
+      for (std::size_t k = 0; k < count; ++k) sum += gap(k, straight[(k + turn) % count]);
+      if (sum >= least) continue;
+      least = sum;
+      best = turn;
     }
-    return best;
+    std::vector<std::size_t> sides;
+    for (std::size_t k = 0; k < count; ++k) sides.push_back(straight[(k + best) % count]);
+    return sides;
   }
 
   /// The ruling in which an arc begins or ends at a node, with its side; none at free ends.
@@ -164,10 +170,9 @@ class GraphSolver {
     const int number = number_[std::size_t(node)];
     if (number < 0) return std::nullopt;
     FacetNode& facet = graph_.nodes[std::size_t(number)];
-    const std::size_t side = side_of(facet, {arc, end});
+    std::size_t side = 0;
+    while (facet.slots[side].arc != arc || facet.slots[side].end != end) ++side;
     const std::size_t next = (side + 1) % facet.contacts.size();
-    if (facet.slots[side].arc >= 0) fail(facet.n, "two arcs leave a facet across one side");
-    facet.slots[side] = {arc, end};
     Ruling r{facet.n, {facet.contacts[side], facet.contacts[next]},
              {facet.points[side], facet.points[next]}};
     if (end == 1) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/support_query.h"
+
+namespace taut {
+
+/// A plane that several contacts touch.
+struct TouchingPlane {
+  dvec3 n = dvec3(0.0);
+  std::vector<ClimbedContact> contacts;  ///< local maxima of x . n, in the order asked for
+  /// By how much the lowest of them is below the highest, and how much anything is above that.
+  double spread = 0;
+  double above = 0;
+  bool in_line = false;  ///< the contacts tell the plane only up to turns about a line
+
+  double off() const { return std::max(spread, above); }
+};
+
+/// The plane near n that all of the contacts touch, as well as that is possible: Gauss-Newton's
+/// method on their heights as functions of n, which are the contacts' support functions, so that it
+/// converges quadratically where they do have a common plane. Contacts in line leave n where it is
+/// about the line.
+/// @pre two contacts or more
+TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& query, dvec3 n,
+                             const std::vector<Contact>& contacts);
+
+}  // namespace taut
