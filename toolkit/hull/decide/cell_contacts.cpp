@@ -13,11 +13,8 @@ std::array<long long, 3> rounded_direction(const dvec3& d) {
 }
 
 bool CellContacts::is_closed(int k) const {
-  const MapCell& c = cell(k);
-  if (c.kind == MapCellKind::region) return true;
-  // Beside the contacts that are told apart others may all but support.
-  return (c.kind == MapCellKind::arc || c.kind == MapCellKind::in_line) &&
-         c.contacts.size() == std::size_t(c.apart);
+  const MapCellKind kind = cell(k).kind;
+  return kind == MapCellKind::region || kind == MapCellKind::arc || kind == MapCellKind::in_line;
 }
 
 bool CellContacts::is_of_facet(int k) const {
@@ -28,11 +25,7 @@ bool CellContacts::is_of_facet(int k) const {
 
 int CellContacts::winner(int k, const dvec3& d) {
   const bool is_one = cell(k).contacts.size() < 2 || cell(k).kind == MapCellKind::region;
-  return is_one ? 0 : winner(k, d, point(d));
-}
-
-int CellContacts::winner(int k, const dvec3& d, const dvec3& x) const {
-  return int(cell(k).contact_of(d, x));
+  return is_one ? 0 : int(cell(k).told_contact_of(d, point(d)));
 }
 
 std::vector<int> CellContacts::passed(int k, const dvec3& from, const dvec3& to) {

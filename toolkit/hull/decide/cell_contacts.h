@@ -26,16 +26,15 @@ class CellContacts {
 
   /// The contact that supports in a direction.
   int winner(int k, const dvec3& d);
-  /// The same where x supports in it. @pre the cell has contacts
-  int winner(int k, const dvec3& d, const dvec3& x) const;
+
+  /// The point that supports in a direction.
+  const dvec3& point(const dvec3& d);
 
   /// The contacts that support one after the other on the way from one direction to another, both
   /// on a side of the cell. @pre the cell is closed
   std::vector<int> passed(int k, const dvec3& from, const dvec3& to);
 
  private:
-  const dvec3& point(const dvec3& d);
-
   const DirectionMap& map_;
   SupportQuery& query_;
   std::map<std::array<long long, 3>, dvec3> points_;

@@ -43,4 +43,16 @@ std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {
   return farthest_translate(translates, std::size_t(best - contacts.begin()), d);
 }
 
+std::size_t MapCell::told_contact_of(const dvec3& d, const dvec3& x) const {
+  const std::size_t contact = contact_of(d, x);
+  if (int(contact) < apart) return contact;
+  const auto height = [&](const Box& box) {
+    return glm::dot(glm::max(d * box.lower, d * box.upper), dvec3(1.0));
+  };
+  const auto highest = std::max_element(
+      contacts.begin(), contacts.begin() + apart,
+      [&](const Box& a, const Box& b) { return height(a) < height(b); });
+  return std::size_t(highest - contacts.begin());
+}
+
 }  // namespace taut

@@ -62,6 +62,9 @@ struct MapCell {
   bool shares_plane(const MapCell& other, double resolution) const;
   /// Number of the contact that supports in a direction in which x does. @pre there are contacts
   std::size_t contact_of(const dvec3& d, const dvec3& x) const;
+  /// The same of those that are told apart alone: where another one supports these do, too, to
+  /// within the resolution.
+  std::size_t told_contact_of(const dvec3& d, const dvec3& x) const;
 };
 
 }  // namespace taut

@@ -233,7 +233,8 @@ class Weaving {
     return around;
   }
 
-  /// By the angle about the middle of the node's cells.
+  /// As the sides of a convex polygon: by the angle of what leads from the contact to the right of
+  /// the way out over a crossing to that to its left.
   void sort_about(const MapGraph::Node& node, std::vector<int>& around) {
     dvec3 n(0.0);
     for (const int k : node.cells) {
@@ -243,8 +244,9 @@ class Weaving {
     const std::array<dvec3, 2> frame = tangent_frame(unit(n));
     std::map<int, double> angle;
     for (const int c : around) {
-      const dvec3 d = middle(c);
-      angle[c] = std::atan2(glm::dot(d, frame[1]), glm::dot(d, frame[0]));
+      const MapCrossing out = passed(c, end_at(crossing(c), node.cells));
+      const dvec3 side = contacts_.point(out.ends[1]) - contacts_.point(out.ends[0]);
+      angle[c] = std::atan2(glm::dot(side, frame[1]), glm::dot(side, frame[0]));
     }
     std::stable_sort(around.begin(), around.end(),
                      [&](int a, int b) { return angle[a] < angle[b]; });

@@ -104,6 +104,15 @@ Ruling RulingSearch::settled(Ruling ruling) const {
   for (const std::size_t i : {0u, 1u}) {
     const Contact own = geometry_.first(snapped(geometry_, ruling.contact[i], parameter_rounding));
     if (is_off_borders(own)) continue;
+    if (own.kind == SourceKind::vertex) {
+      // It stays there along the curve, be its own region an edge's or not.
+      const dvec3 ahead = beside_turn * glm::cross(ruling.n, right);
+      if (same_element(climb(geometry_, own, unit(ruling.n + ahead)).contact, own) &&
+          same_element(climb(geometry_, own, unit(ruling.n - ahead)).contact, own)) {
+        ruling.contact[i] = own;
+        continue;
+      }
+    }
     const dvec3 beside = unit(ruling.n + (i == 0 ? beside_turn : -beside_turn) * right);
     const Contact there = geometry_.first(climb(geometry_, own, beside).contact);
     if (const auto expressed = expressed_in(geometry_, own, there)) ruling.contact[i] = *expressed;
@@ -138,7 +147,7 @@ FoundRuling RulingSearch::at(const MapCrossing& crossing) const {
   const MapCell& cell = map_.cells[std::size_t(crossing.cell)];
   const auto& [first, second] = crossing.contact;
   const auto which = [&, from = first, to = second](const SupportingContact& s) {
-    const int contact = int(cell.contact_of(s.n, s.x));
+    const int contact = int(cell.told_contact_of(s.n, s.x));
     // Of contacts in line those on the way before the first are to its side.
     return (contact - from) * (to - from) <= 0 ? 0 : 1;
   };
