@@ -9,6 +9,7 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/exit_margins.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
@@ -16,6 +17,10 @@ namespace {
 
 /// Halvings of the way between two rulings, after which they are next to each other.
 constexpr int division_limit = 40;
+/// Divisions of one way, after which its parts are taken as they are.
+constexpr int most_divisions = 100;
+/// Ways that are not divided.
+constexpr double least_way = 1e-6;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
 constexpr double middle_share = 0.1;
 /// Largest turn between neighbours, in radians.
@@ -60,7 +65,10 @@ bool are_vertices(const Ruling& r) {
 ArcSolver::ArcSolver(const RulingSearch& search, const Ruling& first)
     : search_(search), geometry_(search.geometry()), pieces_({ArcPiece{{first}}}) {}
 
-void ArcSolver::go_on(const Ruling& to) { go_on(to, 0); }
+void ArcSolver::go_on(const Ruling& to) {
+  divisions_ = 0;
+  go_on(to, 0);
+}
 
 void ArcSolver::go_on(const Ruling& to, int depth) {
   if (depth == division_limit) return jump(to);
@@ -79,13 +87,14 @@ bool ArcSolver::is_smooth(const Ruling& to) const {
   const std::optional<Ruling> middle = ruling_at_share(search_.system(), last(), to, 0.5);
   if (!middle) return false;
   return gap(*middle, middle_of(last(), to)) <= middle_share * way &&
-         search_.depth(*middle) <= geometry_.tie();
+         search_.depth(*middle) <= search_.map().resolution;
 }
 
 void ArcSolver::divide(const Ruling& to, int depth) {
+  ++divisions_;
   const double way = gap(last(), to);
   const std::optional<FoundRuling> middle = search_.between(last(), to);
-  if (!middle || !(way > same_contact) || gap(last(), middle->ruling) >= way ||
+  if (!middle || !(way > least_way) || divisions_ > most_divisions || gap(last(), middle->ruling) >= way ||
       gap(middle->ruling, to) >= way) {
     return jump(to);
   }
@@ -111,7 +120,18 @@ void ArcSolver::jump(const Ruling& to) {
     }
   }
   if (are_of_same_elements(last(), to)) return append(to);
-  pieces_.push_back({{to}});
+  // Both on the border between their elements, as far as these have one.
+  Ruling before = last();
+  Ruling after = to;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (same_element(before.contact[i], after.contact[i])) continue;
+    move_together(geometry_, before.contact[i], after.contact[i]);
+    before.point[i] = geometry_.point(before.contact[i]);
+    after.point[i] = geometry_.point(after.contact[i]);
+  }
+  append(before);
+  pieces_.push_back({{after}});
+  if (gap(after, to) > 0) append(to);
 }
 
 /// Goes on to the first change of elements on the way.

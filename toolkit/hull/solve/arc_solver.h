@@ -42,6 +42,7 @@ class ArcSolver {
   const RulingSearch& search_;
   const ContactGeometry& geometry_;
   std::vector<ArcPiece> pieces_;
+  int divisions_ = 0;
   std::vector<Unresolved> unresolved_;
 };
 

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "taut/bounds/contact_climb.h"
-#include "taut/hull/contact/contact_planes.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/map_graph.h"
 #include "taut/hull/solve/arc_solver.h"
+#include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/touching_plane.h"
 #include "taut/hull/trace/arc_pieces.h"
 #include "taut/hull/trace/merging.h"
@@ -40,7 +40,6 @@ class GraphSolver {
         if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
       }
     }
-    planes_ = contact_planes(geometry_, query_);
     for (const MapGraph::Node& node : told_.nodes) {
       if (getenv("DBG")) {
         printf("node %d facet %d cells %zu ends:\n", int(number_.size()), node.is_facet, node.cells.size());
@@ -91,15 +90,15 @@ class GraphSolver {
 
   /// A plane with contact along curves.
   std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node) {
-    for (const ContactPlane& plane : planes_) {
-      const bool is_here = std::any_of(node.cells.begin(), node.cells.end(), [&](int k) {
-        const MapCell& cell = map_.cells[std::size_t(k)];
-        return cell.has_plane() && glm::distance(cell.normal, plane.n) < same_plane;
-      });
-      if (!is_here) continue;
-      const auto f = facet_contacts(geometry_, query_, plane.n, {}, plane.pieces);
-      if (!f || !f->is_facet()) continue;
-      FacetNode facet{plane.n, f->contacts, f->points, f->sides, {}};
+    for (const int k : node.cells) {
+      const MapCell& cell = map_.cells[std::size_t(k)];
+      if (!cell.has_plane()) continue;
+      const LevelPieces level = level_pieces(geometry_, query_, cell.normal, map_.resolution);
+      if (level.pieces.empty()) return std::nullopt;
+      const double slack = level.off > geometry_.tie() ? level.off : 0;
+      const auto f = facet_contacts(geometry_, query_, level.n, {}, level.pieces, slack);
+      if (!f || !f->is_facet()) return std::nullopt;
+      FacetNode facet{level.n, f->contacts, f->points, f->sides, {}};
       facet.slots.assign(facet.contacts.size(), {});
       return facet;
     }
@@ -121,7 +120,7 @@ class GraphSolver {
       if (cell.has_plane()) n = cell.normal;
     }
     const TouchingPlane plane = touching_plane(geometry_, query_, unit(n), corners);
-    if (plane.off() > geometry_.tie()) {
+    if (plane.off() > map_.resolution) {
       if (getenv("DBG")) printf("spread %.2e above %.2e in line %d\n", plane.spread, plane.above, plane.in_line);
       fail(plane.n, "the contacts of a facet lie in no plane");
     }
@@ -250,7 +249,6 @@ class GraphSolver {
   const Progress& progress_;
   MapGraph told_;
   std::vector<std::vector<Ruling>> rulings_;  // by arc
-  std::vector<ContactPlane> planes_;
   std::vector<int> number_;  // of a told node in the graph, -1: a free end
   SeparatingGraph graph_;
 };

@@ -1,0 +1,59 @@
+#include "taut/hull/solve/level_pieces.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+/// Width of points, relative to their length, below which they tell no plane.
+constexpr double least_width = 1e-6;
+
+/// The plane's normal that leaves the least squares of distances; n where points are in line.
+dvec3 fitted(const std::vector<dvec3>& points, const dvec3& n) {
+  dvec3 middle(0.0);
+  for (const dvec3& x : points) middle += x / double(points.size());
+  Eigen::Matrix3Xd off(3, Eigen::Index(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const dvec3 x = points[k] - middle;
+    off.col(Eigen::Index(k)) << x.x, x.y, x.z;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(off, Eigen::ComputeThinU);
+  const auto& sizes = svd.singularValues();
+  if (!(sizes[1] > least_width * sizes[0])) return n;
+  const Eigen::Vector3d u = svd.matrixU().col(2);
+  return aligned(unit({u[0], u[1], u[2]}), n);
+}
+
+}  // namespace
+
+LevelPieces level_pieces(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
+                         double depth) {
+  LevelPieces found{n, {}, 0};
+  const double height = query(n).h;
+  std::vector<dvec3> points;
+  const Model& model = geometry.scene().model();
+  for (const int i : geometry.scene().distinct_instances()) {
+    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+    for (int k = 0; k < int(part.pieces().size()); ++k) {
+      const Contact piece{i, SourceKind::edge, k, 0, 0};
+      if (glm::dot(geometry.point(piece), n) < height - depth) continue;
+      if (geometry.is_repeated(piece) || geometry.is_straight(piece)) continue;
+      std::vector<dvec3> own;
+      for (const dvec4& p : geometry.curve(piece).points) own.push_back(euclidean(p));
+      const bool level = std::all_of(own.begin(), own.end(), [&](const dvec3& x) {
+        return glm::dot(x, n) >= height - depth;
+      });
+      if (!level) continue;
+      found.pieces.push_back(piece);
+      points.insert(points.end(), own.begin(), own.end());
+    }
+  }
+  if (found.pieces.empty()) return found;
+  found.n = fitted(points, n);
+  const double top = query(found.n, found.pieces.front()).h;
+  for (const dvec3& x : points) found.off = std::max(found.off, top - glm::dot(x, found.n));
+  return found;
+}
+
+}  // namespace taut
