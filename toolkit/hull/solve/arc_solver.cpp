@@ -9,7 +9,6 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/exit_margins.h"
-#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
@@ -19,6 +18,8 @@ namespace {
 constexpr int division_limit = 40;
 /// Divisions of one way, after which its parts are taken as they are.
 constexpr int most_divisions = 100;
+/// Borders that a contact passes at once.
+constexpr int most_hops = 3;
 /// Ways that are not divided.
 constexpr double least_way = 1e-6;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
@@ -54,6 +55,38 @@ Ruling middle_of(const Ruling& a, const Ruling& b) {
   r.n = 0.5 * (a.n + b.n);
   for (std::size_t i = 0; i < 2; ++i) r.point[i] = 0.5 * (a.point[i] + b.point[i]);
   return r;
+}
+
+/// Borders from one element to another that a contact passes, in each as one of the element before
+/// and one of that beyond. None if there are more than a few between the two.
+std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometry,
+                                                  const Contact& from, const Contact& to) {
+  struct Way {
+    Contact at;
+    std::vector<std::array<Contact, 2>> steps;
+  };
+  const dvec3 aim = geometry.point(to);
+  std::vector<Way> ways = {{from, {}}};
+  for (int hops = 0; hops < most_hops; ++hops) {
+    std::vector<Way> longer;
+    std::optional<Way> best;
+    for (const Way& way : ways) {
+      for (const ContactExit& exit : exits(geometry, way.at)) {
+        const Contact border = at_exit(way.at, exit);
+        const std::optional<Contact> over = beyond(geometry, border, exit);
+        if (!over) continue;
+        Way next = {*over, way.steps};
+        next.steps.push_back({border, *over});
+        const bool nearer = !best || glm::distance(geometry.point(*over), aim) <
+                                         glm::distance(geometry.point(best->at), aim);
+        if (same_element(*over, to) && nearer) best = next;
+        longer.push_back(std::move(next));
+      }
+    }
+    if (best) return best->steps;
+    ways = std::move(longer);
+  }
+  return {};
 }
 
 bool are_vertices(const Ruling& r) {
@@ -120,18 +153,25 @@ void ArcSolver::jump(const Ruling& to) {
     }
   }
   if (are_of_same_elements(last(), to)) return append(to);
-  // Both on the border between their elements, as far as these have one.
-  Ruling before = last();
-  Ruling after = to;
+  // Each contact over the borders between its elements, as far as these have one.
   for (std::size_t i = 0; i < 2; ++i) {
-    if (same_element(before.contact[i], after.contact[i])) continue;
-    move_together(geometry_, before.contact[i], after.contact[i]);
-    before.point[i] = geometry_.point(before.contact[i]);
-    after.point[i] = geometry_.point(after.contact[i]);
+    if (same_element(last().contact[i], to.contact[i])) continue;
+    for (const auto& [from, over] : steps_between(geometry_, last().contact[i], to.contact[i])) {
+      Ruling before = last();
+      before.contact[i] = from;
+      before.point[i] = geometry_.point(from);
+      append(before);
+      Ruling after = before;
+      after.contact[i] = over;
+      after.point[i] = geometry_.point(over);
+      pieces_.push_back({{after}});
+    }
   }
-  append(before);
-  pieces_.push_back({{after}});
-  if (gap(after, to) > 0) append(to);
+  if (!are_of_same_elements(last(), to)) {
+    pieces_.push_back({{to}});
+  } else if (gap(last(), to) > 0) {
+    append(to);
+  }
 }
 
 /// Goes on to the first change of elements on the way.
