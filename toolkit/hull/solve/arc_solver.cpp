@@ -129,6 +129,7 @@ void ArcSolver::divide(const Ruling& to, int depth) {
   const std::optional<FoundRuling> middle = search_.between(last(), to);
   if (!middle || !(way > least_way) || divisions_ > most_divisions || gap(last(), middle->ruling) >= way ||
       gap(middle->ruling, to) >= way) {
+    if (getenv("DBG")) printf("  no middle %d way %g div %d  %g %g\n", middle.has_value(), way, divisions_, middle ? gap(last(), middle->ruling) : 0, middle ? gap(middle->ruling, to) : 0);
     return jump(to);
   }
   go_on(middle->ruling, depth + 1);

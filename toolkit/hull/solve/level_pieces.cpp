@@ -6,6 +6,10 @@
 namespace taut {
 namespace {
 
+/// How much deeper pieces may be below a plane that is not theirs as yet.
+constexpr double first_depths = 4;
+/// How often the plane and its pieces are told from each other.
+constexpr int rounds = 2;
 /// Width of points, relative to their length, below which they tell no plane.
 constexpr double least_width = 1e-6;
 
@@ -25,34 +29,57 @@ dvec3 fitted(const std::vector<dvec3>& points, const dvec3& n) {
   return aligned(unit({u[0], u[1], u[2]}), n);
 }
 
-}  // namespace
+class PieceSearch {
+ public:
+  PieceSearch(const ContactGeometry& geometry, SupportQuery& query)
+      : geometry_(geometry), query_(query) {
+    const Model& model = geometry.scene().model();
+    for (const int i : geometry.scene().distinct_instances()) {
+      const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
+      for (int k = 0; k < int(part.pieces().size()); ++k) {
+        const Contact piece{i, SourceKind::edge, k, 0, 0};
+        if (!geometry.is_repeated(piece) && !geometry.is_straight(piece)) all_.push_back(piece);
+      }
+    }
+  }
 
-LevelPieces level_pieces(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
-                         double depth) {
-  LevelPieces found{n, {}, 0};
-  const double height = query(n).h;
-  std::vector<dvec3> points;
-  const Model& model = geometry.scene().model();
-  for (const int i : geometry.scene().distinct_instances()) {
-    const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
-    for (int k = 0; k < int(part.pieces().size()); ++k) {
-      const Contact piece{i, SourceKind::edge, k, 0, 0};
-      if (glm::dot(geometry.point(piece), n) < height - depth) continue;
-      if (geometry.is_repeated(piece) || geometry.is_straight(piece)) continue;
+  /// Makes the pieces anew, and turns n into their plane.
+  void gather(LevelPieces& found, double depth) const {
+    const double least = query_(found.n).h - depth;
+    found.pieces.clear();
+    std::vector<dvec3> points;
+    for (const Contact& piece : all_) {
+      if (glm::dot(geometry_.point(piece), found.n) < least) continue;
       std::vector<dvec3> own;
-      for (const dvec4& p : geometry.curve(piece).points) own.push_back(euclidean(p));
+      for (const dvec4& p : geometry_.curve(piece).points) own.push_back(euclidean(p));
       const bool level = std::all_of(own.begin(), own.end(), [&](const dvec3& x) {
-        return glm::dot(x, n) >= height - depth;
+        return glm::dot(x, found.n) >= least;
       });
       if (!level) continue;
       found.pieces.push_back(piece);
       points.insert(points.end(), own.begin(), own.end());
     }
+    if (points.empty()) return;
+    found.n = fitted(points, found.n);
+    const double top = query_(found.n, found.pieces.front()).h;
+    found.off = 0;
+    for (const dvec3& x : points) found.off = std::max(found.off, top - glm::dot(x, found.n));
   }
-  if (found.pieces.empty()) return found;
-  found.n = fitted(points, n);
-  const double top = query(found.n, found.pieces.front()).h;
-  for (const dvec3& x : points) found.off = std::max(found.off, top - glm::dot(x, found.n));
+
+ private:
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  std::vector<Contact> all_;
+};
+
+}  // namespace
+
+LevelPieces level_pieces(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
+                         double depth) {
+  LevelPieces found{n, {}, 0};
+  const PieceSearch search(geometry, query);
+  search.gather(found, first_depths * depth);
+  for (int k = 0; k < rounds && !found.pieces.empty(); ++k) search.gather(found, depth);
   return found;
 }
 

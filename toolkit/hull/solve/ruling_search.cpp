@@ -56,6 +56,11 @@ SupportingContact RulingSearch::supporting(const dvec3& n, const Contact& hint) 
   return {n, c, geometry_.point(c)};
 }
 
+SupportingContact RulingSearch::climbed_from(const SupportingContact& s, const dvec3& n) const {
+  const ClimbedContact c = climb(geometry_, s.contact, n);
+  return {n, geometry_.first(c.contact), c.x};
+}
+
 double RulingSearch::depth(const Ruling& ruling) const {
   const double h = query_(ruling.n, ruling.contact[0]).h;
   return h - std::min(glm::dot(ruling.point[0], ruling.n), glm::dot(ruling.point[1], ruling.n));
@@ -136,8 +141,17 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
       if (halves) break;
       continue;
     }
-    const SupportingContact there = supporting(n, right.contact);
-    (which(there) == 0 ? right : left) = there;
+    // What supports on either side goes on there as one of those that support: where others, or
+    // copies, are as high.
+    const SupportingContact top = supporting(n, right.contact);
+    const std::array<SupportingContact, 2> own = {climbed_from(right, n), climbed_from(left, n)};
+    const double h = std::max(glm::dot(own[0].x, n), glm::dot(own[1].x, n));
+    if (h >= glm::dot(top.x, n) - geometry_.tie() &&
+        glm::distance(own[0].x, own[1].x) > map_.contact_extent()) {
+      (glm::dot(own[0].x, n) == h ? right : left) = own[glm::dot(own[0].x, n) == h ? 0 : 1];
+    } else {
+      (which(top) == 0 ? right : left) = top;
+    }
   }
   Ruling r{unit(right.n + left.n), {right.contact, left.contact}, {right.x, left.x}};
   return {r, depth(r)};

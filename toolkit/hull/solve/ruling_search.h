@@ -61,6 +61,7 @@ class RulingSearch {
  private:
   /// 0 or 1: which of two contacts it is that supports.
   using Which = std::function<int(const SupportingContact&)>;
+  SupportingContact climbed_from(const SupportingContact& s, const dvec3& n) const;
   FoundRuling bracketed(SupportingContact right, SupportingContact left, const Which& which) const;
 
   const ContactSystem& system_;

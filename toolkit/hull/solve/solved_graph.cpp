@@ -96,7 +96,15 @@ class GraphSolver {
       const LevelPieces level = level_pieces(geometry_, query_, cell.normal, map_.resolution);
       if (level.pieces.empty()) return std::nullopt;
       const double slack = level.off > geometry_.tie() ? level.off : 0;
-      const auto f = facet_contacts(geometry_, query_, level.n, {}, level.pieces, slack);
+      const double least = query_(level.n).h - std::max(geometry_.tie(), slack);
+      std::vector<Contact> corners;
+      for (const MapGraph::End& end : node.ends) {
+        for (const Contact& c : ruling_at(end).contact) {
+          const ClimbedContact there = climb(geometry_, c, level.n);
+          if (there.h >= least) corners.push_back(there.contact);
+        }
+      }
+      const auto f = facet_contacts(geometry_, query_, level.n, corners, level.pieces, slack);
       if (!f || !f->is_facet()) return std::nullopt;
       FacetNode facet{level.n, f->contacts, f->points, f->sides, {}};
       facet.slots.assign(facet.contacts.size(), {});
