@@ -13,8 +13,10 @@ std::array<long long, 3> rounded_direction(const dvec3& d) {
 }
 
 bool CellContacts::is_closed(int k) const {
-  const MapCellKind kind = cell(k).kind;
-  return kind == MapCellKind::region || kind == MapCellKind::arc || kind == MapCellKind::in_line;
+  const MapCell& c = cell(k);
+  return c.kind == MapCellKind::region || c.kind == MapCellKind::arc ||
+         c.kind == MapCellKind::in_line ||
+         (c.kind == MapCellKind::node && c.contacts.size() == std::size_t(c.apart));
 }
 
 bool CellContacts::is_of_facet(int k) const {

@@ -19,7 +19,7 @@ class CellContacts {
   const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
 
   /// What is inside of the cell is told by its border: it has one contact, or several that are told
-  /// apart and exchange along arcs which pass through.
+  /// apart and exchange along arcs which pass through or, of three contacts, meet once.
   bool is_closed(int k) const;
   /// The cell holds, or may hold, the normal of a plane that more than three contacts touch.
   bool is_of_facet(int k) const;

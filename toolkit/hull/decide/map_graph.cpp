@@ -27,9 +27,9 @@ struct SideCrossing {
   int side;
   int teller;                        // the cell that tells its contacts
   std::array<int, 2> contact;        // towards the side's beginning and its end
-  std::array<int, 2> arc;            // of those of either cell; none that the cell tells
-  std::array<int, 2> next = {none, none};  // crossing beyond either cell, or none: a node
   static constexpr int none = -1;
+  std::array<int, 2> arc = {none, none};   // of those of either cell; none that it tells
+  std::array<int, 2> next = {none, none};  // crossing beyond either cell, or none: a node
 };
 
 class Weaving {
@@ -43,10 +43,10 @@ class Weaving {
 
   MapGraph run() {
     find_sides();
-    join_facets();
     for (int k = 0; k < int(map_.cells.size()); ++k) {
       if (contacts_.is_closed(k)) pass(k);
     }
+    join_facets();
     make_nodes();
     make_arcs();
     drop_arcs_within_facets();
@@ -83,10 +83,11 @@ class Weaving {
     const std::size_t teller = passed[0].size() >= passed[1].size() ? 0 : 1;
     const bool agree = passed[0].size() == passed[1].size();
     for (std::size_t k = 0; k + 1 < passed[teller].size(); ++k) {
-      SideCrossing c{index, own.cell[teller], {passed[teller][k], passed[teller][k + 1]}, {}};
+      SideCrossing c{index, own.cell[teller], {passed[teller][k], passed[teller][k + 1]}};
       for (const std::size_t i : {0u, 1u}) {
-        c.arc[i] = i == teller || agree ? std::min(passed[i][k], passed[i][k + 1])
-                                        : SideCrossing::none;
+        if (i != teller && !agree) continue;
+        const auto [low, high] = std::minmax(passed[i][k], passed[i][k + 1]);
+        c.arc[i] = cell(own.cell[i]).apart * low + high;
       }
       own.crossings.push_back(int(crossings_.size()));
       crossings_.push_back(c);
@@ -100,7 +101,7 @@ class Weaving {
     std::vector<int> facets, others;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
       if (contacts_.is_of_facet(k)) facets.push_back(k);
-      if (cell(k).has_plane()) others.push_back(k);
+      if (cell(k).has_plane() && (!contacts_.is_closed(k) || has_left_over(k))) others.push_back(k);
     }
     for (const int facet : facets) {
       for (const int other : others) {
@@ -155,11 +156,7 @@ class Weaving {
   void make_nodes() {
     std::map<int, std::vector<int>> clusters;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
-      if (!contacts_.is_closed(k)) {
-        clusters[clusters_.find(k)].push_back(k);
-      } else if (has_left_over(k)) {
-        clusters[k] = {k};
-      }
+      if (!contacts_.is_closed(k) || has_left_over(k)) clusters[clusters_.find(k)].push_back(k);
     }
     for (auto& [first, cells] : clusters) {
       MapGraph::Node node;

@@ -29,6 +29,14 @@ dvec3 fitted(const std::vector<dvec3>& points, const dvec3& n) {
   return aligned(unit({u[0], u[1], u[2]}), n);
 }
 
+/// The points are no farther from the segment between the first and the last.
+bool is_straight(const std::vector<dvec3>& points, double distance) {
+  const dvec3 along = unit(points.back() - points.front());
+  return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
+    return glm::length(glm::cross(x - points.front(), along)) <= distance;
+  });
+}
+
 class PieceSearch {
  public:
   PieceSearch(const ContactGeometry& geometry, SupportQuery& query)
@@ -55,7 +63,7 @@ class PieceSearch {
       const bool level = std::all_of(own.begin(), own.end(), [&](const dvec3& x) {
         return glm::dot(x, found.n) >= least;
       });
-      if (!level) continue;
+      if (!level || is_straight(own, depth)) continue;
       found.pieces.push_back(piece);
       points.insert(points.end(), own.begin(), own.end());
     }

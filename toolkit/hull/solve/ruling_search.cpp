@@ -21,6 +21,8 @@ constexpr int element_limit = 6;
 constexpr double parameter_rounding = 1e-9;
 /// Turn, in radians, into a contact's own region.
 constexpr double beside_turn = 1e-6;
+/// How far from a contact another one is like it, as a share of the way to the other contact.
+constexpr double like_share = 0.3;
 /// How much wider than the way between two rulings a bracket between them may be, at most.
 constexpr double widest_bracket = 8;
 
@@ -68,7 +70,7 @@ double RulingSearch::depth(const Ruling& ruling) const {
 
 std::optional<Ruling> RulingSearch::polished(const dvec3& n,
                                              const std::array<Contact, 2>& contacts,
-                                             const dvec3& across) const {
+                                             const dvec3& across, double depth_limit) const {
   CommonSupport start;
   start.n = n;
   for (const Contact& c : contacts) start.add(geometry_, c);
@@ -94,7 +96,7 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n,
       for (Contact& c : s.contact) c = clamped(c);
       s.evaluate(geometry_);
       const Ruling found = s.ruling();
-      if (glm::length(s.d()) <= same_contact || depth(found) > geometry_.tie()) return std::nullopt;
+      if (glm::length(s.d()) <= same_contact || depth(found) > depth_limit) return std::nullopt;
       return found;
     }
     s.evaluate(geometry_);
@@ -131,7 +133,7 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
   for (int k = 0; k < halving_limit * secant_steps; ++k) {
     const bool halves = k % (secant_steps + 1) == secant_steps;
     const dvec3 n = halves ? unit(right.n + left.n) : exchange(right, left);
-    if (const auto found = polished(n, {right.contact, left.contact}, across)) {
+    if (const auto found = polished(n, {right.contact, left.contact}, across, geometry_.tie())) {
       const double way = glm::dot(right.n, left.n);
       if (glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way) {
         return {settled(*found), 0};
@@ -146,24 +148,36 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
     const SupportingContact top = supporting(n, right.contact);
     const std::array<SupportingContact, 2> own = {climbed_from(right, n), climbed_from(left, n)};
     const double h = std::max(glm::dot(own[0].x, n), glm::dot(own[1].x, n));
-    if (h >= glm::dot(top.x, n) - geometry_.tie() &&
-        glm::distance(own[0].x, own[1].x) > map_.contact_extent()) {
-      (glm::dot(own[0].x, n) == h ? right : left) = own[glm::dot(own[0].x, n) == h ? 0 : 1];
+    const bool go_on = h >= glm::dot(top.x, n) - geometry_.tie() &&
+                       glm::distance(own[0].x, own[1].x) > map_.contact_extent();
+    const SupportingContact& there = !go_on ? top : own[glm::dot(own[0].x, n) == h ? 0 : 1];
+    const auto [side, is_like] = which(there);
+    SupportingContact& moved = (go_on ? glm::dot(own[0].x, n) == h : side == 0) ? right : left;
+    // What is like neither is above both by no more than the resolution.
+    if (go_on || is_like) {
+      moved = there;
     } else {
-      (which(top) == 0 ? right : left) = top;
+      moved.n = n;
     }
   }
-  Ruling r{unit(right.n + left.n), {right.contact, left.contact}, {right.x, left.x}};
+  const dvec3 n = unit(right.n + left.n);
+  if (const auto found =
+          polished(n, {right.contact, left.contact}, across, map_.resolution)) {
+    return {*found, depth(*found)};
+  }
+  const Ruling r{n, {right.contact, left.contact}, {right.x, left.x}};
   return {r, depth(r)};
 }
 
 FoundRuling RulingSearch::at(const MapCrossing& crossing) const {
   const MapCell& cell = map_.cells[std::size_t(crossing.cell)];
   const auto& [first, second] = crossing.contact;
-  const auto which = [&, from = first, to = second](const SupportingContact& s) {
+  const Which which = [&, from = first, to = second](const SupportingContact& s) {
     const int contact = int(cell.told_contact_of(s.n, s.x));
     // Of contacts in line those on the way before the first are to its side.
-    return (contact - from) * (to - from) <= 0 ? 0 : 1;
+    const int side = (contact - from) * (to - from) <= 0 ? 0 : 1;
+    const Box& box = cell.contacts[std::size_t(contact)];
+    return Likeness{side, distance(box, s.x) <= map_.contact_extent()};
   };
   const SupportingContact right = supporting(unit(crossing.ends[0]), {});
   const SupportingContact left = supporting(unit(crossing.ends[1]), right.contact);
@@ -181,15 +195,17 @@ std::optional<FoundRuling> RulingSearch::between(const Ruling& from, const Rulin
   for (std::size_t i = 0; i < 2; ++i) {
     contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
   }
-  if (const auto found = polished(n, contacts, across)) return FoundRuling{settled(*found), 0};
-  const auto which = [&](const SupportingContact& s) {
-    return glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
+  if (const auto found = polished(n, contacts, across, geometry_.tie())) return FoundRuling{settled(*found), 0};
+  const Which which = [&](const SupportingContact& s) {
+    const int side = glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
+    const double gap = glm::distance(s.x, x[std::size_t(side)]);
+    return Likeness{side, gap <= like_share * glm::distance(x[0], x[1])};
   };
   const double way = glm::distance(from.n, to.n);
   for (double width = 1; width <= widest_bracket; width *= 2) {
     const SupportingContact a = supporting(unit(n + width * way * right), from.contact[0]);
     const SupportingContact b = supporting(unit(n - width * way * right), from.contact[1]);
-    if (which(a) == 0 && which(b) == 1) return bracketed(a, b, which);
+    if (which(a).side == 0 && which(b).side == 1) return bracketed(a, b, which);
   }
   return std::nullopt;
 }

@@ -47,9 +47,9 @@ class RulingSearch {
   std::optional<FoundRuling> between(const Ruling& from, const Ruling& to) const;
 
   /// The ruling with contacts near these, n in the plane across `across`. None if Newton's method
-  /// does not converge, the contacts are one, or others support.
+  /// does not converge, the contacts are one, or something is higher by more than so much.
   std::optional<Ruling> polished(const dvec3& n, const std::array<Contact, 2>& contacts,
-                                 const dvec3& across) const;
+                                 const dvec3& across, double depth_limit) const;
 
   /// The ruling with contacts that lie on a border, or where others end, told as ones of the
   /// element into which their own regions extend.
@@ -59,8 +59,13 @@ class RulingSearch {
   double depth(const Ruling& ruling) const;
 
  private:
-  /// 0 or 1: which of two contacts it is that supports.
-  using Which = std::function<int(const SupportingContact&)>;
+  /// Which of two contacts supports, 0 or 1, and whether it is that one indeed: where it is neither,
+  /// it is the one to whose side it is, to within the resolution.
+  struct Likeness {
+    int side = 0;
+    bool is_like = true;
+  };
+  using Which = std::function<Likeness(const SupportingContact&)>;
   SupportingContact climbed_from(const SupportingContact& s, const dvec3& n) const;
   FoundRuling bracketed(SupportingContact right, SupportingContact left, const Which& which) const;
 

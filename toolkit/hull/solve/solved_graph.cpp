@@ -78,6 +78,7 @@ class GraphSolver {
     const std::vector<std::size_t> sides = sides_of(*facet, node);
     if (sides.size() != node.ends.size()) {
       fail(facet->n, "not as many arcs leave a facet as it has straight sides");
+      if (getenv("DBG")) { printf("FACET node %zu: %zu corners\n", number_.size(), facet->points.size()); for (std::size_t k = 0; k < facet->points.size(); ++k) printf("    k%d e%d %.6f %.6f side %d | %.6f %.6f %.6f\n", int(facet->contacts[k].kind), facet->contacts[k].element, facet->contacts[k].u, facet->contacts[k].v, facet->is_curved(k) ? facet->sides[k].piece : -1, facet->points[k].x, facet->points[k].y, facet->points[k].z); }
       number_.push_back(-1);
       return;
     }
