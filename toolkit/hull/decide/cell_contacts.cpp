@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace taut {
+namespace {
+
+/// Steps of a search for where two contacts exchange, by the planes of the points on either side.
+constexpr int exchange_steps = 12;
+
+}  // namespace
 
 std::array<long long, 3> rounded_direction(const dvec3& d) {
   const dvec3 n = unit(d);
@@ -38,9 +44,30 @@ std::vector<int> CellContacts::passed(int k, const dvec3& from, const dvec3& to)
     const int step = last < first ? -1 : 1;
     for (int c = first; c != last; c += step) all.push_back(c + step);
   } else if (last != first) {
+    const int between = cell(k).kind == MapCellKind::node ? third(k, from, to) : first;
+    if (between != first) all.push_back(between);
     all.push_back(last);
   }
   return all;
+}
+
+/// Of three contacts the one that supports where those at the ends of a side are as high as each
+/// other; the one at its beginning where none does.
+int CellContacts::third(int k, const dvec3& from, const dvec3& to) {
+  std::array<dvec3, 2> d = {unit(from), unit(to)};
+  const std::array<int, 2> contact = {winner(k, from), winner(k, to)};
+  for (int step = 0; step < exchange_steps; ++step) {
+    const dvec3 apart = point(d[0]) - point(d[1]);
+    const std::array<double, 2> lead = {glm::dot(apart, d[0]), -glm::dot(apart, d[1])};
+    if (!(lead[0] > 0 && lead[1] > 0)) break;
+    const dvec3 n = unit(lead[1] * d[0] + lead[0] * d[1]);
+    const int there = winner(k, n);
+    if (there != contact[0] && there != contact[1]) return there;
+    const double above = glm::dot(point(n) - point(d[0]), n);
+    if (above <= map_.resolution) break;
+    d[there == contact[0] ? 0 : 1] = n;
+  }
+  return contact[0];
 }
 
 /// The point that supports in a direction, which is asked for from several cells.

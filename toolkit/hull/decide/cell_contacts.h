@@ -35,6 +35,8 @@ class CellContacts {
   std::vector<int> passed(int k, const dvec3& from, const dvec3& to);
 
  private:
+  int third(int k, const dvec3& from, const dvec3& to);
+
   const DirectionMap& map_;
   SupportQuery& query_;
   std::map<std::array<long long, 3>, dvec3> points_;

@@ -12,7 +12,7 @@ namespace taut {
 namespace {
 
 /// Halvings of the angle between two directions until they are next to each other.
-constexpr int halving_limit = std::numeric_limits<double>::digits;
+constexpr int bracket_halvings = std::numeric_limits<double>::digits;
 /// Every so often the angle is halved, whatever the contacts' planes tell.
 constexpr int secant_steps = 2;
 /// How often Newton's method begins anew with contacts that have left their elements.
@@ -130,7 +130,7 @@ Ruling RulingSearch::settled(Ruling ruling) const {
 FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
                                     const Which& which) const {
   const dvec3 across = glm::cross(right.n, left.n);
-  for (int k = 0; k < halving_limit * secant_steps; ++k) {
+  for (int k = 0; k < bracket_halvings * secant_steps; ++k) {
     const bool halves = k % (secant_steps + 1) == secant_steps;
     const dvec3 n = halves ? unit(right.n + left.n) : exchange(right, left);
     if (const auto found = polished(n, {right.contact, left.contact}, across, geometry_.tie())) {

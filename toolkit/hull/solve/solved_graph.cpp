@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/hull/contact/facet_contacts.h"
-#include "taut/hull/decide/cell_tree.h"
+#include "taut/hull/decide/cell_contacts.h"
+#include "taut/hull/decide/graph_edits.h"
 #include "taut/hull/decide/map_graph.h"
+#include "taut/hull/decide/top_parts.h"
 #include "taut/hull/solve/arc_solver.h"
 #include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/touching_plane.h"
@@ -28,18 +33,13 @@ class GraphSolver {
         map_(map),
         system_(geometry),
         search_(system_, query, map),
-        progress_(progress) {}
+        progress_(progress),
+        top_parts_(geometry) {}
 
   SeparatingGraph run() {
     told_ = map_graph(map_, query_);
-    for (const MapGraph::Arc& arc : told_.arcs) {
-      progress_.check();
-      std::vector<Ruling>& own = rulings_.emplace_back();
-      for (const MapCrossing& crossing : arc.crossings) {
-        const Ruling r = search_.at(crossing).ruling;
-        if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
-      }
-    }
+    find_rulings();
+    while (drop_shallow_arcs()) find_rulings();
     for (const MapGraph::Node& node : told_.nodes) {
       if (getenv("DBG")) {
         printf("node %d facet %d cells %zu ends:\n", int(number_.size()), node.is_facet, node.cells.size());
@@ -54,6 +54,56 @@ class GraphSolver {
   }
 
  private:
+  /// Those in which the arcs pass from cell to cell.
+  void find_rulings() {
+    rulings_.clear();
+    for (const MapGraph::Arc& arc : told_.arcs) {
+      progress_.check();
+      std::vector<Ruling>& own = rulings_.emplace_back();
+      for (const MapCrossing& crossing : arc.crossings) {
+        const Ruling r = ruling_at(crossing);
+        if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
+      }
+    }
+  }
+
+  const Ruling& ruling_at(const MapCrossing& crossing) {
+    const std::array<dvec3, 2>& d = crossing.ends;
+    const auto [known, is_new] = known_rulings_.try_emplace(
+        {rounded_direction(d[0]), rounded_direction(d[1]), crossing.cell, crossing.contact}, Ruling{});
+    if (is_new) known->second = search_.at(crossing).ruling;
+    return known->second;
+  }
+
+  /// Beside where an arc ends for want of resolution cells may tell contacts apart that are one
+  /// within it: of arcs with an end of that kind those are none whose contacts are nowhere parted
+  /// by more. False if there are none.
+  bool drop_shallow_arcs() {
+    std::set<int> shallow;
+    for (int k = 0; k < int(told_.arcs.size()); ++k) {
+      const MapGraph::Arc& arc = told_.arcs[std::size_t(k)];
+      if (arc.is_closed()) continue;
+      const bool ends_freely = std::any_of(arc.node.begin(), arc.node.end(), [&](int node) {
+        const MapGraph::Node& own = told_.nodes[std::size_t(node)];
+        return own.ends.size() == 1 && !own.is_facet;
+      });
+      if (ends_freely && is_shallow(rulings_[std::size_t(k)])) shallow.insert(k);
+    }
+    if (!shallow.empty()) remove_arcs(told_, map_, shallow);
+    return !shallow.empty();
+  }
+
+  bool is_shallow(const std::vector<Ruling>& rulings) {
+    // In the middle an arc is deepest, mostly.
+    return is_shallow(rulings[rulings.size() / 2]) &&
+           std::all_of(rulings.begin(), rulings.end(),
+                       [&](const Ruling& r) { return is_shallow(r); });
+  }
+  bool is_shallow(const Ruling& r) {
+    return glm::distance(r.point[0], r.point[1]) <= map_.contact_extent() ||
+           top_parts_.hang_together(r.n, r.contact[0], r.contact[1], map_.resolution);
+  }
+
   void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
 
   /// The ruling next to an end of an arc.
@@ -256,7 +306,11 @@ class GraphSolver {
   ContactSystem system_;
   RulingSearch search_;
   const Progress& progress_;
+  TopParts top_parts_;
   MapGraph told_;
+  using CrossingKey = std::tuple<std::array<long long, 3>, std::array<long long, 3>, int,
+                                 std::array<int, 2>>;
+  std::map<CrossingKey, Ruling> known_rulings_;
   std::vector<std::vector<Ruling>> rulings_;  // by arc
   std::vector<int> number_;  // of a told node in the graph, -1: a free end
   SeparatingGraph graph_;

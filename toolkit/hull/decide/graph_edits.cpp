@@ -1,0 +1,165 @@
+#include "taut/hull/decide/graph_edits.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace taut {
+namespace {
+
+class GraphEdit {
+ public:
+  GraphEdit(MapGraph& graph, const DirectionMap& map) : graph_(graph), map_(map) {}
+
+  /// Removes arcs, and nodes that are nothing without them.
+  void drop(const std::set<int>& dropped) {
+    std::vector<int> number(graph_.arcs.size(), -1);
+    std::vector<MapGraph::Arc> arcs;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      if (dropped.count(int(k)) > 0) continue;
+      number[k] = int(arcs.size());
+      arcs.push_back(std::move(graph_.arcs[k]));
+    }
+    graph_.arcs.swap(arcs);
+    std::vector<int> place(graph_.nodes.size(), -1);
+    std::vector<MapGraph::Node> nodes;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      MapGraph::Node& node = graph_.nodes[k];
+      std::erase_if(node.ends,
+                    [&](const MapGraph::End& end) { return number[std::size_t(end.arc)] < 0; });
+      for (MapGraph::End& end : node.ends) end.arc = number[std::size_t(end.arc)];
+      if (node.ends.empty() && !node.is_facet) continue;
+      place[k] = int(nodes.size());
+      nodes.push_back(std::move(node));
+    }
+    graph_.nodes.swap(nodes);
+    for (MapGraph::Arc& arc : graph_.arcs) {
+      for (int& node : arc.node) {
+        if (node >= 0) node = place[std::size_t(node)];
+      }
+    }
+  }
+
+  void join_arcs_that_pass() {
+    std::map<std::pair<int, int>, MapGraph::End> on;
+    std::set<int> passed;
+    for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
+      const MapGraph::Node& node = graph_.nodes[k];
+      if (node.is_facet) continue;
+      std::vector<MapGraph::End> left = node.ends;
+      std::vector<std::pair<MapGraph::End, MapGraph::End>> pairs;
+      for (std::size_t i = 0; i < left.size() && left.size() > 1;) {
+        const std::size_t j = (i + 1) % left.size();
+        if (left.size() > 2 && !go_on(left[i], left[j])) {
+          ++i;
+          continue;
+        }
+        pairs.emplace_back(left[i], left[j]);
+        left.erase(left.begin() + std::ptrdiff_t(std::max(i, j)));
+        left.erase(left.begin() + std::ptrdiff_t(std::min(i, j)));
+        i = 0;
+      }
+      if (!left.empty()) continue;
+      passed.insert(int(k));
+      for (const auto& [a, b] : pairs) {
+        on[{a.arc, a.end}] = b;
+        on[{b.arc, b.end}] = a;
+      }
+    }
+    if (!passed.empty()) join(on, passed);
+  }
+
+ private:
+  /// Between the same contacts: what is to the right of the way out along the one is to the left of
+  /// that along the other.
+  bool go_on(const MapGraph::End& a, const MapGraph::End& b) const {
+    return are_near(contact_beside(a, 0), contact_beside(b, 1)) &&
+           are_near(contact_beside(a, 1), contact_beside(b, 0));
+  }
+  bool are_near(const Box& a, const Box& b) const {
+    const dvec3 gap = box_gaps(a, b);
+    return std::max({gap.x, gap.y, gap.z}) <= map_.resolution;
+  }
+  /// To the right (0) or left of the way out of the node.
+  const Box& contact_beside(const MapGraph::End& end, int side) const {
+    const MapGraph::Arc& arc = graph_.arcs[std::size_t(end.arc)];
+    const MapCrossing& c = end.end == 0 ? arc.crossings.front() : arc.crossings.back();
+    const int contact = c.contact[std::size_t(end.end == 0 ? side : 1 - side)];
+    return cell(c.cell).contacts[std::size_t(contact)];
+  }
+
+  void join(const std::map<std::pair<int, int>, MapGraph::End>& on, const std::set<int>& passed) {
+    std::vector<MapGraph::Arc> before;
+    before.swap(graph_.arcs);
+    std::vector<bool> done(before.size(), false);
+    std::map<std::pair<int, int>, MapGraph::End> ends;  // as they were: as they are
+    const auto follow = [&](MapGraph::End at) {
+      const int index = int(graph_.arcs.size());
+      MapGraph::Arc arc;
+      arc.node[0] = before[std::size_t(at.arc)].node[std::size_t(at.end)];
+      ends[{at.arc, at.end}] = {index, 0};
+      while (!done[std::size_t(at.arc)]) {
+        done[std::size_t(at.arc)] = true;
+        MapGraph::Arc& own = before[std::size_t(at.arc)];
+        if (at.end == 1) reverse(own);
+        arc.crossings.insert(arc.crossings.end(), own.crossings.begin(), own.crossings.end());
+        arc.node[1] = own.node[1];
+        const MapGraph::End out = {at.arc, 1 - at.end};
+        ends[{out.arc, out.end}] = {index, 1};
+        const auto next = on.find({out.arc, out.end});
+        if (next == on.end()) break;
+        at = next->second;
+        arc.node[1] = -1;
+      }
+      if (arc.node[1] < 0) arc.node[0] = -1;
+      graph_.arcs.push_back(std::move(arc));
+    };
+    for (int k = 0; k < int(before.size()); ++k) {
+      for (int end = 0; end < 2; ++end) {
+        if (!done[std::size_t(k)] && on.count({k, end}) == 0) follow({k, end});
+      }
+    }
+    for (int k = 0; k < int(before.size()); ++k) {
+      if (!done[std::size_t(k)]) follow({k, 0});
+    }
+    std::vector<int> place(graph_.nodes.size(), -1);
+    std::vector<MapGraph::Node> nodes;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      if (passed.count(int(k)) > 0) continue;
+      MapGraph::Node& node = graph_.nodes[k];
+      for (MapGraph::End& end : node.ends) end = ends.at({end.arc, end.end});
+      place[k] = int(nodes.size());
+      nodes.push_back(std::move(node));
+    }
+    graph_.nodes.swap(nodes);
+    for (MapGraph::Arc& arc : graph_.arcs) {
+      for (int& node : arc.node) {
+        if (node >= 0) node = place[std::size_t(node)];
+      }
+    }
+  }
+
+  static void reverse(MapGraph::Arc& arc) {
+    std::reverse(arc.crossings.begin(), arc.crossings.end());
+    for (MapCrossing& c : arc.crossings) {
+      std::swap(c.ends[0], c.ends[1]);
+      std::swap(c.contact[0], c.contact[1]);
+    }
+    std::swap(arc.node[0], arc.node[1]);
+  }
+
+  const MapCell& cell(int k) const { return map_.cells[std::size_t(k)]; }
+
+  MapGraph& graph_;
+  const DirectionMap& map_;
+};
+
+}  // namespace
+
+void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs) {
+  GraphEdit edit(graph, map);
+  if (!arcs.empty()) edit.drop(arcs);
+  edit.join_arcs_that_pass();
+}
+
+}  // namespace taut
