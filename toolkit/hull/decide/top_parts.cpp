@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "taut/bounds/contact_exits.h"
 #include "taut/bounds/scene_content.h"
 #include "taut/bounds/vector_net.h"
 #include "taut/core/disjoint_sets.h"
@@ -59,8 +60,41 @@ TopParts::TopParts(const ContactGeometry& geometry) : geometry_(geometry) {
       index_.emplace(place(own), int(parts_.size()));
       parts_.push_back({e.shape, placed_net(content, i, e)});
     }
+    add_edges(i);
   }
   find_bodies();
+}
+
+/// Those of ruled patches alone, which are not looked at.
+void TopParts::add_edges(int instance) {
+  const int count = int(geometry_.part({instance, SourceKind::edge, 0, 0, 0}).pieces().size());
+  for (int k = 0; k < count; ++k) {
+    const Contact own = {instance, SourceKind::edge, k, 0, 0};
+    if (index_.count(place(own)) > 0 || geometry_.is_repeated(own) || geometry_.is_straight(own) ||
+        !geometry_.sides(own).empty()) {
+      continue;
+    }
+    std::vector<dvec4> net = geometry_.curve(own).points;
+    index_.emplace(place(own), int(parts_.size()));
+    parts_.push_back({{int(net.size()) - 1, 0}, std::move(net)});
+  }
+}
+
+/// The part that a contact is on: of a vertex one that ends there.
+int TopParts::part_of(const Contact& c) const {
+  const auto own = index_.find(place(c));
+  if (own != index_.end()) return own->second;
+  if (c.kind == SourceKind::edge) {
+    for (const ContactGeometry::PieceSide& side : geometry_.sides(c)) {
+      const auto patch = index_.find(place(on_side(c, side)));
+      if (patch != index_.end()) return patch->second;
+    }
+  } else if (c.kind == SourceKind::vertex) {
+    for (const Contact& end : piece_ends(geometry_, c)) {
+      if (const int part = part_of(end); part >= 0) return part;
+    }
+  }
+  return -1;
 }
 
 void TopParts::find_bodies() {
@@ -116,11 +150,11 @@ bool TopParts::find(int body, const dvec3& d, double height, double depth,
 
 bool TopParts::hang_together(const dvec3& d, const Contact& a, const Contact& b,
                              double depth) const {
-  const auto own = index_.find(place(a));
-  const auto other = index_.find(place(b));
-  if (own == index_.end() || other == index_.end()) return false;
-  const int body = bodies_[std::size_t(own->second)];
-  if (bodies_[std::size_t(other->second)] != body) return false;
+  const int own = part_of(a);
+  const int other = part_of(b);
+  if (own < 0 || other < 0) return false;
+  const int body = bodies_[std::size_t(own)];
+  if (bodies_[std::size_t(other)] != body) return false;
   const dvec3 x = geometry_.point(a);
   const dvec3 y = geometry_.point(b);
   std::vector<Box> found = {{x, x}, {y, y}};

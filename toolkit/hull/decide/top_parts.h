@@ -9,8 +9,8 @@
 
 namespace taut {
 
-/// What of a model all but touches a plane: parts of patches that are not ruled, and of curves
-/// that are not straight, which may hold contacts of their own. In the scene's frame.
+/// What of a model all but touches a plane: parts of patches that are not ruled, and of edges and
+/// curves that are not straight, which may hold contacts of their own. In the scene's frame.
 class TopParts {
  public:
   explicit TopParts(const ContactGeometry& geometry);
@@ -27,7 +27,9 @@ class TopParts {
   };
   using Place = std::array<int, 3>;  ///< instance, kind, and element
   static Place place(const Contact& c) { return {c.instance, int(c.kind), c.element}; }
+  void add_edges(int instance);
   void find_bodies();
+  int part_of(const Contact& c) const;
   bool find(int body, const dvec3& d, double height, double depth, std::vector<Box>& found) const;
 
   const ContactGeometry& geometry_;

@@ -100,8 +100,8 @@ class GraphSolver {
                        [&](const Ruling& r) { return is_shallow(r); });
   }
   bool is_shallow(const Ruling& r) {
-    return glm::distance(r.point[0], r.point[1]) <= map_.contact_extent() ||
-           top_parts_.hang_together(r.n, r.contact[0], r.contact[1], map_.resolution);
+    if (glm::distance(r.point[0], r.point[1]) <= map_.contact_extent()) return true;
+    return top_parts_.hang_together(r.n, r.contact[0], r.contact[1], map_.resolution);
   }
 
   void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
