@@ -16,6 +16,7 @@
 #include "taut/hull/decide/map_graph.h"
 #include "taut/hull/decide/top_parts.h"
 #include "taut/hull/solve/arc_solver.h"
+#include "taut/hull/solve/edge_places.h"
 #include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/touching_plane.h"
 #include "taut/hull/trace/arc_pieces.h"
@@ -23,6 +24,9 @@
 
 namespace taut {
 namespace {
+
+/// Places on edges that are one, in units of the resolution.
+constexpr double place_depths = 8;
 
 class GraphSolver {
  public:
@@ -49,6 +53,8 @@ class GraphSolver {
       add(node);
     }
     for (std::size_t k = 0; k < told_.arcs.size(); ++k) solve(k);
+    unite_edge_places(geometry_, graph_, place_depths * map_.resolution);
+    for (SeparatingArc& arc : graph_.arcs) drop_empty_pieces(geometry_, arc.pieces);
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);
   }
@@ -269,7 +275,6 @@ class GraphSolver {
       arc.pieces.erase(arc.pieces.begin());
       append(arc.pieces, std::move(first));
     }
-    drop_empty_pieces(geometry_, arc.pieces);
     graph_.arcs.push_back(std::move(arc));
   }
 

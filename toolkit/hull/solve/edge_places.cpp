@@ -1,0 +1,153 @@
+#include "taut/hull/solve/edge_places.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "taut/bounds/contact_exits.h"
+
+namespace taut {
+namespace {
+
+/// Parameters of the places on all edges and seams.
+class EdgePlaces {
+ public:
+  EdgePlaces(const ContactGeometry& geometry, double distance)
+      : geometry_(geometry), distance_(distance) {}
+
+  void add(const Contact& c) {
+    for_each_line(c, [&](const Line& line, double t) {
+      places_[line].try_emplace(t, t);
+      return t;
+    });
+  }
+  void add(const EdgeStretch& s) {
+    if (s.piece < 0) return;
+    for (const double t : {s.from, s.to}) add({s.instance, SourceKind::edge, s.piece, t, 0});
+  }
+
+  /// Places follow each other with less than the distance between them: all are the first one, or
+  /// the line's end that is among them.
+  void unite() {
+    for (auto& [line, places] : places_) {
+      places.try_emplace(0.0, 0.0);
+      places.try_emplace(1.0, 1.0);
+      const double speed = length(line);
+      for (auto first = places.begin(); first != places.end();) {
+        auto last = std::next(first);
+        for (auto before = first; last != places.end(); before = last++) {
+          if ((last->first - before->first) * speed > distance_) break;
+        }
+        double at = first->first;
+        for (auto k = first; k != last; ++k) {
+          if (k->first == 0 || k->first == 1) at = k->first;
+        }
+        for (; first != last; ++first) first->second = at;
+      }
+    }
+  }
+
+  void settle(Contact& c) const {
+    for_each_line(c, [&](const Line& line, double t) { return places_.at(line).at(t); });
+  }
+  void settle(EdgeStretch& s) const {
+    if (s.piece < 0) return;
+    for (double* t : {&s.from, &s.to}) {
+      Contact c{s.instance, SourceKind::edge, s.piece, *t, 0};
+      settle(c);
+      *t = c.u;
+    }
+  }
+
+ private:
+  /// Instance, an edge's piece or -1, a patch or -1, and the patch's side.
+  using Line = std::tuple<int, int, int, int>;
+
+  /// Calls it with the lines that the contact lies on, and its parameter there, which becomes what
+  /// is returned.
+  template <class Contact_, class Visit>
+  void for_each_line(Contact_& c, Visit visit) const {
+    if (c.kind == SourceKind::edge) {
+      set(c.u, visit({c.instance, c.element, -1, 0}, c.u));
+      return;
+    }
+    if (c.kind != SourceKind::face) return;
+    const dvec2 uv = parameters(c);
+    for (const Side side : all_sides) {
+      const double across = along_v(side) ? uv.x : uv.y;
+      if (across != (at_upper_end(side) ? 1 : 0)) continue;
+      const Border& border = geometry_.patch(c).borders[std::size_t(side)];
+      Line line = {c.instance, border.piece, -1, 0};
+      bool reversed = border.piece_reversed;
+      if (border.piece < 0) {
+        const bool first = border.neighbor < 0 ||
+                           std::pair(c.element, side) <=
+                               std::pair(border.neighbor, border.neighbor_side);
+        line = first ? Line{c.instance, -1, c.element, int(side)}
+                     : Line{c.instance, -1, border.neighbor, int(border.neighbor_side)};
+        reversed = !first && border.reversed;
+      }
+      const double t = along_v(side) ? uv.y : uv.x;
+      const double there = visit(line, reversed ? 1 - t : t);
+      set(along_v(side) ? c.v : c.u, reversed ? 1 - there : there);
+    }
+  }
+  static void set(double& t, double to) { t = to; }
+  static void set(const double&, double) {}
+
+  double length(const Line& line) const {
+    const auto& [instance, piece, patch, side] = line;
+    double sum = 0;
+    dvec3 before(0.0);
+    for (int k = 0; k <= chords; ++k) {
+      const double t = double(k) / chords;
+      const dvec3 x = geometry_.point(piece >= 0 ? Contact{instance, SourceKind::edge, piece, t, 0}
+                                                 : on_side(instance, patch, Side(side), t));
+      if (k > 0) sum += glm::distance(x, before);
+      before = x;
+    }
+    return sum;
+  }
+  static constexpr int chords = 8;
+
+  const ContactGeometry& geometry_;
+  double distance_;
+  std::map<Line, std::map<double, double>> places_;  // as they were: as they are
+};
+
+template <class Visit>
+void for_each_end(SeparatingGraph& graph, Visit visit) {
+  for (SeparatingArc& arc : graph.arcs) {
+    for (ArcPiece& piece : arc.pieces) {
+      for (Ruling* r : {&piece.rulings.front(), &piece.rulings.back()}) {
+        for (std::size_t i = 0; i < 2; ++i) visit(r->contact[i], r->point[i]);
+      }
+    }
+  }
+  for (FacetNode& node : graph.nodes) {
+    for (std::size_t k = 0; k < node.contacts.size(); ++k) visit(node.contacts[k], node.points[k]);
+  }
+}
+
+}  // namespace
+
+void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance) {
+  EdgePlaces places(geometry, distance);
+  for_each_end(graph, [&](const Contact& c, const dvec3&) { places.add(c); });
+  for (const FacetNode& node : graph.nodes) {
+    for (const EdgeStretch& s : node.sides) places.add(s);
+  }
+  places.unite();
+  for_each_end(graph, [&](Contact& c, dvec3& x) {
+    const Contact before = c;
+    places.settle(c);
+    if (c.u != before.u || c.v != before.v) x = geometry.point(c);
+  });
+  for (FacetNode& node : graph.nodes) {
+    for (EdgeStretch& s : node.sides) places.settle(s);
+  }
+}
+
+}  // namespace taut

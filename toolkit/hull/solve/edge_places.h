@@ -1,0 +1,13 @@
+#pragma once
+
+#include "taut/bounds/contact_geometry.h"
+#include "taut/hull/trace/separating_graph.h"
+
+namespace taut {
+
+/// Makes places on edges and seams one that are no farther from each other than so much: those in
+/// which pieces of arcs begin and end, corners of facets and ends of their curved sides. Ends of
+/// edges' pieces and of sides, too, are such places. In the scene's frame.
+void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance);
+
+}  // namespace taut
