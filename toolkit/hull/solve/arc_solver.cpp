@@ -106,11 +106,29 @@ void ArcSolver::go_on(const Ruling& to) {
 void ArcSolver::go_on(const Ruling& to, int depth) {
   if (depth == division_limit) return jump(to);
   if (!are_of_same_elements(last(), to)) {
-    if (step_over(to)) return go_on(to, depth + 1);
+    if (stays(to) || step_over(to)) return go_on(to, depth + 1);
     return divide(to, depth);
   }
   if (is_smooth(to)) return append(to);
   divide(to, depth);
+}
+
+/// A contact that is in one place, but told as one of another element, is so from here on.
+bool ArcSolver::stays(const Ruling& to) {
+  Ruling after = last();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool in_face = after.contact[i].kind == SourceKind::face ||
+                         to.contact[i].kind == SourceKind::face;
+    if (in_face || same_element(after.contact[i], to.contact[i]) ||
+        glm::distance(after.point[i], to.point[i]) > search_.map().resolution) {
+      continue;
+    }
+    after.contact[i] = to.contact[i];
+    after.point[i] = to.point[i];
+  }
+  if (are_of_same_elements(after, last())) return false;
+  pieces_.push_back({{after}});
+  return true;
 }
 
 bool ArcSolver::is_smooth(const Ruling& to) const {

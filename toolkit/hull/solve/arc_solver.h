@@ -31,6 +31,7 @@ class ArcSolver {
   const Ruling& last() const { return pieces_.back().rulings.back(); }
   void append(const Ruling& r) { pieces_.back().rulings.push_back(r); }
   void go_on(const Ruling& to, int depth);
+  bool stays(const Ruling& to);
   bool is_smooth(const Ruling& to) const;
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
 
 namespace taut {
 namespace {
@@ -50,7 +51,13 @@ class EdgePlaces {
   }
 
   void settle(Contact& c) const {
-    for_each_line(c, [&](const Line& line, double t) { return places_.at(line).at(t); });
+    for_each_line(c, [&](const Line& line, double t) {
+      const auto places = places_.find(line);
+      const auto place = places == places_.end() ? decltype(places->second.end()){}
+                                                 : places->second.find(t);
+      // That of a line which it has come upon is as it is.
+      return places == places_.end() || place == places->second.end() ? t : place->second;
+    });
   }
   void settle(EdgeStretch& s) const {
     if (s.piece < 0) return;
@@ -135,15 +142,17 @@ void for_each_end(SeparatingGraph& graph, Visit visit) {
 
 void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance) {
   EdgePlaces places(geometry, distance);
-  for_each_end(graph, [&](const Contact& c, const dvec3&) { places.add(c); });
+  for_each_end(graph, [&](Contact& c, const dvec3&) {
+    c = moved_to_border(geometry, c, distance);
+    places.add(c);
+  });
   for (const FacetNode& node : graph.nodes) {
     for (const EdgeStretch& s : node.sides) places.add(s);
   }
   places.unite();
   for_each_end(graph, [&](Contact& c, dvec3& x) {
-    const Contact before = c;
     places.settle(c);
-    if (c.u != before.u || c.v != before.v) x = geometry.point(c);
+    x = geometry.point(c);
   });
   for (FacetNode& node : graph.nodes) {
     for (EdgeStretch& s : node.sides) places.settle(s);

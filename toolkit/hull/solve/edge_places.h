@@ -7,7 +7,9 @@ namespace taut {
 
 /// Makes places on edges and seams one that are no farther from each other than so much: those in
 /// which pieces of arcs begin and end, corners of facets and ends of their curved sides. Ends of
-/// edges' pieces and of sides, too, are such places. In the scene's frame.
+/// edges' pieces and of sides, too, are such places, and contacts so near to them are on them.
+/// (Contacts move along their elements, across the normal: their heights change by the square of
+/// the distance.) In the scene's frame.
 void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance);
 
 }  // namespace taut
