@@ -174,17 +174,20 @@ class GraphSolver {
   std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
     const std::size_t count = node.ends.size();
     std::vector<Contact> corners;
+    std::vector<dvec3> beside;
     dvec3 n(0.0);
     for (std::size_t k = 0; k < count; ++k) {
       const MapGraph::End& own = node.ends[k];
       corners.push_back(ruling_at(own).contact[contact_beside(own, 0)]);
-      n += ruling_at(own).n;
+      beside.push_back(ruling_at(own).n);
+      n += beside.back();
     }
     for (const int k : node.cells) {
       const MapCell& cell = map_.cells[std::size_t(k)];
       if (cell.has_plane()) n = cell.normal;
     }
-    const TouchingPlane plane = touching_plane(geometry_, query_, unit(n), corners);
+    TouchingPlane plane = touching_plane(geometry_, query_, unit(n), corners);
+    if (plane.in_line) plane = turned_to_part(geometry_, query_, plane, beside);
     if (plane.off() > map_.resolution) {
       if (getenv("DBG")) printf("spread %.2e above %.2e in line %d\n", plane.spread, plane.above, plane.in_line);
       fail(plane.n, "the contacts of a facet lie in no plane");

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace taut {
 namespace {
@@ -76,14 +77,86 @@ class PlaneSearch {
   TouchingPlane found_;
 };
 
+/// Turns a plane about the line that its contacts lie in.
+class LineTurn {
+ public:
+  LineTurn(const ContactGeometry& geometry, const TouchingPlane& plane)
+      : geometry_(geometry), plane_(plane) {
+    for (const ClimbedContact& a : plane.contacts) {
+      for (const ClimbedContact& b : plane.contacts) {
+        if (glm::distance(a.x, b.x) > glm::distance(from_, to_)) {
+          from_ = a.x;
+          to_ = b.x;
+        }
+      }
+    }
+    across_ = glm::cross(unit(to_ - from_), plane.n);
+  }
+
+  dvec3 turned(double angle) const {
+    return std::cos(angle) * plane_.n + std::sin(angle) * across_;
+  }
+  double angle(const dvec3& n) const {
+    return std::atan2(glm::dot(n, across_), glm::dot(n, plane_.n));
+  }
+  /// A contact has left the line.
+  bool parts(double angle) const {
+    const dvec3 n = turned(angle);
+    return std::any_of(plane_.contacts.begin(), plane_.contacts.end(), [&](const auto& c) {
+      const dvec3 x = climb(geometry_, c.contact, n).x;
+      return glm::length(glm::cross(x - from_, unit(to_ - from_))) > parted;
+    });
+  }
+  /// Between an angle at which none has and one at which some have.
+  double found(double together, double apart) const {
+    for (int k = 0; k < turn_halvings; ++k) {
+      const double middle = 0.5 * (together + apart);
+      (parts(middle) ? apart : together) = middle;
+    }
+    return together;
+  }
+
+ private:
+  /// In the scene's frame; the distance grows with the angle.
+  static constexpr double parted = 1e-9;
+  static constexpr int turn_halvings = 50;
+
+  const ContactGeometry& geometry_;
+  const TouchingPlane& plane_;
+  dvec3 from_ = dvec3(0.0), to_ = dvec3(0.0);
+  dvec3 across_ = dvec3(0.0);
+};
+
+void find_above(SupportQuery& query, TouchingPlane& plane) {
+  double highest = -infinity;
+  for (const ClimbedContact& c : plane.contacts) highest = std::max(highest, c.h);
+  plane.above = std::max(0.0, query(plane.n, plane.contacts.front().contact).h - highest);
+}
+
 }  // namespace
+
+TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& query,
+                             const TouchingPlane& plane, const std::vector<dvec3>& beside) {
+  const LineTurn turn(geometry, plane);
+  std::optional<double> together, apart;
+  for (const dvec3& n : beside) {
+    const double angle = turn.angle(n);
+    std::optional<double>& own = turn.parts(angle) ? apart : together;
+    if (!own || std::abs(angle) < std::abs(*own)) own = angle;
+  }
+  if (!together || !apart) return plane;
+  std::vector<Contact> contacts;
+  for (const ClimbedContact& c : plane.contacts) contacts.push_back(c.contact);
+  TouchingPlane found =
+      PlaneSearch(geometry, turn.turned(turn.found(*together, *apart)), contacts).run();
+  find_above(query, found);
+  return found;
+}
 
 TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& query, dvec3 n,
                              const std::vector<Contact>& contacts) {
   TouchingPlane plane = PlaneSearch(geometry, n, contacts).run();
-  double highest = -infinity;
-  for (const ClimbedContact& c : plane.contacts) highest = std::max(highest, c.h);
-  plane.above = std::max(0.0, query(plane.n, plane.contacts.front().contact).h - highest);
+  find_above(query, plane);
   return plane;
 }
 

@@ -28,4 +28,9 @@ struct TouchingPlane {
 TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& query, dvec3 n,
                              const std::vector<Contact>& contacts);
 
+/// Of contacts in line, whose plane may turn about the line: the plane at which the first of them
+/// leaves the line, between directions beside it; as it is if none does, or all have.
+TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& query,
+                             const TouchingPlane& plane, const std::vector<dvec3>& beside);
+
 }  // namespace taut
