@@ -73,13 +73,13 @@ std::string wrong_support(const Subject& subject, const Scene& scene, const Hull
 
 }  // namespace
 
-Verdict judged(const Subject& subject, Random& random) {
+Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_options) {
   Verdict verdict;
   const Scene scene(subject.model);
   const Stopwatch watch;
   Hull hull;
   try {
-    hull = convex_hull(scene);
+    hull = convex_hull(scene, hull_options);
   } catch (const HullNotConverged& stop) {
     hull = *stop.best;
   }
@@ -106,13 +106,14 @@ Verdict judged(const Subject& subject, Random& random) {
   return verdict;
 }
 
-Verdict judged(const Natural& natural, Variant variant, Random& random) {
+Verdict judged(const Natural& natural, Variant variant, Random& random,
+               const HullOptions& options) {
   const Natural stored = placed(natural, variant, random);
   Expected expected = stored.expected;
   if (rounds(variant)) expected.accuracy = rounded_measure;
   return judged({stored.cage ? cage_model(*stored.cage) : make_model(stored.shape), expected,
                  stored.shape, stored.cage},
-                random);
+                random, options);
 }
 
 }  // namespace taut_test

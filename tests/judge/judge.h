@@ -5,6 +5,7 @@
 
 #include "expected.h"
 #include "families.h"
+#include "taut/hull/result/hull_options.h"
 #include "taut/surface/model.h"
 
 namespace taut_test {
@@ -37,8 +38,9 @@ struct Subject {
 
 /// Judges the hull of the subject's model. @throws what hulls throw, but for a tolerance that is
 /// not reached
-Verdict judged(const Subject& subject, Random& random);
+Verdict judged(const Subject& subject, Random& random, const taut::HullOptions& options = {});
 /// Judges the hull of a natural model in this variant.
-Verdict judged(const Natural& natural, Variant variant, Random& random);
+Verdict judged(const Natural& natural, Variant variant, Random& random,
+               const taut::HullOptions& options = {});
 
 }  // namespace taut_test

@@ -1,6 +1,7 @@
 // Judges hulls of natural models and of cases: for each family and variant, and each case, a line
 // of how many are closed and verified, of wrong claims and counts, and times.
-//   judge [SEEDS] [NAME | -NAME ...]    5 seeds of all; what has the names, without those after -
+//   judge [SEEDS] [solving] [NAME | -NAME ...]   5 seeds of all; what has the names, without those
+// after -; "solving": by the method that is to take over.
 // A name is a run of whole parts of "families/GROUP/FAMILY/VARIANT" or "cases/GROUP/CASE", as
 // "turned", "gear/float32" or "cases". Cases are sought in the folder "cases" beside that which
 // TAUT_MODELS names.
@@ -23,6 +24,8 @@
 namespace {
 
 using namespace taut_test;  // NOLINT: the judge
+using taut::CurveMethod;
+using taut::HullOptions;
 
 constexpr int exit_wrong = 1, exit_nothing = 2, exit_skipped = 77;
 
@@ -87,19 +90,21 @@ Verdict tried(const std::function<Verdict()>& judge) {
   }
 }
 
-bool judge(const std::string& name, const Family& family, Variant variant, int seeds) {
+bool judge(const std::string& name, const Family& family, Variant variant, int seeds,
+           const HullOptions& options) {
   std::vector<Verdict> verdicts;
   for (int seed = 1; seed <= seeds; ++seed) {
     taut_test::Random random(static_cast<unsigned long>(seed));
     const Natural natural = family.make(random);
-    verdicts.push_back(tried([&] { return judged(natural, variant, random); }));
+    verdicts.push_back(tried([&] { return judged(natural, variant, random, options); }));
   }
   return print(name, verdicts);
 }
 
-bool judge(const std::string& name, const std::filesystem::path& folder, const Case& one) {
+bool judge(const std::string& name, const std::filesystem::path& folder, const Case& one,
+           const HullOptions& options) {
   taut_test::Random random(1);
-  const Verdict verdict = tried([&] { return judged(read_case(folder, one), random); });
+  const Verdict verdict = tried([&] { return judged(read_case(folder, one), random, options); });
   return print(name, {verdict});
 }
 
@@ -112,6 +117,11 @@ int main(int argc, char** argv) {
     seeds = std::max(1, std::atoi(arguments[0].c_str()));
     arguments.erase(arguments.begin());
   }
+  HullOptions options;
+  if (!arguments.empty() && arguments[0] == "solving") {
+    options.curves = CurveMethod::solving;
+    arguments.erase(arguments.begin());
+  }
   const Names names(arguments);
   int asked = 0, skipped = 0;
   bool right = true;
@@ -121,7 +131,7 @@ int main(int argc, char** argv) {
         const std::string name = group.name + "/" + family.name + "/" + name_of(variant);
         if (!names.ask("families/" + name)) continue;
         ++asked;
-        right &= judge(name, family, variant, seeds);
+        right &= judge(name, family, variant, seeds, options);
       }
     }
   }
@@ -132,7 +142,7 @@ int main(int argc, char** argv) {
       if (!names.ask(name)) continue;
       ++asked;
       if (folder) {
-        right &= judge(name, *folder, one);
+        right &= judge(name, *folder, one, options);
       } else {
         ++skipped;
       }

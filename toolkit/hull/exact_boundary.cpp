@@ -5,6 +5,7 @@
 
 #include "taut/core/stopwatch.h"
 #include "taut/hull/compare/map_differences.h"
+#include "taut/hull/solve/solved_graph.h"
 #include "taut/hull/stitch/stitch.h"
 
 namespace taut {
@@ -17,6 +18,24 @@ constexpr long map_candidates_a_patch = 200;
 
 /// Spots that could not be resolved beyond which it does not help to know more.
 constexpr std::size_t few_open_spots = 16;
+
+/// Solved from the map, and stitched.
+HullBoundary solved(const ContactGeometry& geometry, const Culling& culling,
+                    const DirectionMap& directions, const HullOptions& options,
+                    HullStatistics& statistics) {
+  Stopwatch watch;
+  options.progress.update("solve", 0);
+  SupportQuery query(geometry.scene(), options.progress.stop);
+  SeparatingGraph graph = solved_graph(geometry, query, directions, options.progress);
+  statistics.newton_iterations += graph.newton_iterations;
+  statistics.seconds_trace += watch.lap();
+  options.progress.update("stitch", 0);
+  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
+  statistics.seconds_stitch += watch.lap();
+  statistics.support_queries += query.queries();
+  statistics.newton_iterations += query.newton_iterations();
+  return boundary;
+}
 
 /// Traced, with what the map tells or without, and stitched.
 HullBoundary traced(const ContactGeometry& geometry, const Culling& culling,
@@ -95,6 +114,9 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
                             const DirectionMap& directions, const HullOptions& options,
                             HullStatistics& statistics, const std::vector<Sample>& more) {
+  if (options.curves == CurveMethod::solving) {
+    return solved(geometry, culling, directions, options, statistics);
+  }
   if (directions.cells.empty()) return traced(geometry, culling, {}, options, statistics, more);
   // What the map decides need not be searched.
   const auto undecided = directions.statistics.of_kind[std::size_t(MapCellKind::undecided)];

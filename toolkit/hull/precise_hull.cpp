@@ -15,8 +15,9 @@ namespace {
 constexpr int uncovered_rounds = 2;
 constexpr std::size_t few_unresolved = 16;
 
-bool wants_more(const HullBoundary& boundary) {
-  return !boundary.exhausted && boundary.unresolved.size() <= few_unresolved;
+bool wants_more(const HullBoundary& boundary, const HullOptions& options) {
+  return options.curves == CurveMethod::tracing && !boundary.exhausted &&
+         boundary.unresolved.size() <= few_unresolved;
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
     std::vector<Sample> uncovered_samples;
     try {
       Hull hull = boundary_mesh(scene, geometry, boundary, options, &uncovered_samples);
-      if (!uncovered_samples.empty() && round < uncovered_rounds && wants_more(*boundary)) {
+      if (!uncovered_samples.empty() && round < uncovered_rounds && wants_more(*boundary, options)) {
         // The mesh has met faces that were not known: once more, with what it met.
         found.insert(found.end(), uncovered_samples.begin(), uncovered_samples.end());
         statistics += hull.statistics;

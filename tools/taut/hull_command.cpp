@@ -45,6 +45,7 @@ struct HullArguments {
   std::optional<double> relative;
   std::optional<double> tolerance;
   std::optional<double> resolution;
+  std::string curves = "tracing";
   int max_vertices = HullOptions().max_vertices;
   int size = EnvelopeOptions().size;
 };
@@ -419,6 +420,7 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   const double deviation = input.model().deviation_bound();
   options.tolerance = mesh_tolerance(wanted, deviation);
   options.resolution = arguments.resolution;
+  options.curves = arguments.curves == "solving" ? CurveMethod::solving : CurveMethod::tracing;
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
@@ -493,6 +495,10 @@ Command add_hull(CLI::App& parent) {
       ->type_name("T")
       ->excludes(relative);
   add_resolution(app, arguments->resolution);
+  app.add_option("--curves", arguments->curves, "How separating curves are found")
+      ->check(CLI::IsMember({"tracing", "solving"}).description(""))
+      ->type_name("METHOD")
+      ->group("");
   add_integer(app, "--max-vertices", arguments->max_vertices, 4, std::numeric_limits<int>::max(),
               "Vertices after which to give up on the tolerance, default " +
                   number(long(arguments->max_vertices)));

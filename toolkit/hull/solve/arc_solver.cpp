@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "taut/bounds/contact_exits.h"
@@ -147,7 +145,6 @@ void ArcSolver::divide(const Ruling& to, int depth) {
   const std::optional<FoundRuling> middle = search_.between(last(), to);
   if (!middle || !(way > least_way) || divisions_ > most_divisions || gap(last(), middle->ruling) >= way ||
       gap(middle->ruling, to) >= way) {
-    if (getenv("DBG")) printf("  no middle %d way %g div %d  %g %g\n", middle.has_value(), way, divisions_, middle ? gap(last(), middle->ruling) : 0, middle ? gap(middle->ruling, to) : 0);
     return jump(to);
   }
   go_on(middle->ruling, depth + 1);
@@ -160,16 +157,6 @@ void ArcSolver::jump(const Ruling& to) {
       std::max(glm::distance(last().point[0], to.point[0]), glm::distance(last().point[1], to.point[1]));
   if (way > search_.map().contact_extent()) {
     unresolved_.push_back({to.n, "rulings between two others are not found"});
-    if (getenv("DBG")) {
-      for (const Ruling* r : {&last(), &to}) {
-        printf("   n %.9f %.9f %.9f depth %.2e:", r->n.x, r->n.y, r->n.z, search_.depth(*r));
-        for (int i = 0; i < 2; ++i)
-          printf(" [i%d k%d e%d %.9f %.9f | %.6f %.6f %.6f]", r->contact[i].instance, int(r->contact[i].kind),
-                 r->contact[i].element, r->contact[i].u, r->contact[i].v, r->point[i].x, r->point[i].y,
-                 r->point[i].z);
-        puts("");
-      }
-    }
   }
   if (are_of_same_elements(last(), to)) return append(to);
   // Each contact over the borders between its elements, as far as these have one.

@@ -1,8 +1,6 @@
 #include "taut/hull/solve/solved_graph.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -44,14 +42,7 @@ class GraphSolver {
     told_ = map_graph(map_, query_);
     find_rulings();
     while (drop_shallow_arcs()) find_rulings();
-    for (const MapGraph::Node& node : told_.nodes) {
-      if (getenv("DBG")) {
-        printf("node %d facet %d cells %zu ends:\n", int(number_.size()), node.is_facet, node.cells.size());
-        for (int z = 0; z < int(node.cells.size()) && z < 4; ++z) { const MapCell& c = map_.cells[std::size_t(node.cells[z])]; auto d = DirectionMap::corners(c); dvec3 m = unit(d[0]+d[3]); printf("   cell l%d k%d %.6f %.6f %.6f contacts %zu/%d normal %.6f %.6f %.6f\n", c.level, int(c.kind), m.x, m.y, m.z, c.contacts.size(), c.apart, c.normal.x, c.normal.y, c.normal.z); }
-        for (auto& e : node.ends) { const Ruling& r = ruling_at(e); printf("   arc %d end %d of %zu: n %.6f %.6f %.6f", e.arc, e.end, rulings_[e.arc].size(), r.n.x, r.n.y, r.n.z); for (int i = 0; i < 2; ++i) { int j = contact_beside(e, i); printf(" [k%d e%d %.4f %.4f | %.4f %.4f %.4f]", int(r.contact[j].kind), r.contact[j].element, r.contact[j].u, r.contact[j].v, r.point[j].x, r.point[j].y, r.point[j].z);} printf(" depth %.1e\n", search_.depth(r)); }
-      }
-      add(node);
-    }
+    for (const MapGraph::Node& node : told_.nodes) add(node);
     for (std::size_t k = 0; k < told_.arcs.size(); ++k) solve(k);
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution);
     for (SeparatingArc& arc : graph_.arcs) drop_empty_pieces(geometry_, arc.pieces);
@@ -134,7 +125,6 @@ class GraphSolver {
     const std::vector<std::size_t> sides = sides_of(*facet, node);
     if (sides.size() != node.ends.size()) {
       fail(facet->n, "not as many arcs leave a facet as it has straight sides");
-      if (getenv("DBG")) { printf("FACET node %zu: %zu corners\n", number_.size(), facet->points.size()); for (std::size_t k = 0; k < facet->points.size(); ++k) printf("    k%d e%d %.6f %.6f side %d | %.6f %.6f %.6f\n", int(facet->contacts[k].kind), facet->contacts[k].element, facet->contacts[k].u, facet->contacts[k].v, facet->is_curved(k) ? facet->sides[k].piece : -1, facet->points[k].x, facet->points[k].y, facet->points[k].z); }
       number_.push_back(-1);
       return;
     }
@@ -189,7 +179,6 @@ class GraphSolver {
     TouchingPlane plane = touching_plane(geometry_, query_, unit(n), corners);
     if (plane.in_line) plane = turned_to_part(geometry_, query_, plane, beside);
     if (plane.off() > map_.resolution) {
-      if (getenv("DBG")) printf("spread %.2e above %.2e in line %d\n", plane.spread, plane.above, plane.in_line);
       fail(plane.n, "the contacts of a facet lie in no plane");
     }
     FacetNode facet;
