@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "expected.h"
@@ -35,6 +36,8 @@ struct Claim {
   /// The next ruling's of a curve, else the same: between the two these points or others near by
   /// support.
   dvec3 next_n;
+  /// How far it says that they may be below the supporting plane, in model units.
+  double tolerant = 0;
 };
 
 std::vector<Claim> claims_of(const HullBoundary& boundary) {
@@ -44,24 +47,27 @@ std::vector<Claim> claims_of(const HullBoundary& boundary) {
       for (std::size_t k = 0; k < piece.rulings.size(); ++k) {
         const Ruling& r = piece.rulings[k];
         const Ruling& next = piece.rulings[std::min(k + 1, piece.rulings.size() - 1)];
-        result.push_back({r.n, {r.point[0], r.point[1]}, next.n});
+        result.push_back({r.n, {r.point[0], r.point[1]}, next.n, piece.tolerant});
       }
     }
   }
-  std::map<std::array<double, 6>, dvec3> sides;  // of facets, with their normals
+  std::map<std::array<double, 6>, std::pair<dvec3, double>> sides;  // of facets, with normals
   for (const HullFace& face : boundary.faces) {
     if (face.kind != FaceKind::facet) continue;
-    result.push_back({face.n, face.points, face.n});
+    result.push_back({face.n, face.points, face.n, face.tolerant});
     for (std::size_t k = 0; k < face.points.size(); ++k) {
       const dvec3& a = face.points[k];
       const dvec3& b = face.points[(k + 1) % face.points.size()];
-      sides[{a.x, a.y, a.z, b.x, b.y, b.z}] = face.n;
+      sides[{a.x, a.y, a.z, b.x, b.y, b.z}] = {face.n, face.tolerant};
       const auto other = sides.find({b.x, b.y, b.z, a.x, a.y, a.z});
-      if (other != sides.end()) result.push_back({face.n, {a, b}, other->second});
+      if (other == sides.end()) continue;
+      const auto& [next_n, tolerant] = other->second;
+      result.push_back({face.n, {a, b}, next_n, std::max(face.tolerant, tolerant)});
     }
   }
   for (Claim& claim : result) {
     for (dvec3& x : claim.points) x = boundary.frame.to_model(x);
+    claim.tolerant = boundary.frame.length_to_model(claim.tolerant);
   }
   return result;
 }
@@ -145,7 +151,7 @@ std::string wrong_contacts(const HullBoundary& boundary, const Support& support,
     const SupportRange range = support(claim.n);
     for (const dvec3& x : claim.points) {
       const double below = double(range.lower) - glm::dot(x, claim.n);
-      if (below > off) return off_by("a place is surpassed", below / size);
+      if (below > off + claim.tolerant) return off_by("a place is surpassed", below / size);
       const double above = glm::dot(x, claim.n) - double(range.upper);
       if (above > off) return off_by("a place lies outside", above / size);
     }
@@ -160,14 +166,14 @@ std::string wrong_places(const HullBoundary& boundary, const SupportReference& r
   for (const Claim& claim : asked_of(claims, random)) {
     const double h = reference(claim.n).h;
     for (const dvec3& x : claim.points) {
-      const double below = (h - glm::dot(x, claim.n)) / size;
+      const double below = (h - glm::dot(x, claim.n) - claim.tolerant) / size;
       if (below > exact_place) return off_by("a place is surpassed", below);
     }
     for (const double aside : asides) {
       const dvec3 n = unit(claim.n + aside * random_direction(random));
       const double climbed = climbed_from_claims(claims, reference, n, aside);
       const double risen = (reference(n).h - climbed) / size;
-      if (risen > exact_place + beside_place * aside) {
+      if (risen > exact_place + beside_place * aside + claim.tolerant / size) {
         return off_by("beside a place the model rises", risen);
       }
     }

@@ -6,6 +6,7 @@
 #include "taut/core/stopwatch.h"
 #include "taut/hull/compare/map_differences.h"
 #include "taut/hull/solve/solved_graph.h"
+#include "taut/hull/solve/tolerant_places.h"
 #include "taut/hull/stitch/stitch.h"
 
 namespace taut {
@@ -31,6 +32,7 @@ HullBoundary solved(const ContactGeometry& geometry, const Culling& culling,
   statistics.seconds_trace += watch.lap();
   options.progress.update("stitch", 0);
   HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
+  find_tolerant_places(ContactSystem(geometry), query, boundary);
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();

@@ -182,9 +182,10 @@ class Weaving {
     return false;
   }
 
-  /// Which of the two cells at a crossing is among these. @pre one is
+  /// In which of the two cells at a crossing an arc ends that ends in one of these.
   std::size_t end_at(const SideCrossing& c, const std::vector<int>& cells) {
-    return std::binary_search(cells.begin(), cells.end(), side(c.side).cell[0]) ? 0 : 1;
+    const bool is_first = std::binary_search(cells.begin(), cells.end(), side(c.side).cell[0]);
+    return is_first && c.next[0] == SideCrossing::none ? 0 : 1;
   }
 
   /// The crossings of the border of a node that end there, counter-clockwise from outside.
@@ -193,12 +194,19 @@ class Weaving {
     std::map<Key, std::vector<std::vector<int>>> from;  // crossings of a side, by its beginning
     std::map<Key, std::vector<Key>> to;
     std::vector<Key> starts;
+    std::vector<int> within;
     int loops = 0;
     for (const int k : node.cells) {
       for (const int s : sides_of_[std::size_t(k)]) {
         const CrossedSide& own = side(s);
         const bool first = own.cell[0] == k;
         if (std::binary_search(node.cells.begin(), node.cells.end(), own.cell[first ? 1 : 0])) {
+          // Arcs that pass one of its cells may end in another.
+          for (const int c : own.crossings) {
+            const auto& next = crossing(c).next;
+            const bool ends = next[first ? 0 : 1] == SideCrossing::none;
+            if (ends && next[first ? 1 : 0] != SideCrossing::none) within.push_back(c);
+          }
           continue;
         }
         const bool ahead = first == own.first_is_left;
@@ -226,7 +234,8 @@ class Weaving {
         at = next;
       }
     }
-    if (loops > 1) sort_about(node, around);
+    around.insert(around.end(), within.begin(), within.end());
+    if (loops > 1 || !within.empty()) sort_about(node, around);
     return around;
   }
 
@@ -257,7 +266,9 @@ class Weaving {
       }
     }
     for (int c = 0; c < int(crossings_.size()); ++c) {
-      if (!done[std::size_t(c)]) follow(c, 0, done);
+      const auto& next = crossing(c).next;
+      const bool passes = next[0] != SideCrossing::none && next[1] != SideCrossing::none;
+      if (passes && !done[std::size_t(c)]) follow(c, 0, done);
     }
     for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
       MapGraph::Node& node = graph_.nodes[k];

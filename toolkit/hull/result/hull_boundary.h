@@ -24,6 +24,9 @@ struct ArcPiece {
   /// In order, at least two. Where seen from outside of the sphere of directions, those supported
   /// by contact 0 lie to the right, those supported by contact 1 to the left.
   std::vector<Ruling> rulings;
+  /// How far the rulings are below the supporting planes, at most, in the scene's frame; 0: no more
+  /// than rounding makes them.
+  double tolerant = 0;
 };
 
 /// A separating curve between two of its ends: a closed one has none (the last ruling of its last
@@ -130,6 +133,8 @@ struct HullFace {
   /// its sides meet, counter-clockwise from outside, with their points.
   dvec3 n = dvec3(0.0);
   double offset = 0;
+  /// scroll, facet: as ArcPiece::tolerant, of its places with the normals there.
+  double tolerant = 0;
   std::vector<Contact> contacts;
   std::vector<dvec3> points;
   /// facet: per contact the side from it to the next one (the same one again where there is but

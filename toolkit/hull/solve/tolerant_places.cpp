@@ -1,0 +1,78 @@
+#include "taut/hull/solve/tolerant_places.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "taut/hull/contact/rulings_between.h"
+
+namespace taut {
+namespace {
+
+/// Places looked at along a facet's curved side.
+constexpr int side_places = 8;
+
+class TolerantPlaces {
+ public:
+  TolerantPlaces(const ContactSystem& system, SupportQuery& query)
+      : system_(system), geometry_(system.geometry()), query_(query) {}
+
+  double of(const ArcPiece& piece) {
+    double deepest = 0;
+    for (const Ruling& r : piece.rulings) deepest = std::max(deepest, depth(r));
+    if (deepest <= geometry_.tie()) return 0;
+    for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
+      const std::optional<Ruling> middle =
+          ruling_at_share(system_, piece.rulings[k - 1], piece.rulings[k], 0.5);
+      if (middle) deepest = std::max(deepest, depth(*middle));
+    }
+    return deepest;
+  }
+
+  double of(const HullFace& facet) {
+    const double h = query_(facet.n, facet.contacts.front()).h;
+    double deepest = 0;
+    const auto look = [&](const dvec3& x) {
+      deepest = std::max(deepest, h - glm::dot(x, facet.n));
+    };
+    for (const dvec3& x : facet.points) look(x);
+    for (const EdgeStretch& side : facet.sides) {
+      if (side.piece < 0) continue;
+      for (int k = 1; k < side_places; ++k) {
+        const double t = glm::mix(side.from, side.to, double(k) / side_places);
+        look(geometry_.point({side.instance, SourceKind::edge, side.piece, t, 0}));
+      }
+    }
+    return deepest <= geometry_.tie() ? 0 : deepest;
+  }
+
+ private:
+  double depth(const Ruling& r) {
+    const double h = query_(r.n, r.contact[0]).h;
+    return h - std::min(glm::dot(r.point[0], r.n), glm::dot(r.point[1], r.n));
+  }
+
+  const ContactSystem& system_;
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+};
+
+}  // namespace
+
+void find_tolerant_places(const ContactSystem& system, SupportQuery& query,
+                          HullBoundary& boundary) {
+  TolerantPlaces places(system, query);
+  for (SeparatingArc& arc : boundary.arcs) {
+    for (ArcPiece& piece : arc.pieces) piece.tolerant = places.of(piece);
+  }
+  for (HullFace& face : boundary.faces) {
+    if (face.kind == FaceKind::facet && !face.contacts.empty()) face.tolerant = places.of(face);
+    if (face.kind != FaceKind::scroll) continue;
+    const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
+    for (int k = 0; k < face.scroll.count; ++k) {
+      const std::size_t piece = std::size_t(face.scroll.first + k) % pieces.size();
+      face.tolerant = std::max(face.tolerant, pieces[piece].tolerant);
+    }
+  }
+}
+
+}  // namespace taut

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "taut/bounds/support_query.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/result/hull_boundary.h"
+
+namespace taut {
+
+/// Finds out how far arcs, scrolls and facets of a boundary are below the supporting planes with
+/// their normals (ArcPiece::tolerant, HullFace::tolerant), by support queries: at the rulings that
+/// are stored, and where these are farther than rounding makes them between them, too; at the
+/// corners and curved sides of facets. @throws Cancelled
+void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary);
+
+}  // namespace taut
