@@ -22,8 +22,7 @@
 #include "judge/sweeps.h"
 #include "models.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/decide/map_graph.h"
-#include "taut/hull/decide/map_topology.h"
+#include "taut/hull/solve/known_arcs.h"
 #include "taut/surface/resolution.h"
 
 namespace {
@@ -34,8 +33,6 @@ using taut::direction_map;
 using taut::DirectionMap;
 using taut::MapCell;
 using taut::MapCellKind;
-using taut::MapNode;
-using taut::MapTopology;
 using taut::Scene;
 using taut::unit;
 
@@ -167,20 +164,16 @@ std::vector<Known> known_maps() {
 
 void expect_known(const Known& known, const Shape& shape) {
   const Mapped mapped(shape);
-  const MapTopology topology = map_topology(mapped.geometry, mapped.map);
-  int nodes = 0;
-  for (const MapNode& node : topology.nodes) nodes += node.is_facet || node.arcs > 2 ? 1 : 0;
-  EXPECT_EQ(topology.regions, known.regions);
-  EXPECT_EQ(topology.arcs.size(), std::size_t(known.arcs));
-  EXPECT_EQ(nodes, known.nodes);
-  EXPECT_EQ(mapped.map.statistics.of_kind[std::size_t(MapCellKind::undecided)], 0);
   taut::SupportQuery query(mapped.scene);
-  const taut::MapGraph graph = taut::map_graph(mapped.map, query);
-  nodes = 0;
+  const taut::ContactSystem system(mapped.geometry);
+  const taut::RulingSearch search(system, query, mapped.map);
+  const taut::MapGraph graph = taut::known_arcs(search).graph;
+  int nodes = 0;
   for (const auto& node : graph.nodes) nodes += node.is_facet || node.ends.size() > 2 ? 1 : 0;
   EXPECT_EQ(graph.regions(), known.regions);
   EXPECT_EQ(graph.arcs.size(), std::size_t(known.arcs));
   EXPECT_EQ(nodes, known.nodes);
+  EXPECT_EQ(mapped.map.statistics.of_kind[std::size_t(MapCellKind::undecided)], 0);
 }
 
 class KnownMaps : public testing::TestWithParam<Known> {};

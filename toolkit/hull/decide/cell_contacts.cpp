@@ -25,6 +25,11 @@ bool CellContacts::is_closed(int k) const {
          (c.kind == MapCellKind::node && c.contacts.size() == std::size_t(c.apart));
 }
 
+bool CellContacts::has_more(int k) const {
+  const MapCell& c = cell(k);
+  return c.kind == MapCellKind::arc && c.contacts.size() > std::size_t(c.apart);
+}
+
 bool CellContacts::is_of_facet(int k) const {
   const MapCell& c = cell(k);
   return c.kind == MapCellKind::facet ||

@@ -21,6 +21,9 @@ class CellContacts {
   /// What is inside of the cell is told by its border: it has one contact, or several that are told
   /// apart and exchange along arcs which pass through or, of three contacts, meet once.
   bool is_closed(int k) const;
+  /// Beside two contacts others all but support. Which of them are told apart there is as it
+  /// happens: in cells beside it others may be.
+  bool has_more(int k) const;
   /// The cell holds, or may hold, the normal of a plane that more than three contacts touch.
   bool is_of_facet(int k) const;
 

@@ -49,9 +49,9 @@ std::size_t MapCell::told_contact_of(const dvec3& d, const dvec3& x) const {
   const auto height = [&](const Box& box) {
     return glm::dot(glm::max(d * box.lower, d * box.upper), dvec3(1.0));
   };
-  const auto highest = std::max_element(
-      contacts.begin(), contacts.begin() + apart,
-      [&](const Box& a, const Box& b) { return height(a) < height(b); });
+  const auto highest =
+      std::max_element(contacts.begin(), contacts.begin() + apart,
+                       [&](const Box& a, const Box& b) { return height(a) < height(b); });
   return std::size_t(highest - contacts.begin());
 }
 

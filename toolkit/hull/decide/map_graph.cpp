@@ -26,8 +26,8 @@ struct CrossedSide {
 /// Where an arc crosses a side.
 struct SideCrossing {
   int side;
-  int teller;                        // the cell that tells its contacts
-  std::array<int, 2> contact;        // towards the side's beginning and its end
+  int teller;                  // the cell that tells its contacts
+  std::array<int, 2> contact;  // towards the side's beginning and its end
   static constexpr int none = -1;
   std::array<int, 2> arc = {none, none};   // of those of either cell; none that it tells
   std::array<int, 2> next = {none, none};  // crossing beyond either cell, or none: a node
@@ -47,6 +47,8 @@ class Weaving {
     for (int k = 0; k < int(map_.cells.size()); ++k) {
       if (contacts_.is_closed(k)) pass(k);
     }
+    open_cells_that_differ();
+    join_neighbors();
     join_facets();
     make_nodes();
     make_arcs();
@@ -79,7 +81,6 @@ class Weaving {
       if (!contacts_.is_closed(own.cell[i])) continue;
       passed[i] = contacts_.passed(own.cell[i], found.from, found.to);
     }
-    if (passed[0].empty() && passed[1].empty()) clusters_.unite(own.cell[0], own.cell[1]);
     const std::size_t teller = passed[0].size() >= passed[1].size() ? 0 : 1;
     const bool agree = passed[0].size() == passed[1].size();
     for (std::size_t k = 0; k + 1 < passed[teller].size(); ++k) {
@@ -95,13 +96,50 @@ class Weaving {
     sides_.push_back(std::move(own));
   }
 
+  bool is_open(int k) const { return !contacts_.is_closed(k) || opened_.count(k) > 0; }
+  /// Arcs may end in it.
+  bool is_of_node(int k) { return is_open(k) || has_left_over(k); }
+
+  /// Cells of more contacts than they tell apart do not tell what is inside of them where something
+  /// is left over in one of those that hang together.
+  void open_cells_that_differ() {
+    std::vector<int> waiting;
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (contacts_.has_more(k) && has_left_over(k)) waiting.push_back(k);
+    }
+    while (!waiting.empty()) {
+      const int k = waiting.back();
+      waiting.pop_back();
+      if (!opened_.insert(k).second) continue;
+      for (const int s : sides_of_[std::size_t(k)]) {
+        for (const int c : side(s).crossings) {
+          crossing(c).next[number_of(crossing(c), k)] = SideCrossing::none;
+        }
+        for (const int beyond : side(s).cell) {
+          if (contacts_.has_more(beyond)) waiting.push_back(beyond);
+        }
+      }
+    }
+  }
+
+  /// What is left over beside cells that do not tell what is inside of them ends there.
+  void join_neighbors() {
+    std::vector<bool> of_node;
+    for (int k = 0; k < int(map_.cells.size()); ++k) of_node.push_back(is_of_node(k));
+    for (const CrossedSide& s : sides_) {
+      const auto& [a, b] = s.cell;
+      const bool one_is_open = is_open(a) || is_open(b);
+      if (one_is_open && of_node[std::size_t(a)] && of_node[std::size_t(b)]) clusters_.unite(a, b);
+    }
+  }
+
   /// Cells of one facet may touch in a corner only, or have others between them. Three of its
   /// contacts may make a node beside it, or be told apart from the others, which all but support.
   void join_facets() {
     std::vector<int> facets, others;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
       if (contacts_.is_of_facet(k)) facets.push_back(k);
-      if (cell(k).has_plane() && (!contacts_.is_closed(k) || has_left_over(k))) others.push_back(k);
+      if (cell(k).has_plane() && is_of_node(k)) others.push_back(k);
     }
     for (const int facet : facets) {
       for (const int other : others) {
@@ -156,7 +194,7 @@ class Weaving {
   void make_nodes() {
     std::map<int, std::vector<int>> clusters;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
-      if (!contacts_.is_closed(k) || has_left_over(k)) clusters[clusters_.find(k)].push_back(k);
+      if (is_of_node(k)) clusters[clusters_.find(k)].push_back(k);
     }
     for (auto& [first, cells] : clusters) {
       MapGraph::Node node;
@@ -326,12 +364,15 @@ class Weaving {
       const MapGraph::Node& node = graph_.nodes[std::size_t(arc.node[0])];
       if (!node.is_facet) continue;
       double reach = 0;
-      for (const int own : node.cells) reach = std::max(reach, std::ldexp(2.0, 1 - cell(own).level));
-      const bool within = std::all_of(arc.crossings.begin(), arc.crossings.end(), [&](const auto& c) {
-        return std::any_of(node.cells.begin(), node.cells.end(), [&](int own) {
-          return glm::distance(cell(own).normal, unit(unit(c.ends[0]) + unit(c.ends[1]))) <= reach;
-        });
-      });
+      for (const int own : node.cells)
+        reach = std::max(reach, std::ldexp(2.0, 1 - cell(own).level));
+      const bool within =
+          std::all_of(arc.crossings.begin(), arc.crossings.end(), [&](const auto& c) {
+            return std::any_of(node.cells.begin(), node.cells.end(), [&](int own) {
+              return glm::distance(cell(own).normal, unit(unit(c.ends[0]) + unit(c.ends[1]))) <=
+                     reach;
+            });
+          });
       if (within) found.insert(k);
     }
     return found;
@@ -341,12 +382,13 @@ class Weaving {
   CellTree tree_;
   CellContacts contacts_;
   DisjointSets clusters_;
+  std::set<int> opened_;
   std::vector<CrossedSide> sides_;
   std::vector<SideCrossing> crossings_;
-  std::vector<std::vector<int>> sides_of_;  // by cell
-  std::vector<std::vector<int>> around_;    // by node: crossings in order
-  std::map<std::pair<int, int>, int> node_of_;              // by crossing and its cell
-  std::map<std::pair<int, int>, MapGraph::End> end_of_;     // the same
+  std::vector<std::vector<int>> sides_of_;               // by cell
+  std::vector<std::vector<int>> around_;                 // by node: crossings in order
+  std::map<std::pair<int, int>, int> node_of_;           // by crossing and its cell
+  std::map<std::pair<int, int>, MapGraph::End> end_of_;  // the same
   MapGraph graph_;
 };
 

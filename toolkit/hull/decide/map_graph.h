@@ -30,8 +30,8 @@ struct MapCrossing {
 struct MapGraph {
   /// A curve of directions in which two contacts support at once.
   struct Arc {
-    std::vector<MapCrossing> crossings;       ///< in order along it, at least one
-    std::array<int, 2> node = {-1, -1};       ///< in which it begins and ends; none if it is closed
+    std::vector<MapCrossing> crossings;  ///< in order along it, at least one
+    std::array<int, 2> node = {-1, -1};  ///< in which it begins and ends; none if it is closed
     bool is_closed() const { return node[0] < 0; }
   };
   /// An end of an arc: it begins (0) or ends (1) there.

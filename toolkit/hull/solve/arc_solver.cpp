@@ -115,8 +115,8 @@ void ArcSolver::go_on(const Ruling& to, int depth) {
 bool ArcSolver::stays(const Ruling& to) {
   Ruling after = last();
   for (std::size_t i = 0; i < 2; ++i) {
-    const bool in_face = after.contact[i].kind == SourceKind::face ||
-                         to.contact[i].kind == SourceKind::face;
+    const bool in_face =
+        after.contact[i].kind == SourceKind::face || to.contact[i].kind == SourceKind::face;
     if (in_face || same_element(after.contact[i], to.contact[i]) ||
         glm::distance(after.point[i], to.point[i]) > search_.map().resolution) {
       continue;
@@ -143,8 +143,8 @@ void ArcSolver::divide(const Ruling& to, int depth) {
   ++divisions_;
   const double way = gap(last(), to);
   const std::optional<FoundRuling> middle = search_.between(last(), to);
-  if (!middle || !(way > least_way) || divisions_ > most_divisions || gap(last(), middle->ruling) >= way ||
-      gap(middle->ruling, to) >= way) {
+  if (!middle || !(way > least_way) || divisions_ > most_divisions ||
+      gap(last(), middle->ruling) >= way || gap(middle->ruling, to) >= way) {
     return jump(to);
   }
   go_on(middle->ruling, depth + 1);
@@ -153,8 +153,8 @@ void ArcSolver::divide(const Ruling& to, int depth) {
 
 /// The two are neighbours for all that is known.
 void ArcSolver::jump(const Ruling& to) {
-  const double way =
-      std::max(glm::distance(last().point[0], to.point[0]), glm::distance(last().point[1], to.point[1]));
+  const double way = std::max(glm::distance(last().point[0], to.point[0]),
+                              glm::distance(last().point[1], to.point[1]));
   if (way > search_.map().contact_extent()) {
     unresolved_.push_back({to.n, "rulings between two others are not found"});
   }
@@ -221,9 +221,8 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   CommonSupport s(geometry_, last());
   s.contact[i] = at_exit(s.contact[i], exit);
   s.evaluate(geometry_);
-  const bool solved = search_.system().solve(s, [&](const CommonSupport& now) {
-    return exit_margin(geometry_, now, int(i), exit);
-  });
+  const bool solved = search_.system().solve(
+      s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, int(i), exit); });
   if (!solved) return std::nullopt;
   for (Contact& c : s.contact) {
     if (glm::distance(parameters(c), parameters(clamped(c))) > way_slack) return std::nullopt;
@@ -236,7 +235,9 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
   const std::optional<Contact> next = beyond(geometry_, s.contact[i], exit);
   const bool arrives = next && same_element(*next, to.contact[i]);
-  if (!next || (!arrives && !leaves(s, to, i, exit)) || search_.depth(found.before) > geometry_.tie()) return std::nullopt;
+  if (!next || (!arrives && !leaves(s, to, i, exit)) ||
+      search_.depth(found.before) > geometry_.tie())
+    return std::nullopt;
   found.after.contact[i] = *next;
   found.after.point[i] = geometry_.point(*next);
   return found;

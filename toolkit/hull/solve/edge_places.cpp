@@ -53,8 +53,8 @@ class EdgePlaces {
   void settle(Contact& c) const {
     for_each_line(c, [&](const Line& line, double t) {
       const auto places = places_.find(line);
-      const auto place = places == places_.end() ? decltype(places->second.end()){}
-                                                 : places->second.find(t);
+      const auto place =
+          places == places_.end() ? decltype(places->second.end()){} : places->second.find(t);
       // That of a line which it has come upon is as it is.
       return places == places_.end() || place == places->second.end() ? t : place->second;
     });
@@ -89,9 +89,9 @@ class EdgePlaces {
       Line line = {c.instance, border.piece, -1, 0};
       bool reversed = border.piece_reversed;
       if (border.piece < 0) {
-        const bool first = border.neighbor < 0 ||
-                           std::pair(c.element, side) <=
-                               std::pair(border.neighbor, border.neighbor_side);
+        const bool first =
+            border.neighbor < 0 ||
+            std::pair(c.element, side) <= std::pair(border.neighbor, border.neighbor_side);
         line = first ? Line{c.instance, -1, c.element, int(side)}
                      : Line{c.instance, -1, border.neighbor, int(border.neighbor_side)};
         reversed = !first && border.reversed;

@@ -60,9 +60,8 @@ class PieceSearch {
       if (glm::dot(geometry_.point(piece), found.n) < least) continue;
       std::vector<dvec3> own;
       for (const dvec4& p : geometry_.curve(piece).points) own.push_back(euclidean(p));
-      const bool level = std::all_of(own.begin(), own.end(), [&](const dvec3& x) {
-        return glm::dot(x, found.n) >= least;
-      });
+      const bool level = std::all_of(own.begin(), own.end(),
+                                     [&](const dvec3& x) { return glm::dot(x, found.n) >= least; });
       if (!level || is_straight(own, depth)) continue;
       found.pieces.push_back(piece);
       points.insert(points.end(), own.begin(), own.end());

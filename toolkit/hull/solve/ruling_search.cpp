@@ -68,8 +68,7 @@ double RulingSearch::depth(const Ruling& ruling) const {
   return h - std::min(glm::dot(ruling.point[0], ruling.n), glm::dot(ruling.point[1], ruling.n));
 }
 
-std::optional<Ruling> RulingSearch::polished(const dvec3& n,
-                                             const std::array<Contact, 2>& contacts,
+std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Contact, 2>& contacts,
                                              const dvec3& across, double depth_limit) const {
   CommonSupport start;
   start.n = n;
@@ -161,8 +160,7 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
     }
   }
   const dvec3 n = unit(right.n + left.n);
-  if (const auto found =
-          polished(n, {right.contact, left.contact}, across, map_.resolution)) {
+  if (const auto found = polished(n, {right.contact, left.contact}, across, map_.resolution)) {
     return {*found, depth(*found)};
   }
   const Ruling r{n, {right.contact, left.contact}, {right.x, left.x}};
@@ -195,7 +193,8 @@ std::optional<FoundRuling> RulingSearch::between(const Ruling& from, const Rulin
   for (std::size_t i = 0; i < 2; ++i) {
     contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
   }
-  if (const auto found = polished(n, contacts, across, geometry_.tie())) return FoundRuling{settled(*found), 0};
+  if (const auto found = polished(n, contacts, across, geometry_.tie()))
+    return FoundRuling{settled(*found), 0};
   const Which which = [&](const SupportingContact& s) {
     const int side = glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
     const double gap = glm::distance(s.x, x[std::size_t(side)]);

@@ -59,8 +59,8 @@ class RulingSearch {
   double depth(const Ruling& ruling) const;
 
  private:
-  /// Which of two contacts supports, 0 or 1, and whether it is that one indeed: where it is neither,
-  /// it is the one to whose side it is, to within the resolution.
+  /// Which of two contacts supports, 0 or 1, and whether it is that one indeed: where it is
+  /// neither, it is the one to whose side it is, to within the resolution.
   struct Likeness {
     int side = 0;
     bool is_like = true;

@@ -1,20 +1,14 @@
 #include "taut/hull/solve/solved_graph.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
-#include <set>
-#include <tuple>
 #include <utility>
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/hull/contact/facet_contacts.h"
-#include "taut/hull/decide/cell_contacts.h"
-#include "taut/hull/decide/graph_edits.h"
-#include "taut/hull/decide/map_graph.h"
-#include "taut/hull/decide/top_parts.h"
 #include "taut/hull/solve/arc_solver.h"
 #include "taut/hull/solve/edge_places.h"
+#include "taut/hull/solve/known_arcs.h"
 #include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/touching_plane.h"
 #include "taut/hull/trace/arc_pieces.h"
@@ -36,14 +30,11 @@ class GraphSolver {
         system_(geometry),
         search_(system_, query, map),
         progress_(progress),
-        top_parts_(geometry) {}
+        known_(known_arcs(search_, progress)) {}
 
   SeparatingGraph run() {
-    told_ = map_graph(map_, query_);
-    find_rulings();
-    while (drop_shallow_arcs()) find_rulings();
-    for (const MapGraph::Node& node : told_.nodes) add(node);
-    for (std::size_t k = 0; k < told_.arcs.size(); ++k) solve(k);
+    for (const MapGraph::Node& node : known_.graph.nodes) add(node);
+    for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution);
     for (SeparatingArc& arc : graph_.arcs) drop_empty_pieces(geometry_, arc.pieces);
     graph_.newton_iterations = system_.iterations();
@@ -51,61 +42,11 @@ class GraphSolver {
   }
 
  private:
-  /// Those in which the arcs pass from cell to cell.
-  void find_rulings() {
-    rulings_.clear();
-    for (const MapGraph::Arc& arc : told_.arcs) {
-      progress_.check();
-      std::vector<Ruling>& own = rulings_.emplace_back();
-      for (const MapCrossing& crossing : arc.crossings) {
-        const Ruling r = ruling_at(crossing);
-        if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
-      }
-    }
-  }
-
-  const Ruling& ruling_at(const MapCrossing& crossing) {
-    const std::array<dvec3, 2>& d = crossing.ends;
-    const auto [known, is_new] = known_rulings_.try_emplace(
-        {rounded_direction(d[0]), rounded_direction(d[1]), crossing.cell, crossing.contact}, Ruling{});
-    if (is_new) known->second = search_.at(crossing).ruling;
-    return known->second;
-  }
-
-  /// Beside where an arc ends for want of resolution cells may tell contacts apart that are one
-  /// within it: of arcs with an end of that kind those are none whose contacts are nowhere parted
-  /// by more. False if there are none.
-  bool drop_shallow_arcs() {
-    std::set<int> shallow;
-    for (int k = 0; k < int(told_.arcs.size()); ++k) {
-      const MapGraph::Arc& arc = told_.arcs[std::size_t(k)];
-      if (arc.is_closed()) continue;
-      const bool ends_freely = std::any_of(arc.node.begin(), arc.node.end(), [&](int node) {
-        const MapGraph::Node& own = told_.nodes[std::size_t(node)];
-        return own.ends.size() == 1 && !own.is_facet;
-      });
-      if (ends_freely && is_shallow(rulings_[std::size_t(k)])) shallow.insert(k);
-    }
-    if (!shallow.empty()) remove_arcs(told_, map_, shallow);
-    return !shallow.empty();
-  }
-
-  bool is_shallow(const std::vector<Ruling>& rulings) {
-    // In the middle an arc is deepest, mostly.
-    return is_shallow(rulings[rulings.size() / 2]) &&
-           std::all_of(rulings.begin(), rulings.end(),
-                       [&](const Ruling& r) { return is_shallow(r); });
-  }
-  bool is_shallow(const Ruling& r) {
-    if (glm::distance(r.point[0], r.point[1]) <= map_.contact_extent()) return true;
-    return top_parts_.hang_together(r.n, r.contact[0], r.contact[1], map_.resolution);
-  }
-
   void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
 
   /// The ruling next to an end of an arc.
   const Ruling& ruling_at(const MapGraph::End& end) const {
-    const std::vector<Ruling>& own = rulings_[std::size_t(end.arc)];
+    const std::vector<Ruling>& own = known_.rulings[std::size_t(end.arc)];
     return end.end == 0 ? own.front() : own.back();
   }
   /// Its contact to the right (0) or left of the way out of the node.
@@ -222,14 +163,15 @@ class GraphSolver {
 
   /// The ruling in which an arc begins or ends at a node, with its side; none at free ends.
   std::optional<Ruling> plug(int arc, int end) {
-    const int node = told_.arcs[std::size_t(arc)].node[std::size_t(end)];
+    const int node = known_.graph.arcs[std::size_t(arc)].node[std::size_t(end)];
     const int number = number_[std::size_t(node)];
     if (number < 0) return std::nullopt;
     FacetNode& facet = graph_.nodes[std::size_t(number)];
     std::size_t side = 0;
     while (facet.slots[side].arc != arc || facet.slots[side].end != end) ++side;
     const std::size_t next = (side + 1) % facet.contacts.size();
-    Ruling r{facet.n, {facet.contacts[side], facet.contacts[next]},
+    Ruling r{facet.n,
+             {facet.contacts[side], facet.contacts[next]},
              {facet.points[side], facet.points[next]}};
     if (end == 1) {
       std::swap(r.contact[0], r.contact[1]);
@@ -240,8 +182,8 @@ class GraphSolver {
 
   void solve(std::size_t k) {
     progress_.check();
-    const MapGraph::Arc& told = told_.arcs[k];
-    std::vector<Ruling> known = rulings_[k];
+    const MapGraph::Arc& told = known_.graph.arcs[k];
+    std::vector<Ruling> known = known_.rulings[k];
     SeparatingArc arc;
     arc.closed = told.is_closed();
     std::array<bool, 2> merges = {false, false};
@@ -276,9 +218,8 @@ class GraphSolver {
     CommonSupport last(geometry_, pieces.back().rulings.back());
     for (double length = glm::length(last.d()); length > merging_distance(geometry_); length /= 2) {
       CommonSupport next = last;
-      const bool solved = system_.solve(next, [&](const CommonSupport& s) {
-        return distance_equation(s, 0.5 * length);
-      });
+      const bool solved = system_.solve(
+          next, [&](const CommonSupport& s) { return distance_equation(s, 0.5 * length); });
       if (!solved) break;
       ArcSolver solver(search_, pieces.back().rulings.back());
       solver.go_on(next.ruling());
@@ -303,12 +244,7 @@ class GraphSolver {
   ContactSystem system_;
   RulingSearch search_;
   const Progress& progress_;
-  TopParts top_parts_;
-  MapGraph told_;
-  using CrossingKey = std::tuple<std::array<long long, 3>, std::array<long long, 3>, int,
-                                 std::array<int, 2>>;
-  std::map<CrossingKey, Ruling> known_rulings_;
-  std::vector<std::vector<Ruling>> rulings_;  // by arc
+  const KnownArcs known_;
   std::vector<int> number_;  // of a told node in the graph, -1: a free end
   SeparatingGraph graph_;
 };

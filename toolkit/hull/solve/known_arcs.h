@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/core/progress.h"
+#include "taut/hull/decide/map_graph.h"
+#include "taut/hull/solve/ruling_search.h"
+
+namespace taut {
+
+/// The arcs that a direction map tells, each with the rulings in which it passes from cell to cell.
+struct KnownArcs {
+  MapGraph graph;
+  std::vector<std::vector<Ruling>> rulings;  ///< by arc, in order, one at least
+};
+
+/// Finds them. Beside where an arc ends for want of resolution cells may tell contacts apart that
+/// are one within it: arcs with an end of that kind, nowhere along which more than the resolution
+/// is between the two contacts, are left out. @throws Cancelled
+KnownArcs known_arcs(const RulingSearch& search, const Progress& progress = {});
+
+}  // namespace taut
