@@ -45,6 +45,7 @@ const std::map<std::string, Rooms> rooms_of = {
          {"cull", {"contact"}},
          {"decide", {"result"}},
          {"trace", {"cull", "decide"}},
+         {"solve", {"trace"}},
          {"stitch", {"trace"}},
          {"sample", {"polytope"}},
          {"mesh", {"sample", "stitch"}},

@@ -48,7 +48,8 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
     std::vector<Sample> uncovered_samples;
     try {
       Hull hull = boundary_mesh(scene, geometry, boundary, options, &uncovered_samples);
-      if (!uncovered_samples.empty() && round < uncovered_rounds && wants_more(*boundary, options)) {
+      if (!uncovered_samples.empty() && round < uncovered_rounds &&
+          wants_more(*boundary, options)) {
         // The mesh has met faces that were not known: once more, with what it met.
         found.insert(found.end(), uncovered_samples.begin(), uncovered_samples.end());
         statistics += hull.statistics;

@@ -44,8 +44,8 @@ std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {
 }
 
 std::size_t MapCell::told_contact_of(const dvec3& d, const dvec3& x) const {
-  const std::size_t contact = contact_of(d, x);
-  if (int(contact) < apart) return contact;
+  const std::size_t nearest = contact_of(d, x);
+  if (int(nearest) < apart) return nearest;
   const auto height = [&](const Box& box) {
     return glm::dot(glm::max(d * box.lower, d * box.upper), dvec3(1.0));
   };

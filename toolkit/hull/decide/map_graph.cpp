@@ -124,8 +124,8 @@ class Weaving {
 
   /// What is left over beside cells that do not tell what is inside of them ends there.
   void join_neighbors() {
-    std::vector<bool> of_node;
-    for (int k = 0; k < int(map_.cells.size()); ++k) of_node.push_back(is_of_node(k));
+    std::vector<bool> of_node(map_.cells.size());
+    for (std::size_t k = 0; k < of_node.size(); ++k) of_node[k] = is_of_node(int(k));
     for (const CrossedSide& s : sides_) {
       const auto& [a, b] = s.cell;
       const bool one_is_open = is_open(a) || is_open(b);

@@ -121,7 +121,10 @@ Ruling RulingSearch::settled(Ruling ruling) const {
     }
     const dvec3 beside = unit(ruling.n + (i == 0 ? beside_turn : -beside_turn) * right);
     const Contact there = geometry_.first(climb(geometry_, own, beside).contact);
-    if (const auto expressed = expressed_in(geometry_, own, there)) ruling.contact[i] = *expressed;
+    if (const auto expressed = expressed_in(geometry_, own, there)) {
+      ruling.contact[i] = *expressed;
+      ruling.point[i] = geometry_.point(*expressed);
+    }
   }
   return ruling;
 }

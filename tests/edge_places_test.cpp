@@ -1,0 +1,47 @@
+#include "taut/hull/solve/edge_places.h"
+
+#include <gtest/gtest.h>
+
+#include "models.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+/// An arc along a curve from one of its parameters to another.
+SeparatingArc along_curve(const ContactGeometry& geometry, double from, double to) {
+  const auto ruling = [&](double t) {
+    const Contact c = {0, SourceKind::edge, 0, t, 0};
+    const Contact apex = {0, SourceKind::vertex, 0, 0, 0};
+    return Ruling{{0, 0, 1}, {c, apex}, {geometry.point(c), geometry.point(apex)}};
+  };
+  SeparatingArc arc;
+  arc.pieces.push_back({{ruling(from), ruling(0.5 * (from + to)), ruling(to)}});
+  return arc;
+}
+
+TEST(EdgePlaces, AreOneWithinADistance) {
+  const Scene scene = make_scene({{}, {twisted_cubic()}, {{0, 0, 5}}});
+  const ContactGeometry geometry(scene);
+  SeparatingGraph graph;
+  graph.arcs.push_back(along_curve(geometry, 1e-9, 0.3));
+  graph.arcs.push_back(along_curve(geometry, 0.3 + 1e-9, 0.6));
+  graph.arcs.push_back(along_curve(geometry, 0.6 + 1e-3, 1 - 1e-9));
+  unite_edge_places(geometry, graph, 1e-7);
+  const auto end = [&](std::size_t arc, bool last) {
+    const std::vector<Ruling>& rulings = graph.arcs[arc].pieces.front().rulings;
+    return (last ? rulings.back() : rulings.front()).contact[0].u;
+  };
+  EXPECT_EQ(end(0, false), 0);
+  EXPECT_EQ(end(0, true), end(1, false));
+  EXPECT_NE(end(1, true), end(2, false));
+  EXPECT_EQ(end(2, true), 1);
+  // Rulings inside of a piece, and points of what has moved.
+  EXPECT_EQ(graph.arcs[0].pieces.front().rulings[1].contact[0].u, 0.5 * (1e-9 + 0.3));
+  const Ruling& first = graph.arcs[1].pieces.front().rulings.front();
+  EXPECT_EQ(first.point[0], geometry.point(first.contact[0]));
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,63 @@
+#include "taut/hull/solve/touching_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "models.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+struct Placed {
+  explicit Placed(const Shape& shape) : scene(make_scene(shape)), geometry(scene), query(scene) {}
+  /// What supports in a direction.
+  Contact contact(const dvec3& n) { return query(unit(n)).contact; }
+
+  Scene scene;
+  ContactGeometry geometry;
+  SupportQuery query;
+};
+
+/// Of three equal spheres: parallel to that of their centres.
+TEST(TouchingPlane, OfThreeSpheres) {
+  Placed balls(sphere() + shifted(sphere(), {4, 0, 0}) + shifted(sphere(), {0, 3, 0.5}));
+  const std::vector<Contact> contacts = {balls.contact({-1, -1, 2}), balls.contact({1, -1, 2}),
+                                         balls.contact({-1, 1, 2})};
+  const TouchingPlane plane =
+      touching_plane(balls.geometry, balls.query, unit(dvec3(0.2, 0.1, 1)), contacts);
+  const dvec3 right = unit(glm::cross(dvec3(4, 0, 0), dvec3(0, 3, 0.5)));
+  EXPECT_LE(glm::distance(plane.n, right), 1e-12);
+  EXPECT_LE(plane.off(), 1e-12);
+  EXPECT_FALSE(plane.in_line);
+}
+
+/// Of more points than lie in one: the plane tells by how much it misses them.
+TEST(TouchingPlane, TellsWhatItMisses) {
+  Placed points({{}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1e-3}, {0.5, 0.5, -1}}});
+  std::vector<Contact> contacts;
+  for (int k = 0; k < 4; ++k) contacts.push_back({0, SourceKind::vertex, k, 0, 0});
+  const TouchingPlane plane =
+      touching_plane(points.geometry, points.query, dvec3(0, 0, 1), contacts);
+  EXPECT_NEAR(plane.spread / points.scene.frame().scale, 5e-4, 1e-6);
+}
+
+/// Points in line leave it where it is about the line; what leaves the line tells where it is.
+TEST(TouchingPlane, OfContactsInLine) {
+  // A curve over the middle of a segment, which it touches where both are level.
+  Shape shape = {{}, {}, {{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}}};
+  shape.curves.push_back(circle({0, 0, -1}, {0, 1, 0}, {0, 0, 1}));
+  Placed placed(shape);
+  const Contact on_circle = placed.contact({0, 0.3, 1});
+  const std::vector<Contact> contacts = {
+      {0, SourceKind::vertex, 0, 0, 0}, {0, SourceKind::vertex, 1, 0, 0}, on_circle};
+  const TouchingPlane plane =
+      touching_plane(placed.geometry, placed.query, unit(dvec3(0.1, 0.2, 1)), contacts);
+  EXPECT_NEAR(plane.n.x, 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace taut
