@@ -38,8 +38,8 @@ TEST(TouchingPlane, OfThreeSpheres) {
 /// Of more points than lie in one: the plane tells by how much it misses them.
 TEST(TouchingPlane, TellsWhatItMisses) {
   Placed points({{}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1e-3}, {0.5, 0.5, -1}}});
-  std::vector<Contact> contacts;
-  for (int k = 0; k < 4; ++k) contacts.push_back({0, SourceKind::vertex, k, 0, 0});
+  std::vector<Contact> contacts(4, {0, SourceKind::vertex, 0, 0, 0});
+  for (int k = 0; k < 4; ++k) contacts[std::size_t(k)].element = k;
   const TouchingPlane plane =
       touching_plane(points.geometry, points.query, dvec3(0, 0, 1), contacts);
   EXPECT_NEAR(plane.spread / points.scene.frame().scale, 5e-4, 1e-6);
