@@ -37,6 +37,9 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 /// (map_differences) there, too; in mixed cells where the map does not decide. What could not be
 /// resolved, or differs from the map still, is listed (HullBoundary::unresolved); a boundary
 /// without any is closed. Same result for any number of threads.
+///
+/// With CurveMethod::solving the curves come from the map alone, and arcs, scrolls and facets that
+/// do not support as exactly say by how much they do not (ArcPiece::tolerant, HullFace::tolerant).
 /// @pre the culling and the map are of the geometry's scene, which spans space (tolerances.h says
 /// what is flat)
 /// @throws Cancelled
