@@ -21,23 +21,15 @@ class GraphEdit {
       arcs.push_back(std::move(graph_.arcs[k]));
     }
     graph_.arcs.swap(arcs);
-    std::vector<int> place(graph_.nodes.size(), -1);
-    std::vector<MapGraph::Node> nodes;
-    for (std::size_t k = 0; k < place.size(); ++k) {
+    std::set<int> bare;
+    for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
       MapGraph::Node& node = graph_.nodes[k];
       std::erase_if(node.ends,
                     [&](const MapGraph::End& end) { return number[std::size_t(end.arc)] < 0; });
       for (MapGraph::End& end : node.ends) end.arc = number[std::size_t(end.arc)];
-      if (node.ends.empty() && !node.is_facet) continue;
-      place[k] = int(nodes.size());
-      nodes.push_back(std::move(node));
+      if (node.ends.empty() && !node.is_facet) bare.insert(int(k));
     }
-    graph_.nodes.swap(nodes);
-    for (MapGraph::Arc& arc : graph_.arcs) {
-      for (int& node : arc.node) {
-        if (node >= 0) node = place[std::size_t(node)];
-      }
-    }
+    leave_out_nodes(bare);
   }
 
   void join_arcs_that_pass() {
@@ -122,19 +114,27 @@ class GraphEdit {
     for (int k = 0; k < int(before.size()); ++k) {
       if (!done[std::size_t(k)]) follow({k, 0});
     }
-    std::vector<int> place(graph_.nodes.size(), -1);
+    for (int k = 0; k < int(graph_.nodes.size()); ++k) {
+      if (passed.count(k) > 0) continue;
+      for (MapGraph::End& end : graph_.nodes[std::size_t(k)].ends)
+        end = ends.at({end.arc, end.end});
+    }
+    leave_out_nodes(passed);
+  }
+
+  /// Numbers the others anew. @pre no arc ends in them
+  void leave_out_nodes(const std::set<int>& left_out) {
+    std::vector<int> number(graph_.nodes.size(), -1);
     std::vector<MapGraph::Node> nodes;
-    for (std::size_t k = 0; k < place.size(); ++k) {
-      if (passed.count(int(k)) > 0) continue;
-      MapGraph::Node& node = graph_.nodes[k];
-      for (MapGraph::End& end : node.ends) end = ends.at({end.arc, end.end});
-      place[k] = int(nodes.size());
-      nodes.push_back(std::move(node));
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      if (left_out.count(int(k)) > 0) continue;
+      number[k] = int(nodes.size());
+      nodes.push_back(std::move(graph_.nodes[k]));
     }
     graph_.nodes.swap(nodes);
     for (MapGraph::Arc& arc : graph_.arcs) {
       for (int& node : arc.node) {
-        if (node >= 0) node = place[std::size_t(node)];
+        if (node >= 0) node = number[std::size_t(node)];
       }
     }
   }
