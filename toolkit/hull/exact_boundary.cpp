@@ -25,7 +25,7 @@ HullBoundary solved(const ContactGeometry& geometry, const Culling& culling,
                     const DirectionMap& directions, const HullOptions& options,
                     HullStatistics& statistics) {
   Stopwatch watch;
-  options.progress.update("solve", 0);
+  options.progress.update("trace", 0);
   SupportQuery query(geometry.scene(), options.progress.stop);
   SeparatingGraph graph = solved_graph(geometry, query, directions, options.progress);
   statistics.newton_iterations += graph.newton_iterations;

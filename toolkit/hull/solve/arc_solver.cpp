@@ -8,6 +8,7 @@
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/trace/arc_pieces.h"
 
 namespace taut {
 namespace {
@@ -26,10 +27,6 @@ constexpr double middle_share = 0.1;
 constexpr double largest_turn = 0.4;
 /// How far before the way or beyond it a change may be by rounding, as a share.
 constexpr double way_slack = 1e-9;
-
-bool are_of_same_elements(const Ruling& a, const Ruling& b) {
-  return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
-}
 
 double gap(const Ruling& a, const Ruling& b) {
   const auto square = [](const dvec3& x) { return glm::dot(x, x); };
@@ -103,7 +100,7 @@ void ArcSolver::go_on(const Ruling& to) {
 
 void ArcSolver::go_on(const Ruling& to, int depth) {
   if (depth == division_limit) return jump(to);
-  if (!are_of_same_elements(last(), to)) {
+  if (!same_elements(last(), to)) {
     if (stays(to) || step_over(to)) return go_on(to, depth + 1);
     return divide(to, depth);
   }
@@ -124,7 +121,7 @@ bool ArcSolver::stays(const Ruling& to) {
     after.contact[i] = to.contact[i];
     after.point[i] = to.point[i];
   }
-  if (are_of_same_elements(after, last())) return false;
+  if (same_elements(after, last())) return false;
   pieces_.push_back({{after}});
   return true;
 }
@@ -142,12 +139,12 @@ bool ArcSolver::is_smooth(const Ruling& to) const {
 void ArcSolver::divide(const Ruling& to, int depth) {
   ++divisions_;
   const double way = gap(last(), to);
-  const std::optional<FoundRuling> middle = search_.between(last(), to);
-  if (!middle || !(way > least_way) || divisions_ > most_divisions ||
-      gap(last(), middle->ruling) >= way || gap(middle->ruling, to) >= way) {
+  const std::optional<Ruling> middle = search_.between(last(), to);
+  if (!middle || !(way > least_way) || divisions_ > most_divisions || gap(last(), *middle) >= way ||
+      gap(*middle, to) >= way) {
     return jump(to);
   }
-  go_on(middle->ruling, depth + 1);
+  go_on(*middle, depth + 1);
   go_on(to, depth + 1);
 }
 
@@ -158,7 +155,7 @@ void ArcSolver::jump(const Ruling& to) {
   if (way > search_.map().contact_extent()) {
     unresolved_.push_back({to.n, "rulings between two others are not found"});
   }
-  if (are_of_same_elements(last(), to)) return append(to);
+  if (same_elements(last(), to)) return append(to);
   // Each contact over the borders between its elements, as far as these have one.
   for (std::size_t i = 0; i < 2; ++i) {
     if (same_element(last().contact[i], to.contact[i])) continue;
@@ -173,7 +170,7 @@ void ArcSolver::jump(const Ruling& to) {
       pieces_.push_back({{after}});
     }
   }
-  if (!are_of_same_elements(last(), to)) {
+  if (!same_elements(last(), to)) {
     pieces_.push_back({{to}});
   } else if (gap(last(), to) > 0) {
     append(to);

@@ -43,7 +43,7 @@ class ArcFinder {
         rulings_.try_emplace({rounded_direction(crossing.ends[0]),
                               rounded_direction(crossing.ends[1]), crossing.cell, crossing.contact},
                              Ruling{});
-    if (is_new) found->second = search_.at(crossing).ruling;
+    if (is_new) found->second = search_.at(crossing);
     return found->second;
   }
 

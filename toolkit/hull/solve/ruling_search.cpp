@@ -129,8 +129,8 @@ Ruling RulingSearch::settled(Ruling ruling) const {
   return ruling;
 }
 
-FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
-                                    const Which& which) const {
+Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
+                               const Which& which) const {
   const dvec3 across = glm::cross(right.n, left.n);
   for (int k = 0; k < bracket_halvings * secant_steps; ++k) {
     const bool halves = k % (secant_steps + 1) == secant_steps;
@@ -138,7 +138,7 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
     if (const auto found = polished(n, {right.contact, left.contact}, across, geometry_.tie())) {
       const double way = glm::dot(right.n, left.n);
       if (glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way) {
-        return {settled(*found), 0};
+        return settled(*found);
       }
     }
     if (n == right.n || n == left.n) {
@@ -164,13 +164,12 @@ FoundRuling RulingSearch::bracketed(SupportingContact right, SupportingContact l
   }
   const dvec3 n = unit(right.n + left.n);
   if (const auto found = polished(n, {right.contact, left.contact}, across, map_.resolution)) {
-    return {*found, depth(*found)};
+    return *found;
   }
-  const Ruling r{n, {right.contact, left.contact}, {right.x, left.x}};
-  return {r, depth(r)};
+  return {n, {right.contact, left.contact}, {right.x, left.x}};
 }
 
-FoundRuling RulingSearch::at(const MapCrossing& crossing) const {
+Ruling RulingSearch::at(const MapCrossing& crossing) const {
   const MapCell& cell = map_.cells[std::size_t(crossing.cell)];
   const auto& [first, second] = crossing.contact;
   const Which which = [&, from = first, to = second](const SupportingContact& s) {
@@ -185,7 +184,7 @@ FoundRuling RulingSearch::at(const MapCrossing& crossing) const {
   return bracketed(right, left, which);
 }
 
-std::optional<FoundRuling> RulingSearch::between(const Ruling& from, const Ruling& to) const {
+std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to) const {
   const dvec3 n = unit(from.n + to.n);
   const std::array<dvec3, 2> x = {0.5 * (from.point[0] + to.point[0]),
                                   0.5 * (from.point[1] + to.point[1])};
@@ -196,8 +195,7 @@ std::optional<FoundRuling> RulingSearch::between(const Ruling& from, const Rulin
   for (std::size_t i = 0; i < 2; ++i) {
     contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
   }
-  if (const auto found = polished(n, contacts, across, geometry_.tie()))
-    return FoundRuling{settled(*found), 0};
+  if (const auto found = polished(n, contacts, across, geometry_.tie())) return settled(*found);
   const Which which = [&](const SupportingContact& s) {
     const int side = glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
     const double gap = glm::distance(s.x, x[std::size_t(side)]);

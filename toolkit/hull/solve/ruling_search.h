@@ -17,12 +17,6 @@ struct SupportingContact {
   dvec3 x = dvec3(0.0);
 };
 
-/// A ruling, and how far its two contacts are below the supporting plane at most.
-struct FoundRuling {
-  Ruling ruling;
-  double off = 0;
-};
-
 /// Finds rulings between directions in which different contacts support. There is always one: the
 /// support function itself brackets it.
 class RulingSearch {
@@ -40,12 +34,16 @@ class RulingSearch {
 
   /// Where an arc passes between two cells. By Newton's method with what supports on either side,
   /// or where that fails by bisection down to rounding.
-  FoundRuling at(const MapCrossing& crossing) const;
+  Ruling at(const MapCrossing& crossing) const;
 
   /// Between two rulings of an arc, near the middle of their directions, across the way from the
   /// one to the other. None if the same contact supports to both sides of it.
-  std::optional<FoundRuling> between(const Ruling& from, const Ruling& to) const;
+  std::optional<Ruling> between(const Ruling& from, const Ruling& to) const;
 
+  /// How far the contacts are below the supporting plane.
+  double depth(const Ruling& ruling) const;
+
+ private:
   /// The ruling with contacts near these, n in the plane across `across`. None if Newton's method
   /// does not converge, the contacts are one, or something is higher by more than so much.
   std::optional<Ruling> polished(const dvec3& n, const std::array<Contact, 2>& contacts,
@@ -55,10 +53,6 @@ class RulingSearch {
   /// element into which their own regions extend.
   Ruling settled(Ruling ruling) const;
 
-  /// How far the contacts are below the supporting plane.
-  double depth(const Ruling& ruling) const;
-
- private:
   /// Which of two contacts supports, 0 or 1, and whether it is that one indeed: where it is
   /// neither, it is the one to whose side it is, to within the resolution.
   struct Likeness {
@@ -67,7 +61,7 @@ class RulingSearch {
   };
   using Which = std::function<Likeness(const SupportingContact&)>;
   SupportingContact climbed_from(const SupportingContact& s, const dvec3& n) const;
-  FoundRuling bracketed(SupportingContact right, SupportingContact left, const Which& which) const;
+  Ruling bracketed(SupportingContact right, SupportingContact left, const Which& which) const;
 
   const ContactSystem& system_;
   const ContactGeometry& geometry_;

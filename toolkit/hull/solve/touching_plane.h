@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// A plane that several contacts touch.
+/// A plane that several contacts touch. Lengths are in the scene's frame.
 struct TouchingPlane {
   dvec3 n = dvec3(0.0);
   std::vector<ClimbedContact> contacts;  ///< local maxima of x . n, in the order asked for
