@@ -57,7 +57,7 @@ struct Arc {
 class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,
-            std::vector<dvec3>& vertices, const Box& box, double smooth_angle,
+            std::vector<dvec3>& vertices, const Box& box, double smooth_angle, double grid,
             const Progress& progress)
       : patches_(patches),
         pieces_(pieces),
@@ -68,7 +68,7 @@ class Connector {
         tolerance_(join_tolerance(box)),
         free_piece_count_(to_int(pieces.size())),
         sides_(side_curves(patches, tolerance_)),
-        smoothness_(patches, sides_, tolerance_, smooth_angle),
+        smoothness_(patches, sides_, tolerance_, smooth_angle, grid),
         points_(4 * patches.size() + 2 * pieces.size()) {}
 
   void run() {
@@ -437,7 +437,9 @@ void Part::connect(double smooth_angle, const Progress& progress) {
   split_crests(faces_, patches_, box_, progress);
   split_junctions(faces_, patches_, box_, progress);
   find_repeated_patches(patches_, box_, progress);
-  Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle, progress);
+  // Patches of cages are computed, whatever the cages' points were rounded to.
+  Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle,
+                      cages_.empty() ? coordinate_grid().step : 0, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
   join_gap_ = connector.join_gap();

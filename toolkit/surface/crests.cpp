@@ -89,6 +89,10 @@ void add_roots(const Across& across, const std::vector<dvec3>& turns, int axis,
   }
 }
 
+/// What rounding to a grid does to a crest's heights and, times the degree, its normals, in steps
+/// of the grid: half a step moves a control point, and derivatives are of differences of two.
+constexpr double grid_steps = 4;
+
 double size_of(const std::vector<dvec4>& points) {
   Box box;
   for (const dvec4& p : points) box.include(euclidean(p));
@@ -97,10 +101,11 @@ double size_of(const std::vector<dvec4>& points) {
 
 }  // namespace
 
-bool is_crest(const BezierPatch& patch, Direction direction, double s) {
+bool is_crest(const BezierPatch& patch, Direction direction, double s, double grid) {
   const Across across{patch, direction};
   const double size = size_of(patch.points);
-  const double rounding = coordinate_rounding * largest_coordinate(patch.points);
+  const double rounding =
+      std::max(coordinate_rounding * largest_coordinate(patch.points), grid_steps * grid);
   const double height = crest_height * size + rounding;
   const double angle = crest_angle + across.degree_across() * rounding / size;
   const auto at = [&](double t) { return across.uv(s, t); };

@@ -14,8 +14,9 @@ namespace taut {
 /// @{
 
 /// Whether the curve u = s (direction u) or v = s is one: normals agree within crest_angle, heights
-/// over their plane within crest_height of the patch's size, rounding apart.
-bool is_crest(const BezierPatch& patch, Direction direction, double s);
+/// over their plane within crest_height of the patch's size, rounding apart: that of doubles, or
+/// what the numbers were rounded by before, `grid`.
+bool is_crest(const BezierPatch& patch, Direction direction, double s, double grid = 0);
 
 /// Whether the crest's plane may support a surface with these points: none lies above it, or none
 /// below, up to the tolerance.

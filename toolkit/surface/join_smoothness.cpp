@@ -29,11 +29,12 @@ bool normal_is_inward_cross_along(Side side) { return side == Side::u0 || side =
 
 JoinSmoothness::JoinSmoothness(const std::vector<Patch>& patches,
                                const std::vector<SideCurve>& sides, double tolerance,
-                               double smooth_angle)
+                               double smooth_angle, double grid)
     : patches_(patches),
       sides_(sides),
       corner_points_(corner_points(patches)),
       tolerance_(tolerance),
+      grid_(grid),
       chord_(2 * std::sin(smooth_angle / 2)) {}
 
 /// G1 along a border x(t) is det(X, X', A, B) = 0 with homogeneous X and cross derivatives A, B: a
@@ -75,8 +76,8 @@ bool JoinSmoothness::may_be_crest(const Use& use) const {
   const BezierPatch& bezier = patch(use.side).bezier;
   const Direction direction = along_v(side) ? Direction::u : Direction::v;
   const double s = at_upper_end(side) ? 1 : 0;
-  return is_crest(bezier, direction, s) &&
-         may_support(bezier, direction, s, corner_points_, tolerance_);
+  return is_crest(bezier, direction, s, grid_) &&
+         may_support(bezier, direction, s, corner_points_, std::max(tolerance_, grid_));
 }
 
 /// Rulings of the one patch that end on the join are continued by those of the other, as of two

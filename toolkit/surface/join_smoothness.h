@@ -10,10 +10,10 @@ namespace taut {
 /// angle.
 class JoinSmoothness {
  public:
-  /// Patches and sides must outlive this.
+  /// Patches and sides must outlive this. `grid`: by how much coordinates were rounded before.
   /// @pre rulings are found
   JoinSmoothness(const std::vector<Patch>& patches, const std::vector<SideCurve>& sides,
-                 double tolerance, double smooth_angle);
+                 double tolerance, double smooth_angle, double grid = 0);
 
   /// Unit vectors differ by at most the angle.
   bool same_direction(const dvec3& a, const dvec3& b) const { return glm::length(a - b) <= chord_; }
@@ -42,6 +42,7 @@ class JoinSmoothness {
   const std::vector<SideCurve>& sides_;
   std::vector<dvec3> corner_points_;
   double tolerance_;
+  double grid_;
   double chord_;  // of the angle
 };
 
