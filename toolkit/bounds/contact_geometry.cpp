@@ -116,7 +116,7 @@ bool is_flat(const ContactJet& j, const dvec3& n, double least) {
   return uu * vv - uv * uv < least * std::abs(uu + vv);
 }
 
-ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop)
+ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop, double same)
     : scene_(scene), stop_(std::move(stop)) {
   const Box box = scene.model().control_box();
   const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
@@ -159,9 +159,9 @@ ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop)
       }
     }
     for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
-    find_straight(part, own);
+    find_straight(part, 4 * same, own);
   }
-  find_repeated_elements();
+  find_repeated_elements(same);
 }
 
 PlacedElement ContactGeometry::placed(const Contact& c) const {
@@ -187,13 +187,13 @@ PlacedElement ContactGeometry::placed(const Contact& c) const {
 }
 
 /// Straight pieces that go on into each other between two vertices are one segment.
-void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
+void ContactGeometry::find_straight(const Part& part, double same, PartElements& own) const {
   std::vector<bool> segments;
   segments.reserve(own.pieces.size());
   for (const BezierCurve& piece : own.pieces) {
     segments.push_back(is_on_segment(piece, euclidean(piece.points.front()),
                                      euclidean(piece.points.back()),
-                                     std::max(coordinate_rounding, rounding_)));
+                                     std::max({coordinate_rounding, rounding_, same})));
   }
   own.straight.assign(own.pieces.size(), {-1, -1});
   for (std::size_t k = 0; k < own.pieces.size(); ++k) {
@@ -203,13 +203,13 @@ void ContactGeometry::find_straight(const Part& part, PartElements& own) const {
     if (first < 0 || last < 0) continue;
     // Joints may have kinks small enough to count as smooth.
     if (is_on_segment(own.pieces[k], own.vertices[std::size_t(first)],
-                      own.vertices[std::size_t(last)], tie_)) {
+                      own.vertices[std::size_t(last)], std::max(tie_, same))) {
       own.straight[k] = {first, last};
     }
   }
 }
 
-void ContactGeometry::find_repeated_elements() {
+void ContactGeometry::find_repeated_elements(double same) {
   const Model& model = scene_.model();
   std::vector<PlacedElement> all;
   for (const int i : scene_.distinct_instances()) {
@@ -221,7 +221,7 @@ void ContactGeometry::find_repeated_elements() {
     add(SourceKind::edge, part.pieces().size());
     add(SourceKind::vertex, part.vertices().size());
   }
-  repeated_elements_ = RepeatedElements(all, tie_);
+  repeated_elements_ = RepeatedElements(all, std::max(tie_, same));
   for (const Contact& c : repeated_elements_.all()) share(c);
   place_points(all);
 }

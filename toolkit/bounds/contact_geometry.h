@@ -49,8 +49,9 @@ inline constexpr double least_curvature = 1e-8;
 class ContactGeometry {
  public:
   /// The scene must outlive it. `stop`: makes evaluations throw Cancelled from then on, so that all
-  /// that works on contacts stops.
-  explicit ContactGeometry(const Scene& scene, std::stop_token stop = {});
+  /// that works on contacts stops. `same`: elements that miss each other by no more, in the scene's
+  /// frame, are one, and edges straight that are no farther from a segment; rounding apart.
+  explicit ContactGeometry(const Scene& scene, std::stop_token stop = {}, double same = 0);
 
   const Scene& scene() const { return scene_; }
   /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
@@ -143,8 +144,8 @@ class ContactGeometry {
   const PartElements& elements(const Contact& c) const;
   void start_evaluation() const;
   PlacedElement placed(const Contact& c) const;
-  void find_straight(const Part& part, PartElements& own) const;
-  void find_repeated_elements();
+  void find_straight(const Part& part, double same, PartElements& own) const;
+  void find_repeated_elements(double same);
   void place_points(const std::vector<PlacedElement>& all);
   void share(const Contact& repeated);
 
