@@ -391,8 +391,7 @@ TEST(ExactBoundary, CountsAllQueries) {
   EXPECT_GT(decided.support_queries, 0);
   const HullBoundary boundary = stitch(
       geometry, query,
-      trace_separating_curves(geometry, query, culling.samples, culling.cells, {.cells = false}),
-      culling.cells);
+      trace_separating_curves(geometry, query, culling.samples, culling.cells, {.cells = false}));
   map_differences(geometry, query, directions, boundary);
   EXPECT_EQ(statistics.support_queries,
             culled.support_queries + decided.support_queries + query.queries());

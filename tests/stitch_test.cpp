@@ -28,8 +28,7 @@ struct Stitched {
     const GaussMap map(scene, {.threads = 1, .progress = {}});
     const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
     boundary = std::make_shared<const HullBoundary>(stitch(
-        geometry, query, trace_separating_curves(geometry, query, culling.samples, culling.cells),
-        culling.cells));
+        geometry, query, trace_separating_curves(geometry, query, culling.samples, culling.cells)));
   }
 
   /// Patches, scrolls, facets; bitangents, edges, joins, rulings.

@@ -5,7 +5,7 @@
 #include "models.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/cull/culling.h"
-#include "taut/hull/stitch/trim_loops.h"
+#include "taut/hull/stitch/whole_patches.h"
 #include "taut/hull/trace/separating_graph.h"
 
 namespace taut_test {
@@ -26,7 +26,8 @@ struct TracedScene {
     const taut::Culling culling = taut::cull(scene, map, {.threads = 1, .progress = {}});
     graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
     unresolved = graph.unresolved;
-    regions = trim_regions(geometry, query, graph, culling.cells, unresolved);
+    regions = trim_regions(geometry, graph, unresolved);
+    add_whole_patches(geometry, query, graph, 0, regions, unresolved);
   }
 };
 

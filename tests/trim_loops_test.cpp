@@ -150,7 +150,7 @@ TEST(TrimRegions, TellCurvesWithoutLength) {
   arc.pieces.resize(1);
   arc.pieces.front().rulings.resize(1);
   std::vector<Unresolved> unresolved;
-  trim_regions(balls.geometry, balls.query, balls.graph, {}, unresolved);
+  trim_regions(balls.geometry, balls.graph, unresolved);
   EXPECT_FALSE(unresolved.empty());
 }
 

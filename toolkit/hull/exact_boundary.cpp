@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "taut/core/stopwatch.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/compare/map_differences.h"
 #include "taut/hull/solve/solved_graph.h"
 #include "taut/hull/solve/tolerant_places.h"
@@ -21,9 +22,8 @@ constexpr long map_candidates_a_patch = 200;
 constexpr std::size_t few_open_spots = 16;
 
 /// Solved from the map, and stitched.
-HullBoundary solved(const ContactGeometry& geometry, const Culling& culling,
-                    const DirectionMap& directions, const HullOptions& options,
-                    HullStatistics& statistics) {
+HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions,
+                    const HullOptions& options, HullStatistics& statistics) {
   Stopwatch watch;
   options.progress.update("trace", 0);
   SupportQuery query(geometry.scene(), options.progress.stop);
@@ -31,7 +31,7 @@ HullBoundary solved(const ContactGeometry& geometry, const Culling& culling,
   statistics.newton_iterations += graph.newton_iterations;
   statistics.seconds_trace += watch.lap();
   options.progress.update("stitch", 0);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
+  HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
   find_tolerant_places(ContactSystem(geometry), query, boundary);
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
@@ -56,7 +56,7 @@ HullBoundary traced(const ContactGeometry& geometry, const Culling& culling,
   statistics.seconds_trace += watch.lap();
 
   options.progress.update("stitch", 0);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph), culling.cells);
+  HullBoundary boundary = stitch(geometry, query, std::move(graph));
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();
@@ -93,6 +93,12 @@ Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& o
   return culling;
 }
 
+double same_elements_of(const Scene& scene, const HullOptions& options) {
+  if (options.curves != CurveMethod::solving) return 0;
+  const double rho = resolution_for(options, scene.model(), scene.diagonal()).rho;
+  return tie_share * scene.frame().length_to_frame(rho);
+}
+
 DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
                            HullStatistics& statistics) {
   const Stopwatch watch;
@@ -117,7 +123,7 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& cull
                             const DirectionMap& directions, const HullOptions& options,
                             HullStatistics& statistics, const std::vector<Sample>& more) {
   if (options.curves == CurveMethod::solving) {
-    return solved(geometry, culling, directions, options, statistics);
+    return solved(geometry, directions, options, statistics);
   }
   if (directions.cells.empty()) return traced(geometry, culling, {}, options, statistics, more);
   // What the map decides need not be searched.
@@ -151,7 +157,7 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& cull
 HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
                             HullStatistics& statistics) {
   const Culling culling = culling_of(scene, map, options, statistics);
-  const ContactGeometry geometry(scene, options.progress.stop);
+  const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
   const DirectionMap directions = directions_of(geometry, options, statistics);
   return exact_boundary(geometry, culling, directions, options, statistics);
 }

@@ -19,6 +19,9 @@ namespace taut {
 Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& options,
                    HullStatistics& statistics);
 
+/// Elements that miss each other by no more, in the scene's frame, are told as one.
+double same_elements_of(const Scene& scene, const HullOptions& options);
+
 /// The map of a scene's directions, at the resolution that the options or the model ask for. Where
 /// contacts all but tie it costs more than models do to decide it, and it is left undecided. Adds
 /// what it took to the statistics.

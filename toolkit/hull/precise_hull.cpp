@@ -38,7 +38,7 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
                              .threads = options.threads,
                              .progress = options.progress});
   statistics.seconds_gauss_map = watch.lap();
-  const ContactGeometry geometry(scene, options.progress.stop);
+  const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
   const Culling culling = culling_of(scene, map, options, statistics);
   const DirectionMap directions = directions_of(geometry, options, statistics);
   std::vector<Sample> found;

@@ -32,6 +32,29 @@ class GraphEdit {
     leave_out_nodes(bare);
   }
 
+  /// The ends of both nodes, in order about what the arc was.
+  void contract(int k) {
+    const auto [first, second] = graph_.arcs[std::size_t(k)].node;
+    if (first == second) return;
+    MapGraph::Node& own = graph_.nodes[std::size_t(first)];
+    MapGraph::Node& other = graph_.nodes[std::size_t(second)];
+    const auto turned_to = [&](std::vector<MapGraph::End>& ends, int end) {
+      const auto at = std::find_if(ends.begin(), ends.end(), [&](const MapGraph::End& e) {
+        return e.arc == k && e.end == end;
+      });
+      std::rotate(ends.begin(), at, ends.end());
+    };
+    turned_to(own.ends, 0);
+    turned_to(other.ends, 1);
+    for (const MapGraph::End& e : other.ends)
+      graph_.arcs[std::size_t(e.arc)].node[std::size_t(e.end)] = first;
+    own.ends.insert(own.ends.end(), other.ends.begin(), other.ends.end());
+    own.cells.insert(own.cells.end(), other.cells.begin(), other.cells.end());
+    std::sort(own.cells.begin(), own.cells.end());
+    own.is_facet = own.is_facet || other.is_facet;
+    other = {};
+  }
+
   void join_arcs_that_pass() {
     std::map<std::pair<int, int>, MapGraph::End> on;
     std::set<int> passed;
@@ -159,6 +182,13 @@ class GraphEdit {
 void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs) {
   GraphEdit edit(graph, map);
   if (!arcs.empty()) edit.drop(arcs);
+  edit.join_arcs_that_pass();
+}
+
+void contract_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs) {
+  GraphEdit edit(graph, map);
+  for (const int k : arcs) edit.contract(k);
+  edit.drop(arcs);
   edit.join_arcs_that_pass();
 }
 

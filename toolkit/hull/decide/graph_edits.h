@@ -13,4 +13,9 @@ namespace taut {
 /// @pre the graph is the map's
 void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs);
 
+/// Makes one node of the two that each of the arcs leads between, and leaves the arcs out, those
+/// that lead from a node to itself, too.
+/// @pre the graph is the map's; none of the arcs is closed
+void contract_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs);
+
 }  // namespace taut

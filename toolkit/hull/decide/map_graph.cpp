@@ -52,7 +52,7 @@ class Weaving {
     join_facets();
     make_nodes();
     make_arcs();
-    remove_arcs(graph_, map_, arcs_within_facets());
+    remove_arcs(graph_, map_, arcs_within_nodes());
     return std::move(graph_);
   }
 
@@ -281,10 +281,7 @@ class Weaving {
   /// the way out over a crossing to that to its left.
   void sort_about(const MapGraph::Node& node, std::vector<int>& around) {
     dvec3 n(0.0);
-    for (const int k : node.cells) {
-      const auto d = DirectionMap::corners(cell(k));
-      n += cell(k).has_plane() ? cell(k).normal : unit(d[0] + d[3]);
-    }
+    for (const int k : node.cells) n += middle_of(k);
     const std::array<dvec3, 2> frame = tangent_frame(unit(n));
     std::map<int, double> angle;
     for (const int c : around) {
@@ -355,27 +352,30 @@ class Weaving {
     return result;
   }
 
-  /// Arcs between cells of one facet that are no longer than these.
-  std::set<int> arcs_within_facets() const {
+  /// Arcs that leave a node and come back, and are no longer than its cells are wide: the cells
+  /// have a hole.
+  std::set<int> arcs_within_nodes() const {
     std::set<int> found;
     for (int k = 0; k < int(graph_.arcs.size()); ++k) {
       const MapGraph::Arc& arc = graph_.arcs[std::size_t(k)];
       if (arc.is_closed() || arc.node[0] != arc.node[1]) continue;
-      const MapGraph::Node& node = graph_.nodes[std::size_t(arc.node[0])];
-      if (!node.is_facet) continue;
+      const std::vector<int>& cells = graph_.nodes[std::size_t(arc.node[0])].cells;
       double reach = 0;
-      for (const int own : node.cells)
-        reach = std::max(reach, std::ldexp(2.0, 1 - cell(own).level));
+      for (const int own : cells) reach = std::max(reach, std::ldexp(2.0, 1 - cell(own).level));
       const bool within =
           std::all_of(arc.crossings.begin(), arc.crossings.end(), [&](const auto& c) {
-            return std::any_of(node.cells.begin(), node.cells.end(), [&](int own) {
-              return glm::distance(cell(own).normal, unit(unit(c.ends[0]) + unit(c.ends[1]))) <=
-                     reach;
-            });
+            const dvec3 n = unit(unit(c.ends[0]) + unit(c.ends[1]));
+            return std::any_of(cells.begin(), cells.end(),
+                               [&](int own) { return glm::distance(middle_of(own), n) <= reach; });
           });
       if (within) found.insert(k);
     }
     return found;
+  }
+  /// The normal of its plane, or a direction inside.
+  dvec3 middle_of(int k) const {
+    const auto d = DirectionMap::corners(cell(k));
+    return cell(k).has_plane() ? cell(k).normal : unit(d[0] + d[3]);
   }
 
   const DirectionMap& map_;

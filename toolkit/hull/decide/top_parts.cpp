@@ -49,6 +49,20 @@ Direction longest_way(NetShape shape, const std::vector<dvec4>& net) {
   return along_u >= along_v ? Direction::u : Direction::v;
 }
 
+/// The contact as one of each edge and patch that ends in it.
+std::vector<Contact> forms(const ContactGeometry& geometry, const Contact& c) {
+  std::vector<Contact> all = {c};
+  if (c.kind == SourceKind::vertex) all = piece_ends(geometry, c);
+  for (std::size_t k = 0, edges = all.size(); k < edges; ++k) {
+    const Contact edge = all[k];
+    if (edge.kind != SourceKind::edge) continue;
+    for (const auto& side : geometry.sides(edge)) all.push_back(on_side(edge, side));
+  }
+  return all;
+}
+
+Interval between(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
+
 }  // namespace
 
 TopParts::TopParts(const ContactGeometry& geometry) : geometry_(geometry) {
@@ -148,6 +162,25 @@ bool TopParts::find(int body, const dvec3& d, double height, double depth,
   return true;
 }
 
+/// What is between their parameters in an element of both is nowhere lower.
+bool TopParts::hang_together_in_one_element(const dvec3& d, const Contact& a, const Contact& b,
+                                            double lowest) const {
+  const std::vector<Contact> others = forms(geometry_, b);
+  for (const Contact& own : forms(geometry_, a)) {
+    for (const Contact& other : others) {
+      const auto part = index_.find(place(own));
+      if (place(own) != place(other) || part == index_.end()) continue;
+      const Part& whole = parts_[std::size_t(part->second)];
+      const BezierPatch patch{whole.shape.p, whole.shape.q, whole.net};
+      const BezierPatch way =
+          restricted(patch, between(own.u, other.u),
+                     own.kind == SourceKind::face ? between(own.v, other.v) : Interval{0, 1});
+      if (heights(way.points, d).lower >= lowest) return true;
+    }
+  }
+  return false;
+}
+
 bool TopParts::hang_together(const dvec3& d, const Contact& a, const Contact& b,
                              double depth) const {
   const int own = part_of(a);
@@ -157,8 +190,10 @@ bool TopParts::hang_together(const dvec3& d, const Contact& a, const Contact& b,
   if (bodies_[std::size_t(other)] != body) return false;
   const dvec3 x = geometry_.point(a);
   const dvec3 y = geometry_.point(b);
+  const double height = std::max(glm::dot(x, d), glm::dot(y, d));
+  if (hang_together_in_one_element(d, a, b, height - (1 + height_share) * depth)) return true;
   std::vector<Box> found = {{x, x}, {y, y}};
-  if (!find(body, d, std::max(glm::dot(x, d), glm::dot(y, d)), depth, found)) return false;
+  if (!find(body, d, height, depth, found)) return false;
   DisjointSets pieces(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -30,6 +30,8 @@ class TopParts {
   void add_edges(int instance);
   void find_bodies();
   int part_of(const Contact& c) const;
+  bool hang_together_in_one_element(const dvec3& d, const Contact& a, const Contact& b,
+                                    double lowest) const;
   bool find(int body, const dvec3& d, double height, double depth, std::vector<Box>& found) const;
 
   const ContactGeometry& geometry_;

@@ -7,6 +7,7 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/exit_margins.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/trace/arc_pieces.h"
 
@@ -25,6 +26,8 @@ constexpr double least_way = 1e-6;
 constexpr double middle_share = 0.1;
 /// Largest turn between neighbours, in radians.
 constexpr double largest_turn = 0.4;
+/// Parts of the way between rulings between which none is found, at whose ends it is looked at.
+constexpr int places_on_the_way = 8;
 /// How far before the way or beyond it a change may be by rounding, as a share.
 constexpr double way_slack = 1e-9;
 
@@ -98,6 +101,17 @@ void ArcSolver::go_on(const Ruling& to) {
   go_on(to, 0);
 }
 
+void ArcSolver::end_in_one_contact() {
+  Ruling end = last();
+  const std::size_t own = end.contact[1].kind > end.contact[0].kind ? 1 : 0;
+  end.contact[1 - own] = end.contact[own];
+  end.point[1 - own] = end.point[own];
+  if (const auto on = expressed_in(geometry_, end.contact[own], last().contact[1 - own])) {
+    end.contact[1 - own] = *on;
+  }
+  jump(end);
+}
+
 void ArcSolver::go_on(const Ruling& to, int depth) {
   if (depth == division_limit) return jump(to);
   if (!same_elements(last(), to)) {
@@ -150,11 +164,29 @@ void ArcSolver::divide(const Ruling& to, int depth) {
 
 /// The two are neighbours for all that is known.
 void ArcSolver::jump(const Ruling& to) {
-  const double way = std::max(glm::distance(last().point[0], to.point[0]),
-                              glm::distance(last().point[1], to.point[1]));
-  if (way > search_.map().contact_extent()) {
-    unresolved_.push_back({to.n, "rulings between two others are not found"});
+  const double depth = depth_on_the_way(to);
+  const std::size_t first = pieces_.size() - 1;
+  leap(to);
+  for (std::size_t k = first; k < pieces_.size(); ++k) {
+    pieces_[k].tolerant = std::max(pieces_[k].tolerant, depth);
   }
+}
+
+/// How far straight ways of the contacts are below supporting planes.
+double ArcSolver::depth_on_the_way(const Ruling& to) const {
+  const Ruling& from = last();
+  double deepest = 0;
+  for (int k = 1; k < places_on_the_way; ++k) {
+    const double share = double(k) / places_on_the_way;
+    Ruling r = from;
+    r.n = unit(glm::mix(from.n, to.n, share));
+    for (std::size_t i = 0; i < 2; ++i) r.point[i] = glm::mix(from.point[i], to.point[i], share);
+    deepest = std::max(deepest, search_.depth(r));
+  }
+  return deepest <= geometry_.tie() ? 0 : deepest;
+}
+
+void ArcSolver::leap(const Ruling& to) {
   if (same_elements(last(), to)) return append(to);
   // Each contact over the borders between its elements, as far as these have one.
   for (std::size_t i = 0; i < 2; ++i) {

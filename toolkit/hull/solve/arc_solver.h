@@ -18,9 +18,12 @@ class ArcSolver {
   /// other smoothly, and a piece for each pair of elements that the contacts are in.
   void go_on(const Ruling& to);
 
+  /// Ends where one of the two contacts is, that of the lowest kind: the other goes straight there.
+  void end_in_one_contact();
+
+  /// Where no rulings were found between two others, pieces say how far what is between these is
+  /// below the supporting planes (ArcPiece::tolerant).
   std::vector<ArcPiece> take() { return std::move(pieces_); }
-  /// Where neighbouring rulings are not of one curve, or one is not the model's.
-  const std::vector<Unresolved>& unresolved() const { return unresolved_; }
 
  private:
   /// Where a contact passes from one element into the next.
@@ -36,6 +39,8 @@ class ArcSolver {
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);
   void jump(const Ruling& to);
+  void leap(const Ruling& to);
+  double depth_on_the_way(const Ruling& to) const;
   bool leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
               const ContactExit& exit) const;
   std::optional<Change> change(const Ruling& to, std::size_t i, const ContactExit& exit) const;
@@ -44,7 +49,6 @@ class ArcSolver {
   const ContactGeometry& geometry_;
   std::vector<ArcPiece> pieces_;
   int divisions_ = 0;
-  std::vector<Unresolved> unresolved_;
 };
 
 }  // namespace taut

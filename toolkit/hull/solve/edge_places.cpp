@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace {
 /// Parameters of the places on all edges and seams.
 class EdgePlaces {
  public:
-  EdgePlaces(const ContactGeometry& geometry, double distance)
-      : geometry_(geometry), distance_(distance) {}
+  EdgePlaces(const ContactGeometry& geometry, double distance, double level_distance)
+      : geometry_(geometry), distance_(distance), level_distance_(level_distance) {}
 
   void add(const Contact& c) {
     for_each_line(c, [&](const Line& line, double t) {
@@ -26,22 +27,31 @@ class EdgePlaces {
   }
   void add(const EdgeStretch& s) {
     if (s.piece < 0) return;
-    for (const double t : {s.from, s.to}) add({s.instance, SourceKind::edge, s.piece, t, 0});
+    for (const double t : {s.from, s.to}) {
+      add({s.instance, SourceKind::edge, s.piece, t, 0});
+      level_[{s.instance, s.piece, -1, 0}].insert(t);
+    }
   }
 
-  /// Places follow each other with less than the distance between them: all are the first one, or
-  /// the line's end that is among them.
+  /// Places follow each other with less than the distance between them: all are the line's end if
+  /// that is among them, else the first that is no end of a curved side, or the first.
   void unite() {
     for (auto& [line, places] : places_) {
       places.try_emplace(0.0, 0.0);
       places.try_emplace(1.0, 1.0);
       const double speed = length(line);
+      const std::set<double>& level = level_[line];
+      const auto is_level = [&](double t) { return level.count(t) > 0; };
       for (auto first = places.begin(); first != places.end();) {
         auto last = std::next(first);
         for (auto before = first; last != places.end(); before = last++) {
-          if ((last->first - before->first) * speed > distance_) break;
+          const bool wide = is_level(before->first) || is_level(last->first);
+          const double reach = wide ? level_distance_ : distance_;
+          if ((last->first - before->first) * speed > reach) break;
         }
-        double at = first->first;
+        const auto exact =
+            std::find_if(first, last, [&](const auto& p) { return !is_level(p.first); });
+        double at = (exact == last ? first : exact)->first;
         for (auto k = first; k != last; ++k) {
           if (k->first == 0 || k->first == 1) at = k->first;
         }
@@ -121,6 +131,8 @@ class EdgePlaces {
 
   const ContactGeometry& geometry_;
   double distance_;
+  double level_distance_;
+  std::map<Line, std::set<double>> level_;           // ends of curved sides
   std::map<Line, std::map<double, double>> places_;  // as they were: as they are
 };
 
@@ -140,8 +152,9 @@ void for_each_end(SeparatingGraph& graph, Visit visit) {
 
 }  // namespace
 
-void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance) {
-  EdgePlaces places(geometry, distance);
+void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance,
+                       double level_distance) {
+  EdgePlaces places(geometry, distance, std::max(distance, level_distance));
   for_each_end(graph, [&](Contact& c, const dvec3&) {
     c = moved_to_border(geometry, c, distance);
     places.add(c);

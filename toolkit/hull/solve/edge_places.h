@@ -9,7 +9,9 @@ namespace taut {
 /// which pieces of arcs begin and end, corners of facets and ends of their curved sides. Ends of
 /// edges' pieces and of sides, too, are such places, and contacts so near to them are on them.
 /// (Contacts move along their elements, across the normal: their heights change by the square of
-/// the distance.) In the scene's frame.
-void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance);
+/// the distance.) Ends of curved sides, along which rounding leaves planes nearly level, are one
+/// with places up to `level_distance` from them. In the scene's frame.
+void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance,
+                       double level_distance = 0);
 
 }  // namespace taut

@@ -6,12 +6,26 @@
 #include <tuple>
 #include <utility>
 
+#include "taut/bounds/contact_climb.h"
 #include "taut/hull/decide/cell_contacts.h"
 #include "taut/hull/decide/graph_edits.h"
 #include "taut/hull/decide/top_parts.h"
 
 namespace taut {
 namespace {
+
+/// Depths below a plane, in units of the resolution, up to which what touches it may be told so.
+constexpr double one_node_depths = 4;
+
+/// What a contact moves by where it is another one, as a share of the way to the other contact.
+constexpr double jump_share = 0.1;
+
+/// How far from the line through two contacts a third one is in line with them, as a share of the
+/// way between them.
+constexpr double line_share = 1e-3;
+
+/// Rulings next to an end of an arc that may be of others.
+constexpr std::size_t most_jumps = 8;
 
 class ArcFinder {
  public:
@@ -21,7 +35,7 @@ class ArcFinder {
   KnownArcs run() {
     known_.graph = map_graph(search_.map(), search_.query());
     find_rulings();
-    while (drop_shallow_arcs()) find_rulings();
+    while (drop_shallow_arcs() || contract_short_arcs()) find_rulings();
     return std::move(known_);
   }
 
@@ -35,7 +49,34 @@ class ArcFinder {
         const Ruling& r = ruling_at(crossing);
         if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
       }
+      if (arc.is_closed()) continue;
+      drop_jumps(own);
+      std::reverse(own.begin(), own.end());
+      drop_jumps(own);
+      std::reverse(own.begin(), own.end());
     }
+  }
+
+  /// What is before a jump near the beginning.
+  static void drop_jumps(std::vector<Ruling>& own) {
+    for (std::size_t k = std::min(own.size() / 2, most_jumps); k > 0; --k) {
+      if (!jumps(own[k], own[k - 1])) continue;
+      own.erase(own.begin(), own.begin() + std::ptrdiff_t(k));
+      return;
+    }
+  }
+
+  /// Beside where several contacts in line support, others than the arc's may be as high as these
+  /// to within the resolution.
+  static bool jumps(const Ruling& from, const Ruling& to) {
+    const dvec3 along = to.point[0] - to.point[1];
+    const double length = glm::length(along);
+    for (const std::size_t i : {0u, 1u}) {
+      const double off = glm::length(glm::cross(from.point[i] - to.point[i], unit(along)));
+      const bool moves = glm::distance(from.point[i], to.point[i]) > jump_share * length;
+      if (moves && off <= line_share * length) return true;
+    }
+    return false;
   }
 
   const Ruling& ruling_at(const MapCrossing& crossing) {
@@ -63,6 +104,51 @@ class ArcFinder {
     return !shallow.empty();
   }
 
+  /// Nodes that all but touch one plane, with the arcs between them, are one. False if there are
+  /// none.
+  bool contract_short_arcs() {
+    std::set<int> found;
+    for (int k = 0; k < int(known_.graph.arcs.size()); ++k) {
+      const MapGraph::Arc& arc = known_.graph.arcs[std::size_t(k)];
+      if (arc.is_closed() || !is_short(known_.rulings[std::size_t(k)])) continue;
+      if (arc.node[0] == arc.node[1] || ends_are_one(k)) found.insert(k);
+    }
+    if (!found.empty()) contract_arcs(known_.graph, search_.map(), found);
+    return !found.empty();
+  }
+
+  /// All along it each of its contacts is as one.
+  bool is_short(const std::vector<Ruling>& rulings) const {
+    const Ruling& middle = rulings[rulings.size() / 2];
+    const double extent = search_.map().contact_extent();
+    return std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& r) {
+      return glm::distance(middle.n, r.n) <= extent &&
+             glm::distance(middle.point[0], r.point[0]) <= extent &&
+             glm::distance(middle.point[1], r.point[1]) <= extent;
+    });
+  }
+
+  /// What supports in either of its nodes supports in its middle, to within the resolution.
+  bool ends_are_one(int k) const {
+    const std::vector<Ruling>& rulings = known_.rulings[std::size_t(k)];
+    const Ruling& middle = rulings[rulings.size() / 2];
+    const double least =
+        glm::dot(middle.point[0], middle.n) - one_node_depths * search_.map().resolution;
+    for (const int node : known_.graph.arcs[std::size_t(k)].node) {
+      for (const MapGraph::End& end : known_.graph.nodes[std::size_t(node)].ends) {
+        const Ruling& beside = known_.ruling_at(end);
+        for (const std::size_t i : {0u, 1u}) {
+          if (glm::dot(beside.point[i], middle.n) >= least) continue;
+          const ClimbedContact there = climb(search_.geometry(), beside.contact[i], middle.n);
+          const bool is_other =
+              glm::distance(there.x, beside.point[i]) > glm::distance(there.x, beside.point[1 - i]);
+          if (there.h < least || is_other) return false;
+        }
+      }
+    }
+    return true;
+  }
+
   bool is_shallow(const std::vector<Ruling>& rulings) const {
     // In the middle an arc is deepest, mostly.
     return is_shallow(rulings[rulings.size() / 2]) &&
@@ -70,7 +156,9 @@ class ArcFinder {
                        [&](const Ruling& r) { return is_shallow(r); });
   }
   bool is_shallow(const Ruling& r) const {
-    return top_parts_.hang_together(r.n, r.contact[0], r.contact[1], search_.map().resolution);
+    const double rho = search_.map().resolution;
+    return glm::distance(r.point[0], r.point[1]) <= rho ||
+           top_parts_.hang_together(r.n, r.contact[0], r.contact[1], rho);
   }
 
   const RulingSearch& search_;

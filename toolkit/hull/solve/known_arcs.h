@@ -12,6 +12,12 @@ namespace taut {
 struct KnownArcs {
   MapGraph graph;
   std::vector<std::vector<Ruling>> rulings;  ///< by arc, in order, one at least
+
+  /// The ruling next to an end of an arc.
+  const Ruling& ruling_at(const MapGraph::End& end) const {
+    const std::vector<Ruling>& own = rulings[std::size_t(end.arc)];
+    return end.end == 0 ? own.front() : own.back();
+  }
 };
 
 /// Finds them. Beside where an arc ends for want of resolution cells may tell contacts apart that

@@ -39,8 +39,8 @@ bool is_straight(const std::vector<dvec3>& points, double distance) {
 
 class PieceSearch {
  public:
-  PieceSearch(const ContactGeometry& geometry, SupportQuery& query)
-      : geometry_(geometry), query_(query) {
+  PieceSearch(const ContactGeometry& geometry, SupportQuery& query, const std::vector<dvec3>& more)
+      : geometry_(geometry), query_(query), more_(more) {
     const Model& model = geometry.scene().model();
     for (const int i : geometry.scene().distinct_instances()) {
       const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
@@ -67,6 +67,7 @@ class PieceSearch {
       points.insert(points.end(), own.begin(), own.end());
     }
     if (points.empty()) return;
+    points.insert(points.end(), more_.begin(), more_.end());
     found.n = fitted(points, found.n);
     const double top = query_(found.n, found.pieces.front()).h;
     found.off = 0;
@@ -76,15 +77,16 @@ class PieceSearch {
  private:
   const ContactGeometry& geometry_;
   SupportQuery& query_;
+  const std::vector<dvec3>& more_;
   std::vector<Contact> all_;
 };
 
 }  // namespace
 
 LevelPieces level_pieces(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
-                         double depth) {
+                         double depth, const std::vector<dvec3>& more) {
   LevelPieces found{n, {}, 0};
-  const PieceSearch search(geometry, query);
+  const PieceSearch search(geometry, query, more);
   search.gather(found, first_depths * depth);
   for (int k = 0; k < rounds && !found.pieces.empty(); ++k) search.gather(found, depth);
   return found;

@@ -14,8 +14,9 @@ struct LevelPieces {
   double off = 0;               ///< how far control points are below the supporting plane, at most
 };
 
-/// Those that are nowhere farther below the supporting plane across a direction than so much.
+/// Those that are nowhere farther below the supporting plane across a direction than so much. The
+/// points are to lie in the plane as well.
 LevelPieces level_pieces(const ContactGeometry& geometry, SupportQuery& query, const dvec3& n,
-                         double depth);
+                         double depth, const std::vector<dvec3>& more = {});
 
 }  // namespace taut

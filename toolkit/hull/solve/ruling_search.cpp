@@ -137,9 +137,12 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
     const dvec3 n = halves ? unit(right.n + left.n) : exchange(right, left);
     if (const auto found = polished(n, {right.contact, left.contact}, across, geometry_.tie())) {
       const double way = glm::dot(right.n, left.n);
-      if (glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way) {
-        return settled(*found);
-      }
+      const bool is_between =
+          glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way;
+      // Contacts that have left their elements may have come upon others.
+      const bool is_right = which({found->n, found->contact[0], found->point[0]}).side == 0 &&
+                            which({found->n, found->contact[1], found->point[1]}).side == 1;
+      if (is_between && is_right) return settled(*found);
     }
     if (n == right.n || n == left.n) {
       if (halves) break;
@@ -149,15 +152,22 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
     // copies, are as high.
     const SupportingContact top = supporting(n, right.contact);
     const std::array<SupportingContact, 2> own = {climbed_from(right, n), climbed_from(left, n)};
-    const double h = std::max(glm::dot(own[0].x, n), glm::dot(own[1].x, n));
-    const bool go_on = h >= glm::dot(top.x, n) - geometry_.tie() &&
+    const std::size_t higher = glm::dot(own[0].x, n) >= glm::dot(own[1].x, n) ? 0 : 1;
+    const Likeness like = which(top);
+    // It may have climbed over to where the other one comes from, which is lower by now.
+    const double h = glm::dot(top.x, n);
+    const bool has_left = like.is_like && like.side != int(higher) &&
+                          glm::dot(own[1 - higher].x, n) < h - map_.resolution &&
+                          glm::distance(own[higher].x, top.x) <= map_.contact_extent();
+    const bool go_on = !has_left && glm::dot(own[higher].x, n) >= h - geometry_.tie() &&
                        glm::distance(own[0].x, own[1].x) > map_.contact_extent();
-    const SupportingContact& there = !go_on ? top : own[glm::dot(own[0].x, n) == h ? 0 : 1];
-    const auto [side, is_like] = which(there);
-    SupportingContact& moved = (go_on ? glm::dot(own[0].x, n) == h : side == 0) ? right : left;
+    const bool tells = !go_on && like.side != Likeness::unknown;
+    SupportingContact& moved = (tells ? like.side == 0 : higher == 0) ? right : left;
     // What is like neither is above both by no more than the resolution.
-    if (go_on || is_like) {
-      moved = there;
+    if (go_on) {
+      moved = own[higher];
+    } else if (like.is_like) {
+      moved = top;
     } else {
       moved.n = n;
     }
@@ -175,6 +185,8 @@ Ruling RulingSearch::at(const MapCrossing& crossing) const {
   const Which which = [&, from = first, to = second](const SupportingContact& s) {
     const int contact = int(cell.told_contact_of(s.n, s.x));
     // Of contacts in line those on the way before the first are to its side.
+    const bool is_third = cell.kind == MapCellKind::node && contact != from && contact != to;
+    if (is_third) return Likeness{Likeness::unknown, false};
     const int side = (contact - from) * (to - from) <= 0 ? 0 : 1;
     const Box& box = cell.contacts[std::size_t(contact)];
     return Likeness{side, distance(box, s.x) <= map_.contact_extent()};

@@ -54,8 +54,9 @@ class RulingSearch {
   Ruling settled(Ruling ruling) const;
 
   /// Which of two contacts supports, 0 or 1, and whether it is that one indeed: where it is
-  /// neither, it is the one to whose side it is, to within the resolution.
+  /// neither, it is the one to whose side it is, to within the resolution, if that is known.
   struct Likeness {
+    static constexpr int unknown = -1;
     int side = 0;
     bool is_like = true;
   };

@@ -8,8 +8,10 @@
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/solve/arc_solver.h"
 #include "taut/hull/solve/edge_places.h"
+#include "taut/hull/solve/facet_corners.h"
 #include "taut/hull/solve/known_arcs.h"
 #include "taut/hull/solve/level_pieces.h"
+#include "taut/hull/solve/node_ears.h"
 #include "taut/hull/solve/touching_plane.h"
 #include "taut/hull/trace/arc_pieces.h"
 #include "taut/hull/trace/merging.h"
@@ -17,6 +19,8 @@
 namespace taut {
 namespace {
 
+/// Depths, in units of the resolution, of corners below a plane that they do not lie in as yet.
+constexpr double first_corner_depths = 8;
 /// Places on edges that are one, in units of the resolution.
 constexpr double place_depths = 8;
 
@@ -30,25 +34,29 @@ class GraphSolver {
         system_(geometry),
         search_(system_, query, map),
         progress_(progress),
-        known_(known_arcs(search_, progress)) {}
+        known_(with_ears_cut(search_, progress)) {}
 
   SeparatingGraph run() {
     for (const MapGraph::Node& node : known_.graph.nodes) add(node);
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
-    unite_edge_places(geometry_, graph_, place_depths * map_.resolution);
-    for (SeparatingArc& arc : graph_.arcs) drop_empty_pieces(geometry_, arc.pieces);
+    unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
+    for (SeparatingArc& arc : graph_.arcs) {
+      tell_vertices(geometry_, arc.pieces);
+      drop_empty_pieces(geometry_, arc.pieces);
+    }
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);
   }
 
  private:
+  static KnownArcs with_ears_cut(const RulingSearch& search, const Progress& progress) {
+    KnownArcs known = known_arcs(search, progress);
+    cut_ears(search, known);
+    return known;
+  }
+
   void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
 
-  /// The ruling next to an end of an arc.
-  const Ruling& ruling_at(const MapGraph::End& end) const {
-    const std::vector<Ruling>& own = known_.rulings[std::size_t(end.arc)];
-    return end.end == 0 ? own.front() : own.back();
-  }
   /// Its contact to the right (0) or left of the way out of the node.
   std::size_t contact_beside(const MapGraph::End& end, std::size_t side) const {
     return end.end == 0 ? side : 1 - side;
@@ -80,45 +88,60 @@ class GraphSolver {
   std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node) {
     for (const int k : node.cells) {
       const MapCell& cell = map_.cells[std::size_t(k)];
-      if (!cell.has_plane()) continue;
-      const LevelPieces level = level_pieces(geometry_, query_, cell.normal, map_.resolution);
-      if (level.pieces.empty()) return std::nullopt;
-      const double slack = level.off > geometry_.tie() ? level.off : 0;
-      const double least = query_(level.n).h - std::max(geometry_.tie(), slack);
-      std::vector<Contact> corners;
-      for (const MapGraph::End& end : node.ends) {
-        for (const Contact& c : ruling_at(end).contact) {
-          const ClimbedContact there = climb(geometry_, c, level.n);
-          if (there.h >= least) corners.push_back(there.contact);
-        }
-      }
-      const auto f = facet_contacts(geometry_, query_, level.n, corners, level.pieces, slack);
-      if (!f || !f->is_facet()) return std::nullopt;
-      FacetNode facet{level.n, f->contacts, f->points, f->sides, {}};
-      facet.slots.assign(facet.contacts.size(), {});
-      return facet;
+      if (cell.has_plane()) return with_curved_sides(node, cell.normal);
     }
     return std::nullopt;
   }
 
+  std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node, const dvec3& n) {
+    LevelPieces level = level_pieces(geometry_, query_, n, map_.resolution);
+    if (level.pieces.empty()) return std::nullopt;
+    const auto near = level_corners(node, level.n, first_corner_depths);
+    const bool is_rounded =
+        level.off > geometry_.tie() || near.size() > level_corners(node, level.n, 0).size();
+    if (is_rounded) {
+      std::vector<dvec3> points;
+      points.reserve(near.size());
+      for (const ClimbedContact& c : near) points.push_back(c.x);
+      level = level_pieces(geometry_, query_, n, map_.resolution, points);
+      if (level.pieces.empty()) return std::nullopt;
+    }
+    std::vector<Contact> corners;
+    for (const ClimbedContact& c : level_corners(node, level.n, is_rounded ? 1 : 0)) {
+      corners.push_back(c.contact);
+    }
+    auto found = facet_contacts(geometry_, query_, level.n, corners, level.pieces,
+                                is_rounded ? map_.resolution : 0);
+    if (!found || !found->is_facet()) return std::nullopt;
+    if (is_rounded) unite_corners(geometry_, map_.contact_extent(), *found);
+    FacetNode facet{level.n, found->contacts, found->points, found->sides, {}};
+    facet.slots.assign(facet.contacts.size(), {});
+    return facet;
+  }
+
+  /// What arcs leave a node from, where it touches the plane across n: no deeper than rounding and
+  /// so many units of the resolution.
+  std::vector<ClimbedContact> level_corners(const MapGraph::Node& node, const dvec3& n,
+                                            double depths) {
+    const double least = query_(n).h - std::max(geometry_.tie(), depths * map_.resolution);
+    std::vector<ClimbedContact> corners;
+    for (const MapGraph::End& end : node.ends) {
+      for (const Contact& c : known_.ruling_at(end).contact) {
+        const ClimbedContact there = climb(geometry_, c, n);
+        if (there.h >= least) corners.push_back(there);
+      }
+    }
+    return corners;
+  }
+
   /// Contacts between arcs that follow each other are its corners.
   std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
-    const std::size_t count = node.ends.size();
-    std::vector<Contact> corners;
-    std::vector<dvec3> beside;
-    dvec3 n(0.0);
-    for (std::size_t k = 0; k < count; ++k) {
-      const MapGraph::End& own = node.ends[k];
-      corners.push_back(ruling_at(own).contact[contact_beside(own, 0)]);
-      beside.push_back(ruling_at(own).n);
-      n += beside.back();
+    const NodeCorners corners = corners_of(known_, node, map_);
+    TouchingPlane plane = touching_plane(geometry_, query_, corners.n, corners.contacts);
+    if (plane.in_line) {
+      plane = turned_to_part(geometry_, query_, plane, corners.contacts, corners.beside,
+                             map_.resolution);
     }
-    for (const int k : node.cells) {
-      const MapCell& cell = map_.cells[std::size_t(k)];
-      if (cell.has_plane()) n = cell.normal;
-    }
-    TouchingPlane plane = touching_plane(geometry_, query_, unit(n), corners);
-    if (plane.in_line) plane = turned_to_part(geometry_, query_, plane, beside);
     if (plane.off() > map_.resolution) {
       fail(plane.n, "the contacts of a facet lie in no plane");
     }
@@ -142,7 +165,7 @@ class GraphSolver {
     const std::size_t count = node.ends.size();
     if (straight.size() != count || count == 0) return {};
     const auto gap = [&](std::size_t end, std::size_t side) {
-      const Ruling& r = ruling_at(node.ends[end]);
+      const Ruling& r = known_.ruling_at(node.ends[end]);
       const dvec3& next = facet.points[(side + 1) % facet.points.size()];
       return glm::distance(r.point[contact_beside(node.ends[end], 0)], facet.points[side]) +
              glm::distance(r.point[contact_beside(node.ends[end], 1)], next);
@@ -197,7 +220,6 @@ class GraphSolver {
     if (arc.closed) known.push_back(known.front());
     ArcSolver solver(search_, known.front());
     for (std::size_t i = 1; i < known.size(); ++i) solver.go_on(known[i]);
-    for (const Unresolved& u : solver.unresolved()) graph_.unresolved.push_back(u);
     arc.pieces = solver.take();
     for (const int end : {1, 0}) {
       if (merges[std::size_t(end)]) merge(arc.pieces, end);
@@ -234,7 +256,10 @@ class GraphSolver {
         return;
       }
     }
-    fail(last.n, "the free end of an arc is not found");
+    // What is left of the arc is no deeper than the resolution.
+    ArcSolver solver(search_, pieces.back().rulings.back());
+    solver.end_in_one_contact();
+    append(pieces, solver.take());
     if (end == 0) reverse(pieces);
   }
 

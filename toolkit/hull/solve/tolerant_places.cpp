@@ -17,7 +17,7 @@ class TolerantPlaces {
       : system_(system), geometry_(system.geometry()), query_(query) {}
 
   double of(const ArcPiece& piece) {
-    double deepest = 0;
+    double deepest = piece.tolerant;
     for (const Ruling& r : piece.rulings) deepest = std::max(deepest, depth(r));
     if (deepest <= geometry_.tie()) return 0;
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/contact_system.h"
+
 namespace taut {
 namespace {
 
@@ -15,6 +18,8 @@ constexpr double longest_step = 0.25;
 constexpr double shortest_step = 1e-15;
 /// Width of contacts, relative to their length, below which they are in line.
 constexpr double line_width = 1e-6;
+/// How far parameters may leave [0, 1] by rounding.
+constexpr double parameter_slack = 1e-9;
 
 class PlaneSearch {
  public:
@@ -80,8 +85,12 @@ class PlaneSearch {
 /// Turns a plane about the line that its contacts lie in.
 class LineTurn {
  public:
-  LineTurn(const ContactGeometry& geometry, const TouchingPlane& plane)
-      : geometry_(geometry), plane_(plane) {
+  LineTurn(const ContactGeometry& geometry, const TouchingPlane& plane,
+           const std::vector<Contact>& contacts)
+      : geometry_(geometry),
+        plane_(plane),
+        contacts_(contacts),
+        parted_(std::max(least_parted, parted_depths * plane.off())) {
     for (const ClimbedContact& a : plane.contacts) {
       for (const ClimbedContact& b : plane.contacts) {
         if (glm::distance(a.x, b.x) > glm::distance(from_, to_)) {
@@ -102,30 +111,88 @@ class LineTurn {
   /// A contact has left the line.
   bool parts(double angle) const {
     const dvec3 n = turned(angle);
-    return std::any_of(plane_.contacts.begin(), plane_.contacts.end(), [&](const auto& c) {
-      const dvec3 x = climb(geometry_, c.contact, n).x;
-      return glm::length(glm::cross(x - from_, unit(to_ - from_))) > parted;
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
+      const dvec3 x = climb(geometry_, c, n).x;
+      return glm::length(glm::cross(x - from_, unit(to_ - from_))) > parted_;
     });
   }
-  /// Between an angle at which none has and one at which some have.
-  double found(double together, double apart) const {
+  /// The plane at which the first leaves the line, between an angle at which none has and one at
+  /// which some have; with contacts as they are on that side, but for the distance.
+  TouchingPlane found(double together, double apart, double depth) const {
     for (int k = 0; k < turn_halvings; ++k) {
       const double middle = 0.5 * (together + apart);
       (parts(middle) ? apart : together) = middle;
     }
-    return together;
+    TouchingPlane found = plane_;
+    found.n = turned(together);
+    double lowest = infinity;
+    double highest = -infinity;
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+      ClimbedContact& c = found.contacts[k];
+      const Contact parted_one = climb(geometry_, contacts_[k], turned(apart)).contact;
+      c.contact = on_border(parted_one, found.n, depth);
+      c.x = geometry_.point(c.contact);
+      c.h = glm::dot(c.x, found.n);
+      lowest = std::min(lowest, c.h);
+      highest = std::max(highest, c.h);
+    }
+    found.spread = highest - lowest;
+    return found;
+  }
+
+  /// The contact on a border of its element, if that is no lower by more than the depth, and no
+  /// farther than surfaces that curve as much as the scene is large rise so much over.
+  Contact on_border(const Contact& c, const dvec3& n, double depth) const {
+    const Contact there = moved_to_border(geometry_, c, std::sqrt(depth));
+    return glm::dot(geometry_.point(c) - geometry_.point(there), n) <= depth ? there : c;
   }
 
  private:
-  /// In the scene's frame; the distance grows with the angle.
-  static constexpr double parted = 1e-9;
+  /// How far from the line a contact has left it, which grows with the angle: in the scene's frame,
+  /// or in units of what the contacts are off their plane.
+  static constexpr double least_parted = 1e-9;
+  static constexpr double parted_depths = 8;
   static constexpr int turn_halvings = 50;
 
   const ContactGeometry& geometry_;
   const TouchingPlane& plane_;
+  /// Those that have not been in the line as yet: what has is told as one of its ends.
+  const std::vector<Contact>& contacts_;
+  double parted_;
   dvec3 from_ = dvec3(0.0), to_ = dvec3(0.0);
   dvec3 across_ = dvec3(0.0);
 };
+
+/// Three contacts' common plane, where Newton's method leaves them in their elements and near where
+/// they begin: there climbs may lead over to others.
+std::optional<TouchingPlane> solved_plane(const ContactGeometry& geometry, const dvec3& n,
+                                          const std::vector<Contact>& contacts) {
+  if (contacts.size() != CommonSupport::capacity) return std::nullopt;
+  CommonSupport s;
+  s.n = n;
+  for (const Contact& c : contacts) s.add(geometry, c);
+  const CommonSupport start = s;
+  if (!ContactSystem(geometry).solve(s)) return std::nullopt;
+  TouchingPlane found;
+  found.n = s.n;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Contact c = clamped(s.contact[k]);
+    const bool has_left =
+        glm::distance(dvec2(c.u, c.v), dvec2(s.contact[k].u, s.contact[k].v)) > parameter_slack;
+    const dvec3 x = geometry.point(c);
+    double nearest = infinity;
+    for (std::size_t other = 0; other < contacts.size(); ++other) {
+      if (other != k) nearest = std::min(nearest, glm::distance(x, start.jet[other].x));
+    }
+    if (has_left || glm::distance(x, start.jet[k].x) > nearest) return std::nullopt;
+    found.contacts.push_back({c, x, glm::dot(x, s.n)});
+  }
+  const auto [lowest, highest] = std::minmax_element(
+      found.contacts.begin(), found.contacts.end(),
+      [](const ClimbedContact& a, const ClimbedContact& b) { return a.h < b.h; });
+  found.spread = highest->h - lowest->h;
+  return found;
+}
 
 void find_above(SupportQuery& query, TouchingPlane& plane) {
   double highest = -infinity;
@@ -136,8 +203,9 @@ void find_above(SupportQuery& query, TouchingPlane& plane) {
 }  // namespace
 
 TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& query,
-                             const TouchingPlane& plane, const std::vector<dvec3>& beside) {
-  const LineTurn turn(geometry, plane);
+                             const TouchingPlane& plane, const std::vector<Contact>& contacts,
+                             const std::vector<dvec3>& beside, double depth) {
+  const LineTurn turn(geometry, plane, contacts);
   std::optional<double> together, apart;
   for (const dvec3& n : beside) {
     const double angle = turn.angle(n);
@@ -145,16 +213,17 @@ TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& quer
     if (!own || std::abs(angle) < std::abs(*own)) own = angle;
   }
   if (!together || !apart) return plane;
-  std::vector<Contact> contacts;
-  for (const ClimbedContact& c : plane.contacts) contacts.push_back(c.contact);
-  TouchingPlane found =
-      PlaneSearch(geometry, turn.turned(turn.found(*together, *apart)), contacts).run();
+  TouchingPlane found = turn.found(*together, *apart, depth);
   find_above(query, found);
   return found;
 }
 
 TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& query, dvec3 n,
                              const std::vector<Contact>& contacts) {
+  if (std::optional<TouchingPlane> solved = solved_plane(geometry, n, contacts)) {
+    find_above(query, *solved);
+    if (solved->off() <= geometry.tie()) return *solved;
+  }
   TouchingPlane plane = PlaneSearch(geometry, n, contacts).run();
   find_above(query, plane);
   return plane;

@@ -29,8 +29,11 @@ TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& quer
                              const std::vector<Contact>& contacts);
 
 /// Of contacts in line, whose plane may turn about the line: the plane at which the first of them
-/// leaves the line, between directions beside it; as it is if none does, or all have.
+/// leaves the line, between directions beside it; as it is if none does, or all have. The contacts
+/// are those that the plane was asked for with; those in the line then are on borders that are
+/// lower by no more than `depth`.
 TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& query,
-                             const TouchingPlane& plane, const std::vector<dvec3>& beside);
+                             const TouchingPlane& plane, const std::vector<Contact>& contacts,
+                             const std::vector<dvec3>& beside, double depth);
 
 }  // namespace taut

@@ -3,30 +3,46 @@
 #include <algorithm>
 #include <vector>
 
+#include "taut/core/disjoint_sets.h"
 #include "taut/hull/stitch/curve_chains.h"
 #include "taut/surface/point_grid.h"
 
 namespace taut {
 namespace {
 
-/// The points in which curves end.
+bool share_face(const HullCurve& a, const HullCurve& b) {
+  return std::any_of(a.faces.begin(), a.faces.end(), [&](int face) {
+    return std::find(b.faces.begin(), b.faces.end(), face) != b.faces.end();
+  });
+}
+
+/// The points in which curves end, as often as the boundary passes them: ends in one place meet if
+/// a chain of curves about it leads from the one to the other over faces that they share.
 int vertex_count(const HullBoundary& boundary) {
-  std::vector<dvec3> ends;
+  struct End {
+    const HullCurve* curve;
+    dvec3 x;
+  };
+  std::vector<End> ends;
   Box box;
   for (const HullCurve& c : boundary.curves) {
     if (c.closed) continue;
     for (const dvec3& p : {c.points.front(), c.points.back()}) {
-      ends.push_back(p);
+      ends.push_back({&c, p});
       box.include(p);
     }
   }
-  PointGrid vertices(box, same_curve_end);
-  int count = 0;
-  for (const dvec3& p : ends) {
-    bool known = false;
-    vertices.visit_near(p, [&](int) { known = true; });
-    if (!known) vertices.insert(p, count++);
+  PointGrid places(box, same_curve_end);
+  DisjointSets vertices(ends.size());
+  for (int k = 0; k < int(ends.size()); ++k) {
+    const End& own = ends[std::size_t(k)];
+    places.visit_near(own.x, [&](int other) {
+      if (share_face(*own.curve, *ends[std::size_t(other)].curve)) vertices.unite(k, other);
+    });
+    places.insert(own.x, k);
   }
+  int count = 0;
+  for (int k = 0; k < int(ends.size()); ++k) count += vertices.find(k) == k ? 1 : 0;
   return count;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "taut/bounds/poles.h"
 #include "taut/surface/rulings.h"
@@ -71,7 +72,7 @@ int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling
 
 /// The face, of those that end where the segment begins, whose rulings make up the segment.
 int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t end) {
-  const Contact& c = r.contact[end];
+  const Contact c = geometry.first(geometry.canonical(r.contact[end]));
   if (c.kind != SourceKind::edge) return -1;
   for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(c)) {
     const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
@@ -89,6 +90,15 @@ int source_along(const ContactGeometry& geometry, const ArcPiece& piece) {
   return source >= 0 ? source : source_along(geometry, r, 1);
 }
 
+/// It is one ruling for all that labels tell.
+bool is_short(const ArcPiece& piece) {
+  const Ruling& first = piece.rulings.front();
+  return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
+    return glm::distance(r.point[0], first.point[0]) <= same_ruling &&
+           glm::distance(r.point[1], first.point[1]) <= same_ruling;
+  });
+}
+
 }  // namespace
 
 void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) {
@@ -96,12 +106,14 @@ void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) 
   for (HullFace& face : boundary.faces) {
     if (face.kind != FaceKind::scroll) continue;
     const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
+    std::optional<int> own;
     for (int k = 0; k < face.scroll.count; ++k) {
-      const auto piece = std::size_t(face.scroll.first + k) % pieces.size();
-      const int source = source_along(geometry, pieces[piece]);
-      if (k == 0) face.source = source;
-      if (source != face.source) face.source = -1;
+      const ArcPiece& piece = pieces[std::size_t(face.scroll.first + k) % pieces.size()];
+      if (is_short(piece)) continue;
+      const int source = source_along(geometry, piece);
+      own = !own || source == *own ? source : -1;
     }
+    face.source = own.value_or(-1);
   }
 }
 

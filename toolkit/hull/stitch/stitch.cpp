@@ -12,6 +12,7 @@
 #include "taut/hull/stitch/edge_incidence.h"
 #include "taut/hull/stitch/ruled_faces.h"
 #include "taut/hull/stitch/trim_stretches.h"
+#include "taut/hull/stitch/whole_patches.h"
 
 namespace taut {
 namespace {
@@ -24,12 +25,12 @@ bool vertices_only(const ArcPiece& piece) {
 class Stitcher {
  public:
   Stitcher(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
-           const std::vector<CulledCell>& cells)
+           double depth)
       : geometry_(geometry),
         graph_(std::move(graph)),
         boundary_(begin(geometry, graph_)),
         stretches_(geometry, graph_,
-                   trim_regions(geometry, query, graph_, cells, boundary_.unresolved),
+                   regions_of(geometry, query, graph_, depth, boundary_.unresolved),
                    boundary_.unresolved) {}
 
   HullBoundary run();
@@ -41,6 +42,17 @@ class Stitcher {
     boundary.unresolved = graph.unresolved;
     boundary.exhausted = graph.exhausted;
     return boundary;
+  }
+
+  static std::vector<TrimRegion> regions_of(const ContactGeometry& geometry, SupportQuery& query,
+                                            const SeparatingGraph& graph, double depth,
+                                            std::vector<Unresolved>& unresolved) {
+    std::vector<TrimRegion> regions = trim_regions(geometry, graph, unresolved);
+    // Of a search that was given up they would tell nothing, and cost as much.
+    if (!graph.exhausted) {
+      add_whole_patches(geometry, query, graph, depth, regions, unresolved);
+    }
+    return regions;
   }
 
   void make_patches();
@@ -513,8 +525,8 @@ HullBoundary Stitcher::run() {
 }  // namespace
 
 HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
-                    const std::vector<CulledCell>& cells) {
-  return Stitcher(geometry, query, std::move(graph), cells).run();
+                    double depth) {
+  return Stitcher(geometry, query, std::move(graph), depth).run();
 }
 
 }  // namespace taut

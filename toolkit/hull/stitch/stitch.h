@@ -9,9 +9,9 @@ namespace taut {
 /// Joins the separating curves of a scene to the boundary of its convex hull: trimmed patches,
 /// scrolls and facets with the curves between them. What does not fit is told in
 /// HullBoundary::unresolved, after what the graph has there; a boundary without any is closed:
-/// every curve has two faces, and its Euler characteristic is that of the sphere. The cells tell
-/// which patches can be on the hull at all.
+/// every curve has two faces, and its Euler characteristic is that of the sphere. What lies below
+/// supporting planes by no more than `depth` and rounding may be on the hull.
 HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
-                    const std::vector<CulledCell>& cells);
+                    double depth = 0);
 
 }  // namespace taut

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <tuple>
 
-#include "taut/bounds/supporting_plane.h"
 #include "taut/hull/contact/facet_contacts.h"
 
 namespace taut {
@@ -14,9 +12,6 @@ namespace {
 
 /// Parameters that agree to this are the same place of a border.
 constexpr double same_border_parameter = 1e-9;
-
-/// Gauss curvature, in the scene's frame, below which a surface is flat or developable.
-constexpr double flat_curvature = 1e-10;
 
 /// The trace of a contact along a piece of a half-arc, in the walk's direction.
 struct TrimArc {
@@ -74,29 +69,18 @@ TrimStretch on_border(int side, double from, double to) {
   return s;
 }
 
-/// The whole border, with the patch to the left as seen against its normal times the sign.
-std::vector<TrimStretch> all_around(int sign) {
-  std::vector<TrimStretch> loop;
-  loop.reserve(4);
-  for (int k = 0; k < 4; ++k) {
-    loop.push_back(sign > 0 ? on_border(k, 0, 1) : on_border(3 - k, 1, 0));
-  }
-  return loop;
-}
-
 class Trimmer {
  public:
-  Trimmer(const ContactGeometry& geometry, SupportQuery& query, const SeparatingGraph& graph,
+  Trimmer(const ContactGeometry& geometry, const SeparatingGraph& graph,
           std::vector<Unresolved>& unresolved)
-      : geometry_(geometry), query_(query), graph_(graph), unresolved_(unresolved) {}
+      : geometry_(geometry), graph_(graph), unresolved_(unresolved) {}
 
-  std::vector<TrimRegion> run(const std::vector<CulledCell>& cells) {
+  std::vector<TrimRegion> run() {
     for (int a = 0; a < int(graph_.arcs.size()); ++a) {
       for (int contact = 0; contact < 2; ++contact) add_trim_arcs({a, contact});
     }
     link();
     for (OrientedPatch& oriented : patches_) trim(oriented);
-    if (!graph_.exhausted) add_whole_patches(cells);
     return std::move(regions_);
   }
 
@@ -111,11 +95,9 @@ class Trimmer {
   void add_border(const OrientedPatch& oriented, double from, double to, Loop& loop) const;
   void add_regions(const OrientedPatch& oriented, std::vector<Loop> loops);
   std::vector<dvec2> polyline(const Loop& loop) const;
-  void add_whole_patches(const std::vector<CulledCell>& cells);
   void fail(const dvec3& n, const char* reason) { unresolved_.push_back({n, reason}); }
 
   const ContactGeometry& geometry_;
-  SupportQuery& query_;
   const SeparatingGraph& graph_;
   std::vector<Unresolved>& unresolved_;
   std::vector<TrimArc> trim_arcs_;
@@ -361,7 +343,7 @@ void Trimmer::add_regions(const OrientedPatch& oriented, std::vector<Loop> loops
                         [&](const auto& hole) { return !inside_other(hole.second); });
     if (whole) {
       regions_.push_back(
-          {oriented.instance, oriented.patch, oriented.sign, {all_around(oriented.sign)}});
+          {oriented.instance, oriented.patch, oriented.sign, {whole_border(oriented.sign)}});
       outlines.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
     }
   }
@@ -379,34 +361,6 @@ void Trimmer::add_regions(const OrientedPatch& oriented, std::vector<Loop> loops
       return;
     }
     regions_[first + owner].loops.push_back(std::move(loop));
-  }
-}
-
-/// Patches that no separating curve enters lie on the hull as a whole or not at all; ruled ones are
-/// parts of scrolls and facets.
-void Trimmer::add_whole_patches(const std::vector<CulledCell>& cells) {
-  std::set<std::tuple<int, int, int>> candidates;
-  for (const CulledCell& c : cells) {
-    if (c.state == CellState::off) continue;
-    for (const int sign : {1, -1}) {
-      const bool possible =
-          c.state == CellState::ruled || (sign > 0 ? c.signs.plus : c.signs.minus);
-      if (possible) candidates.emplace(c.instance, c.patch, sign);
-    }
-  }
-  for (const auto& [instance, patch, sign] : candidates) {
-    if (patch_index_.contains({instance, patch, sign})) continue;
-    const Contact c{instance, SourceKind::face, patch, 0.5, 0.5};
-    if (geometry_.is_ruled(c) || geometry_.is_repeated(c)) continue;
-    const ContactJet j = geometry_.jet(c);
-    const dvec3 n = double(sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-    if (n == dvec3(0.0) || !is_supporting(geometry_, query_, n, glm::dot(j.x, n), c)) continue;
-    const double uv = glm::dot(j.dxy, n);
-    const double det = glm::dot(j.dxx, n) * glm::dot(j.dyy, n) - uv * uv;
-    const double size = glm::length(j.dx[0]) * glm::length(j.dx[1]);
-    if (!(det > flat_curvature * size * size))
-      fail(n, "a flat or developable face lies on the hull");
-    regions_.push_back({instance, patch, sign, {all_around(sign)}});
   }
 }
 
@@ -433,11 +387,18 @@ HalfArc next_half_arc(const SeparatingGraph& graph, const HalfArc& half) {
   return {};
 }
 
-std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, SupportQuery& query,
-                                     const SeparatingGraph& graph,
-                                     const std::vector<CulledCell>& cells,
+std::vector<TrimStretch> whole_border(int sign) {
+  std::vector<TrimStretch> loop;
+  loop.reserve(4);
+  for (int k = 0; k < 4; ++k) {
+    loop.push_back(sign > 0 ? on_border(k, 0, 1) : on_border(3 - k, 1, 0));
+  }
+  return loop;
+}
+
+std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, const SeparatingGraph& graph,
                                      std::vector<Unresolved>& unresolved) {
-  return Trimmer(geometry, query, graph, unresolved).run(cells);
+  return Trimmer(geometry, graph, unresolved).run();
 }
 
 }  // namespace taut

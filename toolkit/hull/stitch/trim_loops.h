@@ -27,14 +27,14 @@ struct TrimRegion {
   std::vector<std::vector<TrimStretch>> loops;
 };
 
-/// The regions of all Bezier patches that lie on the hull, bounded by the contacts of separating
-/// curves and by the patches' borders. The pieces of the arcs are those that the walk leads along;
-/// where it meets no curve, support queries tell whether a patch with cells that may be on the hull
-/// lies there as a whole, unless the search for the graph is exhausted: they would cost as much.
-/// Reasons why something does not fit are added to `unresolved`.
-std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, SupportQuery& query,
-                                     const SeparatingGraph& graph,
-                                     const std::vector<CulledCell>& cells,
+/// The whole border of a patch, with the patch to the left as seen against its normal times the
+/// sign.
+std::vector<TrimStretch> whole_border(int sign);
+
+/// The regions of Bezier patches that lie on the hull and that contacts of separating curves bound,
+/// with the patches' borders. The pieces of the arcs are those that the walk leads along. Reasons
+/// why something does not fit are added to `unresolved`.
+std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, const SeparatingGraph& graph,
                                      std::vector<Unresolved>& unresolved);
 
 }  // namespace taut

@@ -207,12 +207,32 @@ bool same_elements(const Ruling& a, const Ruling& b) {
   return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
 }
 
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+  std::vector<ArcPiece> told;
+  for (ArcPiece& piece : pieces) {
+    for (const std::size_t i : {0u, 1u}) {
+      const Ruling first = piece.rulings.front();
+      const bool stays = std::all_of(piece.rulings.begin(), piece.rulings.end(),
+                                     [&](const Ruling& r) { return r.point[i] == first.point[i]; });
+      if (!stays || first.contact[i].kind != SourceKind::edge) continue;
+      const Contact vertex = geometry.first(geometry.canonical(first.contact[i]));
+      if (vertex.kind != SourceKind::vertex) continue;
+      for (Ruling& r : piece.rulings) r.contact[i] = vertex;
+    }
+    std::vector<ArcPiece> own;
+    own.push_back(std::move(piece));
+    append(told, std::move(own));
+  }
+  pieces = std::move(told);
+}
+
 void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
   auto first = more.begin();
   if (!pieces.empty() && first != more.end() &&
       same_elements(pieces.back().rulings.back(), first->rulings.front())) {
     auto& to = pieces.back().rulings;
     to.insert(to.end(), first->rulings.begin() + 1, first->rulings.end());
+    pieces.back().tolerant = std::max(pieces.back().tolerant, first->tolerant);
     ++first;
   }
   std::move(first, more.end(), std::back_inserter(pieces));

@@ -1,0 +1,53 @@
+#include "taut/hull/stitch/whole_patches.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "models.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+/// What is added where no curves bound anything.
+std::vector<TrimRegion> whole(const Shape& shape, std::vector<Unresolved>& unresolved) {
+  const Scene scene = make_scene(shape);
+  const ContactGeometry geometry(scene);
+  SupportQuery query(scene);
+  std::vector<TrimRegion> regions;
+  add_whole_patches(geometry, query, {}, 0, regions, unresolved);
+  return regions;
+}
+
+std::set<int> patches_of(const Shape& shape) {
+  std::vector<Unresolved> unresolved;
+  std::set<int> all;
+  for (const TrimRegion& r : whole(shape, unresolved)) {
+    EXPECT_TRUE(all.insert(r.patch).second);
+    EXPECT_EQ(r.loops.size(), 1U);
+    EXPECT_EQ(r.loops.front().size(), 4U);
+  }
+  EXPECT_TRUE(unresolved.empty());
+  return all;
+}
+
+TEST(WholePatches, OfASmoothBodyAreAll) {
+  EXPECT_EQ(patches_of(sphere(2)), (std::set<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+}
+
+/// Where the ball inside touches, both support; what lies within the other is none of the hull.
+TEST(WholePatches, AreNotThoseInside) {
+  EXPECT_EQ(patches_of(sphere(0.5) + shifted(sphere(1), {0, 0, -0.5})),
+            (std::set<int>{8, 9, 10, 11, 12, 13, 14, 15}));
+}
+
+TEST(WholePatches, OfTwoThatCoincideAreOfOne) {
+  const std::set<int> found = patches_of(sphere(1) + mapped(sphere(1), skew_rotation()));
+  EXPECT_EQ(found.size(), 8U);
+  EXPECT_EQ(*found.begin() < 8, *found.rbegin() < 8);
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "taut/hull/contact/facet_contacts.h"
+
+namespace taut {
+
+/// Corners of a facet no farther apart than so much, with a straight side between them, become one;
+/// and what is as near to an end of an edge is there: where rounding leaves curved sides level but
+/// for their ends.
+void unite_corners(const ContactGeometry& geometry, double distance, FacetContacts& facet);
+
+}  // namespace taut
