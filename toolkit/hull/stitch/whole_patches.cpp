@@ -28,6 +28,7 @@ class WholePatches {
   }
 
   void run() {
+    if (!has_curved_patches()) return;
     if (regions_.empty() && graph_.arcs.empty() && graph_.nodes.empty()) begin();
     do {
       spread();
@@ -40,6 +41,15 @@ class WholePatches {
     Contact middle;
     int sign = 1;
   };
+
+  /// Ruled ones are parts of scrolls and facets.
+  bool has_curved_patches() const {
+    const Model& model = geometry_.scene().model();
+    return std::any_of(model.parts().begin(), model.parts().end(), [](const Part& part) {
+      return std::any_of(part.patches().begin(), part.patches().end(),
+                         [](const Patch& patch) { return !patch.ruled(); });
+    });
+  }
 
   dvec3 normal(const Contact& c, int sign) const {
     const ContactJet j = geometry_.jet(c);
