@@ -81,6 +81,11 @@ int last_vertex(const std::vector<EdgePiece>& pieces, const std::vector<bool>& s
   return -1;
 }
 
+/// Edges are told straight when they are off by no more than this, in units of how far elements
+/// that are one miss each other: that is an eighth of the resolution where these are asked for, and
+/// what rounding moves points by is up to half of it.
+constexpr double straight_share = 4;
+
 }  // namespace
 
 dvec2 parameter_change(const ContactJet& j, const dvec3& dx) {
@@ -159,7 +164,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop, doubl
       }
     }
     for (const dvec3& p : part.vertices()) own.vertices.push_back(scale * (p - center));
-    find_straight(part, 4 * same, own);
+    find_straight(part, straight_share * same, own);
   }
   find_repeated_elements(same);
 }

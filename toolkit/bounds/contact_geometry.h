@@ -50,7 +50,8 @@ class ContactGeometry {
  public:
   /// The scene must outlive it. `stop`: makes evaluations throw Cancelled from then on, so that all
   /// that works on contacts stops. `same`: elements that miss each other by no more, in the scene's
-  /// frame, are one, and edges straight that are no farther from a segment; rounding apart.
+  /// frame, are one, and edges straight that are no farther from a segment than four times as much;
+  /// rounding apart.
   explicit ContactGeometry(const Scene& scene, std::stop_token stop = {}, double same = 0);
 
   const Scene& scene() const { return scene_; }
