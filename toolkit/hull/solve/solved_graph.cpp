@@ -256,7 +256,7 @@ class GraphSolver {
         return;
       }
     }
-    // What is left of the arc is no deeper than the resolution.
+    // How deep what is left of the arc lies is told with its pieces.
     ArcSolver solver(search_, pieces.back().rulings.back());
     solver.end_in_one_contact();
     append(pieces, solver.take());
