@@ -216,7 +216,7 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
       continue;
     }
     const EdgeStretch& side = f.sides[k];
-    const BezierCurve curve = geometry_.curve({side.instance, SourceKind::edge, side.piece, 0, 0});
+    const BezierCurve curve = geometry_.curve(side.at(0));
     const double sense = side.from < side.to ? 1 : -1;
     const auto at = [&](double share) {
       return jet(curve, (1 - share) * side.from + share * side.to);
@@ -262,7 +262,7 @@ bool ContactSet::leads_level(const Contact& from, const Contact& c) const {
 /// support values do not tell where it leaves it.
 bool ContactSet::is_beyond_end(const FacetContacts& f, const Contact& c) const {
   const auto starts = [&](const EdgeStretch& side, double t) {
-    const Contact end{side.instance, SourceKind::edge, side.piece, t, 0};
+    const Contact end = side.at(t);
     std::vector<Contact> result;
     if (t != 0 && t != 1) return result;
     const std::optional<Contact> next = beyond(geometry_, end, {ContactExit::Kind::end, int(t)});

@@ -341,7 +341,7 @@ void Summation::add_side(const HullFace& face, const dvec3& begin, const EdgeStr
   const double sense = side.to < side.from ? -1 : 1;
   const double offset = std::sqrt(1.0 / 12);
   const auto f = [&](double t, double, Quantities& sample) {
-    const ContactJet j = geometry_.jet({side.instance, SourceKind::edge, side.piece, t, 0});
+    const ContactJet j = geometry_.jet(side.at(t));
     const dvec3 ray = j.x - begin;
     const dvec3 element = glm::cross(ray, j.dx[0]);
     for (const double r : {0.5 - offset, 0.5 + offset}) {

@@ -5,7 +5,7 @@ namespace {
 
 /// The contact at a share of the way along a stretch of an edge.
 Contact contact_on(const EdgeStretch& side, double s) {
-  return {side.instance, SourceKind::edge, side.piece, Interval{side.from, side.to}.at(s), 0};
+  return side.at(Interval{side.from, side.to}.at(s));
 }
 
 }  // namespace

@@ -54,6 +54,9 @@ struct EdgeStretch {
   int piece = -1;  ///< -1: none
   double from = 0;
   double to = 0;
+
+  /// The edge's point with that parameter. @pre there is a piece
+  Contact at(double t) const { return {instance, SourceKind::edge, piece, t, 0}; }
 };
 
 enum class HullCurveKind {

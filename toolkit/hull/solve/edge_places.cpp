@@ -28,7 +28,7 @@ class EdgePlaces {
   void add(const EdgeStretch& s) {
     if (s.piece < 0) return;
     for (const double t : {s.from, s.to}) {
-      add({s.instance, SourceKind::edge, s.piece, t, 0});
+      add(s.at(t));
       level_[{s.instance, s.piece, -1, 0}].insert(t);
     }
   }
@@ -72,7 +72,7 @@ class EdgePlaces {
   void settle(EdgeStretch& s) const {
     if (s.piece < 0) return;
     for (double* t : {&s.from, &s.to}) {
-      Contact c{s.instance, SourceKind::edge, s.piece, *t, 0};
+      Contact c = s.at(*t);
       settle(c);
       *t = c.u;
     }

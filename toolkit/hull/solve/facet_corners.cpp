@@ -5,10 +5,6 @@
 namespace taut {
 namespace {
 
-Contact on_edge(const EdgeStretch& s, double t) {
-  return {s.instance, SourceKind::edge, s.piece, t, 0};
-}
-
 void erase(std::size_t k, FacetContacts& facet) {
   const auto at = std::ptrdiff_t(k);
   facet.contacts.erase(facet.contacts.begin() + at);
@@ -22,12 +18,12 @@ void unite_corners(const ContactGeometry& geometry, double distance, FacetContac
   if (facet.sides.empty()) return;
   for (EdgeStretch& s : facet.sides) {
     if (s.piece < 0) continue;
-    s.from = moved_to_border(geometry, on_edge(s, s.from), distance).u;
-    s.to = moved_to_border(geometry, on_edge(s, s.to), distance).u;
+    s.from = moved_to_border(geometry, s.at(s.from), distance).u;
+    s.to = moved_to_border(geometry, s.at(s.to), distance).u;
   }
   for (std::size_t k = 0; k < facet.contacts.size(); ++k) {
     Contact& c = facet.contacts[k];
-    c = facet.is_curved(k) ? on_edge(facet.sides[k], facet.sides[k].from)
+    c = facet.is_curved(k) ? facet.sides[k].at(facet.sides[k].from)
                            : moved_to_border(geometry, c, distance);
     facet.points[k] = geometry.point(c);
   }

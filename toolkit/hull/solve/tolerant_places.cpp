@@ -39,7 +39,7 @@ class TolerantPlaces {
       if (side.piece < 0) continue;
       for (int k = 1; k < side_places; ++k) {
         const double t = glm::mix(side.from, side.to, double(k) / side_places);
-        look(geometry_.point({side.instance, SourceKind::edge, side.piece, t, 0}));
+        look(geometry_.point(side.at(t)));
       }
     }
     return deepest <= geometry_.tie() ? 0 : deepest;

@@ -40,10 +40,6 @@ SourceContact place_of(const Scene& scene, const Contact& c) {
   return made(patch.face, patch.u.at(c.u), patch.v.at(c.v));
 }
 
-Contact on_edge(const EdgeStretch& side, double t) {
-  return {side.instance, SourceKind::edge, side.piece, t, 0};
-}
-
 /// Makes the document of a boundary.
 class DocumentMaker {
  public:
@@ -130,7 +126,7 @@ void DocumentMaker::collect_sources() {
     sources_.add(face.source);
     for (const Contact& c : face.contacts) add(c);
     for (const EdgeStretch& side : face.sides) {
-      if (side.piece >= 0) add(on_edge(side, side.from));
+      if (side.piece >= 0) add(side.at(side.from));
     }
     if (face.kind != FaceKind::scroll) continue;
     for_each_piece(face.scroll, [&](const ArcPiece& piece) {
@@ -153,8 +149,8 @@ HullDocument::Contact DocumentMaker::contact(const Contact& c, const dvec3& poin
 
 HullDocument::Side DocumentMaker::side(const EdgeStretch& stretch) const {
   if (stretch.piece < 0) return {};
-  const HullDocument::Contact from = contact(on_edge(stretch, stretch.from), dvec3(0.0));
-  const HullDocument::Contact to = contact(on_edge(stretch, stretch.to), dvec3(0.0));
+  const HullDocument::Contact from = contact(stretch.at(stretch.from), dvec3(0.0));
+  const HullDocument::Contact to = contact(stretch.at(stretch.to), dvec3(0.0));
   return {from.source, from.uv, to.uv};
 }
 
