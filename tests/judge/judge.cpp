@@ -82,6 +82,7 @@ Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_o
     hull = convex_hull(scene, hull_options);
   } catch (const HullNotConverged& stop) {
     hull = *stop.best;
+    verdict.missed = stop.what();
   }
   verdict.seconds = watch.seconds();
   verdict.bound = hull.distance_bound / scene.diagonal();
@@ -93,8 +94,9 @@ Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_o
   verdict.found = {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
                    boundary.count(FaceKind::facet), int(boundary.curves.size())};
   if (!verdict.closed) return verdict;
+  verdict.within = verdict.missed.empty();
   const Counts& counts = subject.expected.counts;
-  if (differ(verdict.found, counts)) {
+  if (verdict.within && differ(verdict.found, counts)) {
     verdict.miscounted = text(verdict.found) + ", not " + text(counts);
   }
   VerifyOptions options;

@@ -13,12 +13,15 @@ namespace taut_test {
 /// What the judge found of one model's hull.
 struct Verdict {
   bool closed = false;    ///< there is a boundary, and nothing of it is unresolved
+  bool within = false;    ///< and it is exact to within the resolution
   bool verified = false;  ///< verify() finds nothing wrong at 1e-9 of the diagonal
   /// Why what the hull says is wrong, by a support function of the judge's own or by measures that
   /// are expected; empty if it is not.
   std::string wrong;
   /// "found, not expected" if the boundary is closed, yet not made of what is expected; else empty.
   std::string miscounted;
+  /// What is said of a boundary that is not within the resolution; else empty.
+  std::string missed;
   int unresolved = 0;
   Counts found;
   /// Measures that were compared: V, A and W for volume, area and mean width.

@@ -1,5 +1,6 @@
 // Judges hulls of natural models and of cases: for each family and variant, and each case, a line
-// of how many are closed and verified, of wrong claims and counts, and times.
+// of how many are closed, within the resolution and verified, of wrong claims and counts, and
+// times.
 //   judge [SEEDS] [solving] [NAME | -NAME ...]   5 seeds of all; what has the names, without those
 // after -; "solving": by the method that is to take over.
 // A name is a run of whole parts of "families/GROUP/FAMILY/VARIANT" or "cases/GROUP/CASE", as
@@ -54,11 +55,12 @@ class Names {
 
 /// Prints the line of verdicts of one name. Whether nothing is wrong.
 bool print(const std::string& name, const std::vector<Verdict>& verdicts) {
-  int closed = 0, verified = 0, wrong = 0, miscounted = 0, unresolved = 0;
+  int closed = 0, within = 0, verified = 0, wrong = 0, miscounted = 0, unresolved = 0;
   double seconds = 0, bound = 0;
-  std::string reason, counts;
+  std::string reason, counts, missed;
   for (const Verdict& v : verdicts) {
     closed += v.closed ? 1 : 0;
+    within += v.within ? 1 : 0;
     verified += v.verified ? 1 : 0;
     wrong += v.wrong.empty() ? 0 : 1;
     miscounted += v.miscounted.empty() ? 0 : 1;
@@ -66,14 +68,17 @@ bool print(const std::string& name, const std::vector<Verdict>& verdicts) {
     seconds = std::max(seconds, v.seconds);
     bound = std::max(bound, v.bound);
     if (reason.empty() && !v.wrong.empty()) reason = "  " + v.wrong;
+    if (missed.empty()) missed = v.missed;
     if (counts.empty() && !v.miscounted.empty()) counts = ": " + v.miscounted;
   }
   const Verdict& first = verdicts.front();
+  if (!missed.empty()) reason += "  " + missed;
   if (miscounted > 0) reason += "  counts " + std::to_string(miscounted) + counts;
   std::printf(
-      "%-44s closed %d/%zu verified %d wrong %d  p/s/f/c %-12s measured %-2s unresolved %-5d "
+      "%-44s closed %d/%zu within %d verified %d wrong %d  p/s/f/c %-12s measured %-2s unresolved "
+      "%-5d "
       "bound %.1e  %.2f s%s\n",
-      name.c_str(), closed, verdicts.size(), verified, wrong, text(first.found).c_str(),
+      name.c_str(), closed, verdicts.size(), within, verified, wrong, text(first.found).c_str(),
       first.measured.empty() ? "-" : first.measured.c_str(), unresolved, bound, seconds,
       reason.c_str());
   std::fflush(stdout);

@@ -21,24 +21,6 @@ constexpr long map_candidates_a_patch = 200;
 /// Spots that could not be resolved beyond which it does not help to know more.
 constexpr std::size_t few_open_spots = 16;
 
-/// Depth of places below supporting planes, in units of the resolution, up to which what lies there
-/// may be told either way.
-constexpr double deepest_tolerated = 4;
-
-/// Faces with places that are deeper are no more than a guess.
-void tell_deep_places(double depth, HullBoundary& boundary) {
-  for (const HullFace& face : boundary.faces) {
-    if (!(face.tolerant > depth)) continue;
-    const bool is_facet = face.kind == FaceKind::facet;
-    const dvec3 n = is_facet ? face.n
-                             : boundary.arcs[std::size_t(face.scroll.arc)]
-                                   .pieces[std::size_t(face.scroll.first)]
-                                   .rulings.front()
-                                   .n;
-    boundary.unresolved.push_back({n, "a face lies deeper than the resolution allows"});
-  }
-}
-
 /// Solved from the map, and stitched.
 HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions,
                     const HullOptions& options, HullStatistics& statistics) {
@@ -51,7 +33,6 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   options.progress.update("stitch", 0);
   HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
   find_tolerant_places(ContactSystem(geometry), query, boundary);
-  tell_deep_places(deepest_tolerated * directions.resolution, boundary);
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();

@@ -42,8 +42,7 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 /// without any is closed. Same result for any number of threads.
 ///
 /// With CurveMethod::solving the curves come from the map alone, and arcs, scrolls and facets that
-/// do not support as exactly say by how much they do not (ArcPiece::tolerant, HullFace::tolerant);
-/// faces with places more than four times the resolution deep are listed as unresolved.
+/// do not support as exactly say by how much they do not (ArcPiece::tolerant, HullFace::tolerant).
 /// @pre the culling and the map are of the geometry's scene, which spans space (tolerances.h says
 /// what is flat)
 /// @throws Cancelled

@@ -10,6 +10,7 @@
 #include "taut/hull/mesh/boundary_samples.h"
 #include "taut/hull/mesh/constrained_edges.h"
 #include "taut/hull/mesh/contact_faces.h"
+#include "taut/hull/mesh/reached_heights.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_start.h"
 
@@ -72,6 +73,18 @@ class BoundaryLabels {
   std::vector<TouchedFaces> touched_;  // per sample
 };
 
+/// Takes out those that the boundary reaches within the resolution, elsewhere.
+void drop_reached(const ReachedHeights& boundary, const ContactGeometry& geometry,
+                  const HullOptions& options, std::vector<Sample>& samples) {
+  const Scene& scene = geometry.scene();
+  const double rho =
+      scene.frame().length_to_frame(resolution_for(options, scene.model(), scene.diagonal()).rho);
+  std::erase_if(samples, [&](const Sample& s) {
+    const dvec3 x = geometry.point(s.contact);
+    return boundary.reaches(s.n, glm::dot(x, s.n) - rho, x);
+  });
+}
+
 }  // namespace
 
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
@@ -106,17 +119,23 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
     start.faces.push_back(faces.touched(sample.contact));
     const auto on_curve = chords.inserted().find(int(k));
     if (on_curve == chords.inserted().end()) {
-      if (uncovered_samples != nullptr && faces.surely_uncovered(sample.contact))
+      if (uncovered_samples != nullptr && faces.surely_uncovered(sample.contact)) {
         uncovered_samples->push_back(sample);
+      }
       continue;
     }
     for (const TouchedFace& f : on_curve->second) touch(start.faces.back(), f);
   }
+  if (uncovered_samples != nullptr && !uncovered_samples->empty()) {
+    drop_reached(ReachedHeights(geometry, *boundary, faces), geometry, options, *uncovered_samples);
+  }
   const BoundaryLabels labels(*boundary, std::move(start.faces));
   polytope.statistics.seconds_sample = 0;
+  const char* const failure = std::exchange(polytope.failure, nullptr);
   Hull hull = polytope_hull(scene, options, polytope, {labels, int(boundary->faces.size())});
   hull.boundary = std::move(boundary);
   hull.statistics.seconds_mesh = time.seconds();
+  if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
   return hull;
 }
 

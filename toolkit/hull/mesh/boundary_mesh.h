@@ -19,8 +19,8 @@ namespace taut {
 /// to a scroll, else to a patch. Where the boundary is not complete, a face without any is labelled
 /// as by sampled_hull(), its hull face numbered after those of the boundary.
 ///
-/// Support points that lie on no face of the boundary are added to `uncovered_samples`: what the
-/// boundary lacks.
+/// Support points that lie on no face of the boundary, and to whose height none of it reaches
+/// within the resolution, are added to `uncovered_samples`: what the boundary lacks.
 /// @pre the boundary is the scene's, in its frame @throws as sampled_hull()
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
                    std::shared_ptr<const HullBoundary> boundary, const HullOptions& options = {},

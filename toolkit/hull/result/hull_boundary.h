@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -171,5 +172,12 @@ struct HullBoundary {
     return n;
   }
 };
+
+/// How far faces are below the supporting planes, at most (HullFace::tolerant).
+inline double deepest_tolerant(const HullBoundary& boundary) {
+  double depth = 0;
+  for (const HullFace& face : boundary.faces) depth = std::max(depth, face.tolerant);
+  return depth;
+}
 
 }  // namespace taut

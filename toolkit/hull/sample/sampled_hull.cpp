@@ -1,10 +1,26 @@
 #include "taut/hull/sample/sampled_hull.h"
 
+#include <utility>
+
 #include "taut/core/stopwatch.h"
+#include "taut/hull/sample/facetted_boundary.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
+namespace {
+
+/// @pre start.span.dimension == 3
+SampledPolytope polytope_from(const Scene& scene, const HullOptions& options, double tolerance,
+                              SampledStart start, const SupportQuery& query) {
+  SampledPolytope polytope =
+      sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
+  polytope.statistics.support_queries += query.queries();
+  polytope.statistics.newton_iterations += query.newton_iterations();
+  return polytope;
+}
+
+}  // namespace
 
 Hull sampled_hull(const Scene& scene, const HullOptions& options) {
   const double tolerance = tolerance_for(options, scene.diagonal());
@@ -19,11 +35,25 @@ Hull sampled_hull(const Scene& scene, const HullOptions& options) {
     hull.statistics.newton_iterations += query.newton_iterations();
     return hull;
   }
-  SampledPolytope polytope =
-      sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
-  polytope.statistics.support_queries += query.queries();
-  polytope.statistics.newton_iterations += query.newton_iterations();
-  return polytope_hull(scene, options, polytope);
+  return polytope_hull(scene, options,
+                       polytope_from(scene, options, tolerance, std::move(start), query));
+}
+
+Hull facetted_hull(const Scene& scene, const HullOptions& options) {
+  SupportQuery query(scene, options.progress.stop);
+  SampledPolytope polytope = polytope_from(scene, options, tolerance_for(options, scene.diagonal()),
+                                           sampled_start(scene, query), query);
+  const char* const failure = std::exchange(polytope.failure, nullptr);
+  Hull hull = polytope_hull(scene, options, polytope);
+  hull.boundary = std::make_shared<const HullBoundary>(
+      facetted_boundary(scene, query, polytope, options.progress));
+  for (const auto f : hull.mesh.faces()) {
+    hull.mesh.data(f).kind = FaceKind::facet;
+    hull.mesh.data(f).hull_face = f.idx();
+  }
+  for (const auto e : hull.mesh.edges()) hull.mesh.data(e).feature = true;
+  if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
+  return hull;
 }
 
 }  // namespace taut

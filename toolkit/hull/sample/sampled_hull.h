@@ -23,4 +23,9 @@ namespace taut {
 /// was met, Cancelled
 Hull sampled_hull(const Scene& scene, const HullOptions& options = {});
 
+/// The same with the mesh's faces as the boundary (facetted_boundary): the best closed answer where
+/// the exact one is not found.
+/// @pre the hull is solid @throws as sampled_hull()
+Hull facetted_hull(const Scene& scene, const HullOptions& options = {});
+
 }  // namespace taut
