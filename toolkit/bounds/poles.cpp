@@ -1,5 +1,7 @@
 #include "taut/bounds/poles.h"
 
+#include "taut/core/tolerances.h"
+
 namespace taut {
 
 bool is_pole(const ContactGeometry& geometry, const Contact& c, Side side) {
@@ -37,6 +39,19 @@ double pole_turn(const ContactGeometry& geometry, const Contact& pole) {
   if (!side) return 0;
   const double size = glm::length(geometry.jet(pole).dx[along_v(*side) ? 0 : 1]);
   return size > 0 ? geometry.rounding() / size : 0;
+}
+
+std::optional<Contact> pole_in(const ContactGeometry& geometry, const Contact& pole,
+                               const Contact& other) {
+  if (other.kind != SourceKind::face || other.instance != pole.instance) return std::nullopt;
+  const dvec3 x = geometry.point(pole);
+  for (const Side side : all_sides) {
+    if (!is_pole(geometry, other, side)) continue;
+    const dvec2 uv = on_side(side, along_v(side) ? other.v : other.u);
+    const Contact at = {other.instance, other.kind, other.element, uv.x, uv.y};
+    if (glm::distance(geometry.point(at), x) <= join_distance) return at;
+  }
+  return std::nullopt;
 }
 
 }  // namespace taut

@@ -26,4 +26,9 @@ dvec3 unit_normal(const ContactGeometry& geometry, const Contact& c);
 /// @pre the contact lies at a pole
 double pole_turn(const ContactGeometry& geometry, const Contact& pole);
 
+/// The pole as a place of another contact's patch, with that one's parameter along it; none if it
+/// is not about the pole. @pre the contact lies at a pole
+std::optional<Contact> pole_in(const ContactGeometry& geometry, const Contact& pole,
+                               const Contact& other);
+
 }  // namespace taut

@@ -45,7 +45,7 @@ struct HullArguments {
   std::optional<double> relative;
   std::optional<double> tolerance;
   std::optional<double> resolution;
-  std::string curves = "tracing";
+  std::string curves = "solving";
   int max_vertices = HullOptions().max_vertices;
   int size = EnvelopeOptions().size;
 };

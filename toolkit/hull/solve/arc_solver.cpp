@@ -4,8 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
@@ -144,10 +146,19 @@ bool ArcSolver::is_smooth(const Ruling& to) const {
   const double way = gap(last(), to);
   if (glm::distance(last().n, to.n) > largest_turn) return false;
   if (way <= same_contact || are_vertices(to)) return true;
-  const std::optional<Ruling> middle = ruling_at_share(search_.system(), last(), to, 0.5);
-  if (!middle) return false;
-  return gap(*middle, middle_of(last(), to)) <= middle_share * way &&
-         search_.depth(*middle) <= search_.map().resolution;
+  const RulingsBetween between(search_.system(), last(), to);
+  if (between.empty()) return true;
+  const double s = between.at_share(0.5);
+  const std::optional<MovingRuling> exact = between(s);
+  if (!exact) return false;
+  const Ruling middle = exact->at.ruling();
+  // Beside a flat end the interpolated ruling is what is integrated.
+  if (between.is_straight() &&
+      gap(middle, between.interpolated(s).at.ruling()) > geometry_.tie()) {
+    return false;
+  }
+  return gap(middle, middle_of(last(), to)) <= middle_share * way &&
+         search_.depth(middle) <= search_.map().resolution;
 }
 
 void ArcSolver::divide(const Ruling& to, int depth) {
@@ -250,9 +261,21 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   CommonSupport s(geometry_, last());
   s.contact[i] = at_exit(s.contact[i], exit);
   s.evaluate(geometry_);
-  const bool solved = search_.system().solve(
-      s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, int(i), exit); });
-  if (!solved) return std::nullopt;
+  if (pole_side(geometry_, s.contact[i])) {
+    // In one direction alone, whatever the parameters there.
+    s.n = unit_normal(geometry_, s.contact[i]);
+    if (glm::dot(s.n, last().n) < 0) s.n = -s.n;
+    const Contact other = climb(geometry_, s.contact[1 - i], s.n).contact;
+    const auto own = pole_side(geometry_, other)
+                         ? pole_in(geometry_, other, last().contact[1 - i])
+                         : expressed_in(geometry_, other, last().contact[1 - i]);
+    if (!own) return std::nullopt;
+    s.contact[1 - i] = *own;
+  } else {
+    const bool solved = search_.system().solve(
+        s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, int(i), exit); });
+    if (!solved) return std::nullopt;
+  }
   for (Contact& c : s.contact) {
     if (glm::distance(parameters(c), parameters(clamped(c))) > way_slack) return std::nullopt;
     c = clamped(c);
@@ -262,7 +285,10 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   Change found{s.ruling(), s.ruling(), 0};
   found.way = share_of_way(last(), to, found.before);
   if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
-  const std::optional<Contact> next = beyond(geometry_, s.contact[i], exit);
+  // A pole is on all patches about it.
+  const std::optional<Contact> next = pole_side(geometry_, s.contact[i])
+                                          ? pole_in(geometry_, s.contact[i], to.contact[i])
+                                          : beyond(geometry_, s.contact[i], exit);
   const bool arrives = next && same_element(*next, to.contact[i]);
   if (!next || (!arrives && !leaves(s, to, i, exit)) ||
       search_.depth(found.before) > geometry_.tie())

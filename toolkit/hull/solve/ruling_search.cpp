@@ -84,10 +84,14 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
     if (!solved) return std::nullopt;
     bool moved = false;
     for (std::size_t i = 0; i < 2; ++i) {
-      if (is_in_element(s.contact[i])) continue;
-      // It has run over into another element.
+      const bool inside = is_in_element(s.contact[i]);
+      if (inside && s.contact[i].kind == SourceKind::face) continue;
+      // It has run over into another element, or others rise beside where it ends: by heights that
+      // are lost in rounding where it is not told so.
       const std::optional<Contact> there = climbed(geometry_, clamped(s.contact[i]), s.n);
-      if (!there || same_element(*there, start.contact[i])) return std::nullopt;
+      const bool same = there && same_element(*there, start.contact[i]);
+      if (inside && (same || !there)) continue;
+      if (!there || same) return std::nullopt;
       s.contact[i] = geometry_.first(*there);
       moved = true;
     }
@@ -121,7 +125,11 @@ Ruling RulingSearch::settled(Ruling ruling) const {
     }
     const dvec3 beside = unit(ruling.n + (i == 0 ? beside_turn : -beside_turn) * right);
     const Contact there = geometry_.first(climb(geometry_, own, beside).contact);
-    if (const auto expressed = expressed_in(geometry_, own, there)) {
+    // At a vertex another edge's contact may have ended, but for a height that is lost in rounding.
+    const Contact at = own.kind == SourceKind::vertex
+                           ? geometry_.first(climb(geometry_, there, ruling.n).contact)
+                           : own;
+    if (const auto expressed = expressed_in(geometry_, at, there)) {
       ruling.contact[i] = *expressed;
       ruling.point[i] = geometry_.point(*expressed);
     }

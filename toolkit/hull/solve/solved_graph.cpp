@@ -6,6 +6,7 @@
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/solve/arc_solver.h"
 #include "taut/hull/solve/edge_places.h"
 #include "taut/hull/solve/facet_corners.h"
@@ -184,8 +185,9 @@ class GraphSolver {
     return sides;
   }
 
-  /// The ruling in which an arc begins or ends at a node, with its side; none at free ends.
-  std::optional<Ruling> plug(int arc, int end) {
+  /// The ruling in which an arc begins or ends at a node, with its side, told in the elements of
+  /// the next one as far as it lies on these; none at free ends.
+  std::optional<Ruling> plug(int arc, int end, const Ruling& beside) {
     const int node = known_.graph.arcs[std::size_t(arc)].node[std::size_t(end)];
     const int number = number_[std::size_t(node)];
     if (number < 0) return std::nullopt;
@@ -200,6 +202,11 @@ class GraphSolver {
       std::swap(r.contact[0], r.contact[1]);
       std::swap(r.point[0], r.point[1]);
     }
+    for (const std::size_t i : {0u, 1u}) {
+      if (const auto own = expressed_in(geometry_, r.contact[i], beside.contact[i])) {
+        r.contact[i] = *own;
+      }
+    }
     return r;
   }
 
@@ -213,7 +220,8 @@ class GraphSolver {
     for (const int end : {0, 1}) {
       if (arc.closed) break;
       arc.facet[std::size_t(end)] = number_[std::size_t(told.node[std::size_t(end)])];
-      const std::optional<Ruling> r = plug(int(k), end);
+      const Ruling& next = end == 0 ? known.front() : known.back();
+      const std::optional<Ruling> r = plug(int(k), end, next);
       merges[std::size_t(end)] = !r;
       if (r) known.insert(end == 0 ? known.begin() : known.end(), *r);
     }
