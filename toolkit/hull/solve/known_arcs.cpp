@@ -50,11 +50,20 @@ class ArcFinder {
         if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
       }
       if (arc.is_closed()) continue;
+      drop_points(own);
       drop_jumps(own);
       std::reverse(own.begin(), own.end());
       drop_jumps(own);
       std::reverse(own.begin(), own.end());
     }
+  }
+
+  /// Beside free ends the two contacts may be found to be one; such rulings tell nothing.
+  static void drop_points(std::vector<Ruling>& own) {
+    const auto is_point = [](const Ruling& r) {
+      return glm::distance(r.point[0], r.point[1]) <= same_contact;
+    };
+    if (!std::all_of(own.begin(), own.end(), is_point)) std::erase_if(own, is_point);
   }
 
   /// What is before a jump near the beginning.
