@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -334,6 +335,34 @@ TEST(HullDocument, OfPolyhedralHulls) {
   }
 }
 
+/// Only where there is something to tell, in model units.
+TEST(HullDocument, FacesKeepTheirTolerance) {
+  KnownBoundary known = cylinder_boundary();
+  const auto text_of = [&] { return to_document(document(known), DocumentEncoding::json); };
+  EXPECT_EQ(text_of().find("tolerant"), std::string::npos);
+  known.boundary.faces[0].tolerant = known.scene.frame().length_to_frame(3e-9);
+  known.boundary.faces[2].tolerant = known.scene.frame().length_to_frame(1.0 / 3e7);
+  EXPECT_NE(text_of().find("\"kind\": \"scroll\", \"source\": 0, \"tolerant\": "),
+            std::string::npos);
+  const HullDocument hull = document(known);
+  EXPECT_NEAR(hull.faces[0].tolerant, 3e-9, 1e-23);
+  EXPECT_EQ(hull.faces[1].tolerant, 0);
+  for (const DocumentEncoding encoding : hull_encodings) {
+    const HullDocument back = read_hull(to_document(hull, encoding), "f", encoding);
+    for (std::size_t f = 0; f < 3; ++f) {
+      EXPECT_EQ(back.faces[f].tolerant, hull.faces[f].tolerant) << f;
+    }
+  }
+  expect_round_trip(hull);
+
+  HullDocument endless = hull;
+  endless.faces[1].tolerant = std::numeric_limits<double>::infinity();
+  const std::string bytes = to_document(endless, DocumentEncoding::cbor);
+  const std::string message =
+      message_of<InvalidInput>([&] { read_hull(bytes, "f", DocumentEncoding::cbor); });
+  EXPECT_TRUE(message.starts_with("f: faces[1].tolerant: ")) << message;
+}
+
 TEST(HullDocument, KeepsTheReport) {
   HullDocument hull = document(tetrahedron_boundary());
   Report report;
@@ -410,6 +439,10 @@ TEST(HullDocument, WhatIsWrongIsSaidWithItsPlace) {
        "f: faces[2].rulings[0].a.uv: 3 elements where 2"},
       {"\"patch\": 0, \"sign\": -1", "\"patch\": 8, \"sign\": -1", false,
        "f: faces[0].regions[0].patch: 8"},
+      {"\"kind\": \"scroll\"", "\"kind\": \"scroll\", \"tolerant\": -1e-9", false,
+       "f: faces[2].tolerant: is negative"},
+      {"\"kind\": \"scroll\"", "\"kind\": \"scroll\", \"tolerant\": \"little\"", true,
+       "f: faces[2].tolerant: "},
       {"\"faces\": [2, 0]", "\"faces\": [2, 3]", false, "f: curves[0].faces[1]: no face"},
       {"\"faces\": [2, 0]", "\"faces\": [2]", true, "f: curves[0].faces: 1 elements"},
   };

@@ -186,6 +186,7 @@ HullDocument::Face DocumentMaker::make_face(int index) const {
   HullDocument::Face result;
   result.kind = face.kind;
   result.source = sources_.place(face.source);
+  result.tolerant = scene_.frame().length_to_model(face.tolerant);
   if (face.kind == FaceKind::patch) make_patch(face, result);
   if (face.kind == FaceKind::scroll) make_scroll(face, result);
   if (face.kind == FaceKind::facet) make_facet(index, result);

@@ -210,6 +210,10 @@ HullDocument::Face HullReader::read_face(const DocumentNode& node) const {
   HullDocument::Face face;
   face.kind = FaceKind(read_kind(node.at("kind"), face_kind_names));
   face.source = read_source_of(node);
+  if (const auto tolerant = node.find("tolerant")) {
+    face.tolerant = tolerant->number();
+    if (face.tolerant < 0) tolerant->refuse("is negative");
+  }
   if (face.kind == FaceKind::patch) read_patch(node, face);
   if (face.kind == FaceKind::scroll) read_scroll(node, face);
   if (face.kind == FaceKind::facet) read_facet(node, face);
@@ -217,7 +221,7 @@ HullDocument::Face HullReader::read_face(const DocumentNode& node) const {
 }
 
 void HullReader::read_patch(const DocumentNode& node, HullDocument::Face& face) const {
-  node.expect_keys("patch", {"id", "kind", "source", "loops", "regions"});
+  node.expect_keys("patch", {"id", "kind", "source", "tolerant", "loops", "regions"});
   if (face.source < 0 || hull_.sources[std::size_t(face.source)].kind != SourceKind::face) {
     node.refuse("a patch lies on a source of the kind \"face\"");
   }
@@ -244,7 +248,7 @@ void HullReader::read_patch(const DocumentNode& node, HullDocument::Face& face) 
 }
 
 void HullReader::read_scroll(const DocumentNode& node, HullDocument::Face& face) const {
-  node.expect_keys("scroll", {"id", "kind", "source", "curves", "rulings"});
+  node.expect_keys("scroll", {"id", "kind", "source", "tolerant", "curves", "rulings"});
   const DocumentNode curves = node.at("curves");
   curves.expect_size(2);
   for (std::size_t k = 0; k < 2; ++k) face.curves[k] = read_side(curves[k]);
@@ -258,8 +262,8 @@ void HullReader::read_scroll(const DocumentNode& node, HullDocument::Face& face)
 }
 
 void HullReader::read_facet(const DocumentNode& node, HullDocument::Face& face) const {
-  node.expect_keys("facet", {"id", "kind", "source", "normal", "offset", "contacts", "sides",
-                             "curves", "boundary"});
+  node.expect_keys("facet", {"id", "kind", "source", "tolerant", "normal", "offset", "contacts",
+                             "sides", "curves", "boundary"});
   face.normal = node.at("normal").vector();
   face.offset = node.at("offset").number();
   const DocumentNode contacts = node.at("contacts");

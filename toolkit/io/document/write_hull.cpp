@@ -140,6 +140,10 @@ void HullWriter::write(const HullDocument::Face& face, int id) {
   integer("id", id);
   text("kind", name_of(face_kind_names, face.kind));
   source_of(face.source);
+  if (face.tolerant > 0) {
+    out_.key("tolerant");
+    out_.number(face.tolerant);
+  }
   if (face.kind == FaceKind::patch) {
     list("loops", face.loops);
     list("regions", face.regions);
