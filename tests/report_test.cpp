@@ -26,6 +26,7 @@ taut::Report full_report() {
   taut::Resolution& resolution = report.hull.resolution.emplace();
   resolution.rho = 2e-7;
   resolution.source = taut::ResolutionSource::stand_ins;
+  report.hull.tolerant = {3, 1e-8};
   taut::Measures& measures = report.hull.measures.emplace();
   measures.volume = 0.3;
   measures.area = 1.0 / 7;
@@ -67,8 +68,8 @@ TEST(Report, KeysOfTheContractInOrder) {
             (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
   EXPECT_EQ(keys(json["hull"]),
             (Keys{"patches", "scrolls", "facets", "curves", "unresolved", "resolution",
-                  "resolution_source", "volume", "area", "centroid", "inertia", "mean_width",
-                  "measures_accuracy", "gap_bound"}));
+                  "resolution_source", "tolerant", "tolerant_bound", "volume", "area", "centroid",
+                  "inertia", "mean_width", "measures_accuracy", "gap_bound"}));
   EXPECT_EQ(keys(json["mesh"]), (Keys{"vertices", "edges", "faces", "volume", "area", "tolerance",
                                       "distance_bound", "files"}));
   for (const Json& f : json["mesh"]["files"]) EXPECT_EQ(keys(f), (Keys{"file", "rounding"}));
@@ -100,6 +101,8 @@ TEST(Report, ValuesRoundTrip) {
   EXPECT_EQ(json["hull"]["unresolved"], 1);
   EXPECT_EQ(json["hull"]["resolution"].get<double>(), 2e-7);
   EXPECT_EQ(json["hull"]["resolution_source"], "stand-ins");
+  EXPECT_EQ(json["hull"]["tolerant"], 3);
+  EXPECT_EQ(json["hull"]["tolerant_bound"].get<double>(), 1e-8);
   EXPECT_EQ(json["hull"]["volume"].get<double>(), 0.3);
   EXPECT_EQ(json["hull"]["area"].get<double>(), 1.0 / 7);
   EXPECT_EQ(json["hull"]["centroid"], Json({1.0, 2.0, 0.7}));

@@ -30,6 +30,10 @@ ReportJson to_json(const Report::ExactHull& hull) {
     json["resolution"] = hull.resolution->rho;
     json["resolution_source"] = name_of(hull.resolution->source);
   }
+  if (hull.tolerant) {
+    json["tolerant"] = hull.tolerant->faces;
+    json["tolerant_bound"] = hull.tolerant->bound;
+  }
   if (hull.measures) {
     const dmat3& inertia = hull.measures->inertia;  // symmetric: columns are rows
     json["volume"] = hull.measures->volume;

@@ -32,6 +32,12 @@ struct Report {
     };
     std::optional<Counts> counts;
     std::optional<Resolution> resolution;
+    /// Faces whose places are below the supporting planes, by no more than the bound.
+    struct Tolerant {
+      int faces = 0;
+      double bound = 0;
+    };
+    std::optional<Tolerant> tolerant;
     std::optional<Measures> measures;
     std::optional<double> mean_width;
     /// Estimated relative accuracy of volume, area and mean width (BoundaryMeasures).
