@@ -70,6 +70,27 @@ TEST_F(WriteProject, OfCurvesPointsAndPolygons) {
   write_project(path("s.mlp"), flat.mesh, hull_curves(flat.mesh), segment);
 }
 
+TEST_F(WriteProject, TolerantFacesHaveALayer) {
+  KnownBoundary known = cylinder_boundary();
+  const Hull hull = sampled_hull(known.scene);
+  const auto write = [&](const char* name) {
+    const SceneFrame& frame = known.scene.frame();
+    write_project(path(name), hull.mesh, hull_curves(frame, known.boundary), known.scene.model(),
+                  tolerant_curves(frame, known.boundary));
+  };
+  write("exact.mlp");
+  EXPECT_FALSE(std::filesystem::exists(path("exact-tolerant.ply")));
+  EXPECT_EQ(taut_test::content(path("exact.mlp")).find("tolerant"), std::string::npos);
+
+  known.boundary.faces[1].tolerant = 1e-8;  // the disc at the top
+  write("off.mlp");
+  Model model;
+  read_model(path("off.mlp"), model);
+  ASSERT_EQ(model.parts().size(), 4U);
+  EXPECT_EQ(model.parts()[3].vertices().size(), 65U);
+  for (const dvec3& p : model.parts()[3].vertices()) EXPECT_NEAR(p.z, 2, 1e-14);
+}
+
 TEST_F(WriteProject, AllOrNothing) {
   const KnownBoundary known = tetrahedron_boundary();
   const Hull hull = convex_hull(known.scene);

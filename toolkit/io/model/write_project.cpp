@@ -1,5 +1,6 @@
 #include "taut/io/model/write_project.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -15,7 +16,7 @@ namespace {
 constexpr int patch_segments = 10;
 constexpr int curve_segments = 24;
 
-constexpr std::array<std::string_view, 3> layer_names = {"hull", "curves", "model"};
+constexpr std::array<std::string_view, 4> layer_names = {"hull", "curves", "model", "tolerant"};
 
 /// Vertices, edges and triangles of a PLY file.
 struct MeshLayer {
@@ -89,6 +90,12 @@ void add_part(const Part& part, const RigidMotion& pose, MeshLayer& layer) {
   }
 }
 
+MeshLayer layer_of(const std::vector<Polyline>& curves) {
+  MeshLayer layer;
+  for (const Polyline& curve : curves) layer.add_line(curve);
+  return layer;
+}
+
 MeshLayer model_layer(const Model& model) {
   MeshLayer layer;
   for (const Instance& instance : model.instances()) {
@@ -155,13 +162,27 @@ void write_list(OutputBuffer& out, const std::vector<std::filesystem::path>& fil
   out.text(" </MeshGroup>\n <RasterGroup/>\n</MeshLabProject>\n");
 }
 
+Polyline polyline(const SceneFrame& frame, const HullCurve& curve) {
+  Polyline line;
+  for (const dvec3& p : curve.points) line.push_back(frame.to_model(p));
+  return line;
+}
+
 }  // namespace
 
 std::vector<Polyline> hull_curves(const SceneFrame& frame, const HullBoundary& boundary) {
   std::vector<Polyline> curves;
+  for (const HullCurve& curve : boundary.curves) curves.push_back(polyline(frame, curve));
+  return curves;
+}
+
+std::vector<Polyline> tolerant_curves(const SceneFrame& frame, const HullBoundary& boundary) {
+  std::vector<Polyline> curves;
   for (const HullCurve& curve : boundary.curves) {
-    Polyline& line = curves.emplace_back();
-    for (const dvec3& p : curve.points) line.push_back(frame.to_model(p));
+    const bool tolerant = std::any_of(curve.faces.begin(), curve.faces.end(), [&](int face) {
+      return face >= 0 && boundary.faces[std::size_t(face)].tolerant > 0;
+    });
+    if (tolerant) curves.push_back(polyline(frame, curve));
   }
   return curves;
 }
@@ -190,7 +211,8 @@ std::vector<std::filesystem::path> project_files(const std::filesystem::path& pa
 }
 
 void write_project(const std::filesystem::path& path, const HullMesh& mesh,
-                   const std::vector<Polyline>& curves, const Model& model) {
+                   const std::vector<Polyline>& curves, const Model& model,
+                   const std::vector<Polyline>& tolerant) {
   const std::vector<std::filesystem::path> files = project_files(path);
   std::vector<std::unique_ptr<OutputFile>> outputs;
   std::vector<std::size_t> layers;
@@ -201,15 +223,16 @@ void write_project(const std::filesystem::path& path, const HullMesh& mesh,
   write_mesh(hull, files[0].string(), ".ply", mesh);
   add(0).text(hull);
   layers.push_back(0);
-  MeshLayer lines;
-  for (const Polyline& curve : curves) lines.add_line(curve);
-  if (!lines.points.empty()) {
-    write_layer(add(1), lines);
-    layers.push_back(1);
-  }
+  const auto add_layer = [&](std::size_t i, const MeshLayer& layer) {
+    if (layer.points.empty()) return;
+    write_layer(add(i), layer);
+    layers.push_back(i);
+  };
+  add_layer(1, layer_of(curves));
   write_layer(add(2), model_layer(model));
   layers.push_back(2);
-  write_list(add(3), files, layers);
+  add_layer(3, layer_of(tolerant));
+  write_list(add(4), files, layers);
   for (const auto& output : outputs) output->finish();
 
   std::size_t published = 0;
