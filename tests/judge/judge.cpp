@@ -12,6 +12,7 @@
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/io/document/boundary_document.h"
+#include "taut/io/report/report.h"
 #include "taut/verify/verify_hull.h"
 
 namespace taut_test {
@@ -44,6 +45,15 @@ std::string wrong_measure(const Scene& scene, const HullBoundary& boundary,
   compare("A", "area off", measures.area, expected.area);
   compare("W", "mean width off", measures.mean_width, expected.mean_width);
   return wrong;
+}
+
+/// With the resolution that it was made for.
+HullDocument document_of(const Scene& scene, const Hull& hull) {
+  HullDocument document = hull_document(scene, *hull.boundary);
+  Report report;
+  report.hull.resolution = hull.resolution;
+  document.report = to_json(report);
+  return document;
 }
 
 /// What is wrong by a support function of the judge's own.
@@ -101,8 +111,7 @@ Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_o
   }
   VerifyOptions options;
   options.random_directions = 500;
-  verdict.verified =
-      verify(hull_document(scene, boundary), scene, options).is_hull(verified_length);
+  verdict.verified = verify(document_of(scene, hull), scene, options).is_hull(verified_length);
   const std::string wrong = wrong_measure(scene, boundary, subject.expected, verdict.measured);
   if (verdict.wrong.empty()) verdict.wrong = wrong;
   return verdict;

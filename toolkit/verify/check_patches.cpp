@@ -6,6 +6,7 @@
 #include "taut/core/integers.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
+#include "taut/verify/stated_bounds.h"
 
 namespace taut {
 namespace {
@@ -43,10 +44,12 @@ Contact scene_contact(const DocumentGeometry& geometry, const Scene& scene, int 
 /// Checks one document.
 class PatchCheck {
  public:
-  PatchCheck(const DocumentGeometry& geometry, const DocumentOutlines& outlines, const Scene& scene,
-             const VerifyOptions& options, HullFaults& faults)
+  PatchCheck(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
+             const Coverage& coverage, const Scene& scene, const VerifyOptions& options,
+             HullFaults& faults)
       : geometry_(geometry),
         outlines_(outlines),
+        coverage_(coverage),
         scene_(scene),
         options_(options),
         faults_(faults),
@@ -61,9 +64,13 @@ class PatchCheck {
   double gap(SupportQuery& query, const Sample& sample, int sign) const;
   bool strictly_convex(const SourceJet& j, const dvec3& n) const;
   std::string name(const Sample& sample) const;
+  dvec3 point(const Sample& sample) const {
+    return geometry_.jet(sample.source, sample.place).x + geometry_.origin();
+  }
 
   const DocumentGeometry& geometry_;
   const DocumentOutlines& outlines_;
+  const Coverage& coverage_;
   const Scene& scene_;
   const VerifyOptions& options_;
   HullFaults& faults_;
@@ -197,10 +204,15 @@ double PatchCheck::run() {
     }
   });
   double worst = 0;
+  // Where a face beside a patch is below the supporting planes, their curve is off the true outline
+  // of the patch: from there to the curve its places fall below their planes, by what the face is
+  // below its own at the curve.
+  const std::vector<double> bounds = bounds_beside(geometry_.hull());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (samples_[i].region >= 0) {
-      raise(worst, gaps[i]);
-    } else if (gaps[i] <= support_slack) {
+      const int face = outlines_.regions()[to_size(samples_[i].region)].face;
+      raise(worst, gaps[i] - bounds[to_size(face)] / scene_.diagonal());
+    } else if (gaps[i] <= support_slack && !coverage_.is_near(point(samples_[i]))) {
       faults_.add("regions", name(samples_[i]) + " is on the hull, but in no region");
     }
   }
@@ -210,8 +222,9 @@ double PatchCheck::run() {
 }  // namespace
 
 double check_patches(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                     const Scene& scene, const VerifyOptions& options, HullFaults& faults) {
-  return PatchCheck(geometry, outlines, scene, options, faults).run();
+                     const Coverage& coverage, const Scene& scene, const VerifyOptions& options,
+                     HullFaults& faults) {
+  return PatchCheck(geometry, outlines, coverage, scene, options, faults).run();
 }
 
 }  // namespace taut

@@ -12,6 +12,9 @@ namespace {
 /// Measures that a report says are known no better than this are compared as if they were.
 constexpr double least_accuracy = 1e-7;
 
+/// Lengths in the report are those of the document but for how they were computed.
+constexpr double length_accuracy = 1e-12;
+
 using Json = nlohmann::json;
 
 const Json* find(const Json* object, const std::string& key) {
@@ -40,6 +43,7 @@ class ReportCheck {
                               ", not " + text(value));
   }
   void compare_counts(const HullDocument& hull);
+  void compare_bounds(const HullDocument& hull);
   void compare_measures(const DocumentMeasures& measures, double accuracy);
 
  private:
@@ -68,6 +72,18 @@ void ReportCheck::compare_counts(const HullDocument& hull) {
   compare("unresolved", exact, 0, 0);
 }
 
+void ReportCheck::compare_bounds(const HullDocument& hull) {
+  int tolerant = 0;
+  double largest = 0;
+  for (const HullDocument::Face& face : hull.faces) {
+    tolerant += face.tolerant > 0 ? 1 : 0;
+    raise(largest, face.tolerant);
+  }
+  const Json* exact = find(&report_, "hull");
+  compare("tolerant", exact, tolerant, 0);
+  compare("tolerant_bound", exact, largest, length_accuracy);
+}
+
 void ReportCheck::compare_measures(const DocumentMeasures& measures, double accuracy) {
   const Json* exact = find(&report_, "hull");
   accuracy += std::min(number(find(exact, "measures_accuracy")).value_or(0), least_accuracy);
@@ -83,6 +99,12 @@ void ReportCheck::compare_measures(const DocumentMeasures& measures, double accu
 
 }  // namespace
 
+double stated_resolution(const HullDocument& hull) {
+  const Json report = Json::parse(hull.report, nullptr, false);
+  const double stated = number(find(find(&report, "hull"), "resolution")).value_or(0);
+  return std::isfinite(stated) ? std::max(stated, 0.0) : 0;
+}
+
 void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
                   double rounding, HullFaults& faults) {
   if (hull.report.empty()) return;
@@ -90,6 +112,7 @@ void check_report(const HullDocument& hull, const std::optional<DocumentMeasures
     const Json report = Json::parse(hull.report);
     ReportCheck check(report, faults);
     check.compare_counts(hull);
+    check.compare_bounds(hull);
     if (measures) check.compare_measures(*measures, measure_accuracy + rounding + measures->error);
   } catch (const Json::parse_error& error) {
     faults.add("report", std::string("report: ") + error.what());

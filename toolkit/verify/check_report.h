@@ -11,9 +11,13 @@ namespace taut {
 /// reach where these end in free ends.
 inline constexpr double measure_accuracy = 1e-10;
 
+/// The resolution that a document's report states, in model units; 0 if none.
+double stated_resolution(const HullDocument& hull);
+
 /// Compares what a document's report says of the exact hull with the document: its dimension, the
-/// numbers of faces and curves, nothing unresolved, and the measures where there are any. A
-/// document without a report has nothing to compare. `rounding`: what that of coordinates may do to
+/// numbers of faces and curves, nothing unresolved, how many faces are tolerant and their largest
+/// bound, and the measures where there are any. A document without a report has nothing to compare.
+/// `rounding`: what that of coordinates may do to
 /// the measures.
 void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
                   double rounding, HullFaults& faults);

@@ -34,35 +34,43 @@ inline dvec2 step_to_nearest(const SourceJet& j, const dvec3& p, const dvec2& t)
   return result;
 }
 
-/// The distance of p from a surface over [0, 1]^2, by Newton's method from the nearest of some
-/// samples. `jet(t)` is the surface's SourceJet.
+/// A surface's parameters with the distance of its point from another one.
+struct ClosestOnSurface {
+  dvec2 t = dvec2(0.0);
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+/// The point of a surface over [0, 1]^2 that is nearest to p, by Newton's method from the nearest
+/// of some samples. `jet(t)` is the surface's SourceJet.
 template <class Jet>
-double distance_to_surface(const dvec3& p, const Jet& jet) {
+ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet) {
   constexpr int samples = 8;
   constexpr int steps = 40;
   constexpr double least_share = 1.0 / 64;
-  dvec2 t(0.0);
-  double best = std::numeric_limits<double>::infinity();
+  ClosestOnSurface best;
   const auto consider = [&](const dvec2& at) {
     const double distance = glm::distance(jet(at).x, p);
-    if (!(distance < best)) return;
-    best = distance;
-    t = at;
+    if (distance < best.distance) best = {at, distance};
   };
   for (int i = 0; i <= samples; ++i) {
     for (int k = 0; k <= samples; ++k) consider(dvec2(i, k) / double(samples));
   }
-  for (int i = 0; i < steps && best > 0; ++i) {
-    const double before = best;
-    const dvec2 from = t;
+  for (int i = 0; i < steps && best.distance > 0; ++i) {
+    const double before = best.distance;
+    const dvec2 from = best.t;
     const dvec2 step = step_to_nearest(jet(from), p, from);
     // Where the surface degenerates, at corners, a whole step may lead astray.
-    for (double share = 1; share >= least_share && !(best < before); share *= 0.5) {
+    for (double share = 1; share >= least_share && !(best.distance < before); share *= 0.5) {
       consider(glm::clamp(from + share * step, dvec2(0.0), dvec2(1.0)));
     }
-    if (!(best < before)) break;
+    if (!(best.distance < before)) break;
   }
   return best;
+}
+
+template <class Jet>
+double distance_to_surface(const dvec3& p, const Jet& jet) {
+  return closest_on_surface(p, jet).distance;
 }
 
 }  // namespace taut

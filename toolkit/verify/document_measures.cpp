@@ -8,6 +8,7 @@
 #include "taut/core/integers.h"
 #include "taut/verify/closest_on_curve.h"
 #include "taut/verify/integral.h"
+#include "taut/verify/stated_bounds.h"
 
 namespace taut {
 namespace {
@@ -36,6 +37,12 @@ void add_vector_area(Terms& terms, const dvec3& A) {
   terms.value[area_x] += A.x;
   terms.value[area_y] += A.y;
   terms.value[area_z] += A.z;
+}
+
+double length_of(const std::vector<dvec3>& points) {
+  double length = 0;
+  for (std::size_t k = 1; k < points.size(); ++k) length += glm::distance(points[k - 1], points[k]);
+  return length;
 }
 
 /// A smooth curve through given points.
@@ -149,6 +156,7 @@ class MeasureSums {
   Terms sums_;
   Fit fit_;
   bool interpolated_ = false;
+  double open_ = 0;  ///< what the vector area lacks by facets' outlines off their planes
 };
 
 MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
@@ -192,6 +200,7 @@ DocumentMeasures MeasureSums::run(const Progress& progress) {
   measures.volume = unit_ * unit_ * unit_ * value[volume];
   measures.area = unit_ * unit_ * value[area];
   measures.vector_area = unit_ * unit_ * dvec3(value[area_x], value[area_y], value[area_z]);
+  measures.vector_area_bound = unit_ * unit_ * open_;
   measures.mean_width = unit_ * value[curvature] / (2 * std::numbers::pi);
   measures.error = std::max({share(volume), share(area), share(curvature)});
   return measures;
@@ -366,7 +375,14 @@ void MeasureSums::add_end(const HullDocument::Ruling& ruling, bool last) {
 
 void MeasureSums::add_facet(const Face& face) {
   Terms sides;
-  for (const DirectedCurve& c : face.outline) sides.add(1, facet_side(c, face.normal));
+  for (const DirectedCurve& c : face.outline) {
+    sides.add(1, facet_side(c, face.normal));
+    // Of the vector area of what spans the outline, half the integral of x cross dx, only the part
+    // along the normal is summed up. What that leaves out is the vector area of the strip between
+    // the outline and its projection, no larger than the height over the plane times the length.
+    const HullDocument::Curve& curve = geometry_.hull().curves[to_size(c.first)];
+    open_ += bound_of(geometry_.hull(), curve) * length_of(curve.points) / (unit_ * unit_);
+  }
   const auto along_normal = [&](const std::array<double, term_count>& terms) {
     return glm::dot(dvec3(terms[area_x], terms[area_y], terms[area_z]), face.normal);
   };

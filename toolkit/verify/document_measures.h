@@ -13,6 +13,8 @@ struct DocumentMeasures {
   double mean_width = 0;
   /// Integral of the outward unit normal over all faces: zero if they make up a closed surface.
   dvec3 vector_area = dvec3(0.0);
+  /// How large that may be since outlines of facets are off their planes by what is stated.
+  double vector_area_bound = 0;
   /// Estimated relative error of volume, area and mean width: of the quadrature, and of curves that
   /// are interpolated, twice what worse polynomials would change.
   double error = 0;

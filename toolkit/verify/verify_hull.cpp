@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -16,8 +15,10 @@
 #include "taut/verify/check_patches.h"
 #include "taut/verify/check_report.h"
 #include "taut/verify/check_sources.h"
+#include "taut/verify/check_support.h"
+#include "taut/verify/coverage.h"
 #include "taut/verify/hull_structure.h"
-#include "taut/verify/nearest_point.h"
+#include "taut/verify/stated_bounds.h"
 
 namespace taut {
 namespace {
@@ -26,15 +27,12 @@ namespace {
 /// but for the rounding of two computations, and that of their coordinates.
 constexpr double same_point = 1e-9;
 
+/// Bounds that faces may state, in units of the resolution: what is deeper is not resolved.
+constexpr double deepest_bound = 4;
+
 /// Relative error of the mean width by support queries, times their number: that of the lattice is
 /// below a tenth of this even of polyhedra, whose support functions have kinks.
 constexpr double mean_width_spread = 1;
-
-/// A direction with the support value that the document claims for it, about the scene's centre.
-struct Claim {
-  dvec3 n = dvec3(0.0);
-  double h = 0;
-};
 
 /// All numbers of a document, to find one that is none.
 class FiniteNumbers {
@@ -67,6 +65,7 @@ bool FiniteNumbers::all(const HullDocument& hull) {
     see(face.loops);
     see(face.regions);
     see(face.rulings);
+    see(face.tolerant);
     see(face.normal);
     see(face.offset);
     see(face.contacts);
@@ -116,25 +115,30 @@ class HullVerifier {
         options_(options),
         diagonal_(scene.diagonal()),
         rounding_(relative_rounding(scene)),
+        resolution_(stated_resolution(hull)),
         geometry_(hull, scene.frame().center, rounding_) {}
   HullVerification run();
 
  private:
+  void check_bounds();
   void check_structure();
-  void check_contact(const HullDocument::Contact& c, const dvec3& n);
+  void check_contact(const HullDocument::Contact& c, const dvec3& n, double bound);
+  void check_height(double length, double bound);
+  void check_facet(const HullDocument::Face& facet);
   void check_side(const HullDocument::Face& facet, std::size_t k);
   void check_geometry();
   void check_faces();
-  void add_listed_claims(std::vector<Claim>& claims);
-  void add_claims_between(const DocumentOutlines& outlines, std::vector<Claim>& claims) const;
-  void check_support(const std::vector<Claim>& claims);
-  void check_even_directions(const DocumentOutlines& outlines,
+  void check_support(const std::vector<SupportClaim>& claims);
+  void check_even_directions(const Coverage& coverage,
                              const std::optional<DocumentMeasures>& measures);
   void check_points();
-  bool covers(const DocumentOutlines& outlines, const NearestPoint& curves,
-              const Contact& contact) const;
-  bool names(const DocumentOutlines& outlines, const Contact& contact) const;
 
+  /// In every direction some point of the boundary is no farther below the supporting plane.
+  double promised_length() const {
+    double length = std::max((same_point + rounding_) * diagonal_, resolution_);
+    for (const HullDocument::Face& face : hull_.faces) raise(length, face.tolerant);
+    return length;
+  }
   double relative(double length) const {
     return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
   }
@@ -144,8 +148,8 @@ class HullVerifier {
   const VerifyOptions& options_;
   double diagonal_;
   double rounding_;
+  double resolution_;  ///< 0 if the document states none
   DocumentGeometry geometry_;
-  std::map<int, int> place_of_source_;
   HullVerification result_;
   HullFaults faults_;
 };
@@ -153,8 +157,9 @@ class HullVerifier {
 HullVerification HullVerifier::run() {
   result_.rounding = rounding_;
   if (!FiniteNumbers().all(hull_)) faults_.add("numbers", "a number is not finite");
-  check_structure();
   const bool finite = faults_.list().empty();
+  check_bounds();
+  check_structure();
   const bool same = check_sources(hull_, scene_, faults_, result_.off_model);
   if (finite) check_geometry();
   options_.progress.update("verify", 0.1);
@@ -162,13 +167,22 @@ HullVerification HullVerifier::run() {
   if (result_.comparable) {
     check_faces();
   } else {
-    std::vector<Claim> claims;
-    add_listed_claims(claims);
-    check_support(claims);
+    check_support(listed_claims(geometry_));
     check_report(hull_, std::nullopt, rounding_, faults_);
   }
   result_.faults = faults_.list();
   return result_;
+}
+
+/// What all else is held to must not be stated at will.
+void HullVerifier::check_bounds() {
+  const double coarsest = resolution_ > 0 ? resolution_ : coarsest_resolution * diagonal_;
+  for (std::size_t f = 0; f < hull_.faces.size(); ++f) {
+    const double bound = hull_.faces[f].tolerant;
+    if (0 <= bound && bound <= deepest_bound * coarsest) continue;
+    faults_.add("bounds", "faces[" + std::to_string(f) +
+                              "]: its places are too far below the supporting planes");
+  }
 }
 
 void HullVerifier::check_structure() {
@@ -183,21 +197,49 @@ void HullVerifier::check_structure() {
   result_.euler = structure.euler;
 }
 
-/// The contact is on one of its patches, and tangent there.
-void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n) {
-  double off = infinity;
-  double slope = 0;
-  for (const SourcePlace& place : geometry_.places(c)) {
-    const SourceJet jet = geometry_.jet(c.source, place);
-    const double off_here = relative(glm::distance(jet.x, geometry_.local(c.p)));
-    double slope_here = 0;
-    for (const dvec3& d : jet.dx) raise(slope_here, relative(glm::dot(d, n)));
-    if (!(off_here + slope_here < off + slope)) continue;
-    off = off_here;
-    slope = slope_here;
+/// How steeply a source rises over a plane at one of its places, as derivative over a whole Bezier
+/// patch or curve: where that ends it may fall off. What is nearer than the resolution is one: by
+/// as much as slopes change over it, by second derivatives, they are none.
+double rise(const SourceJet& jet, const dvec2& t, const dvec3& n, double resolution) {
+  const std::array<std::array<dvec3, 2>, 2> ddx = {{{jet.dxx, jet.dxy}, {jet.dxy, jet.dyy}}};
+  double steepest = 0;
+  for (std::size_t k = 0; k < to_size(jet.dimension); ++k) {
+    const double slope = glm::dot(jet.dx[k], n);
+    double changed = 0;
+    for (std::size_t j = 0; j < to_size(jet.dimension); ++j) {
+      const double speed = glm::length(jet.dx[j]);
+      if (speed > resolution) changed += resolution / speed * std::abs(glm::dot(ddx[k][j], n));
+    }
+    if (t[int(k)] < 1) raise(steepest, slope - changed);
+    if (t[int(k)] > 0) raise(steepest, -slope - changed);
   }
-  raise(result_.off_source, off);
-  raise(result_.tangency, slope);
+  return steepest;
+}
+
+/// The contact is on one of its patches, and none that meet there rises, where it is told to
+/// support exactly: what is within a bound below the supporting plane need not be tangent.
+void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n, double bound) {
+  const std::vector<SourcePlace> places = geometry_.places(c);
+  std::vector<double> off;
+  off.reserve(places.size());
+  for (const SourcePlace& place : places) {
+    const dvec3 x = geometry_.jet(c.source, place).x;
+    off.push_back(relative(glm::distance(x, geometry_.local(c.p))));
+  }
+  const double least = off.empty() ? infinity : *std::min_element(off.begin(), off.end());
+  raise(result_.off_source, least);
+  if (bound > 0) return;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    // Patches that are no neighbours may have these parameters too.
+    if (off[i] > least + geometry_.noise()) continue;
+    const SourceJet jet = geometry_.jet(c.source, places[i]);
+    raise(result_.tangency, relative(rise(jet, places[i].t, n, resolution_)));
+  }
+}
+
+/// What is not flat is so by no more than the bound that is stated.
+void HullVerifier::check_height(double length, double bound) {
+  raise(result_.flatness, relative(std::max(std::abs(length) - bound, 0.0)));
 }
 
 /// The side runs from its contact to the next one and in the facet's plane.
@@ -217,50 +259,49 @@ void HullVerifier::check_side(const HullDocument::Face& facet, std::size_t k) {
     }
     const dvec3 x = geometry_.jet(c.source, found.front()).x;
     const double offset = facet.offset - glm::dot(geometry_.origin(), facet.normal);
-    raise(result_.flatness, relative(glm::dot(x, facet.normal) - offset));
+    check_height(glm::dot(x, facet.normal) - offset, facet.tolerant);
     if (i > 0 && i < parts) continue;
     const std::size_t end = (k + (i == 0 ? 0 : 1)) % facet.contacts.size();
     raise(result_.off_source, relative(glm::distance(x, geometry_.local(facet.contacts[end].p))));
   }
 }
 
+void HullVerifier::check_facet(const HullDocument::Face& face) {
+  raise(result_.tangency, std::abs(glm::length(face.normal) - 1));
+  const double offset = face.offset - glm::dot(geometry_.origin(), face.normal);
+  const auto height = [&](const dvec3& p) {
+    return glm::dot(geometry_.local(p), face.normal) - offset;
+  };
+  for (const HullDocument::Contact& c : face.contacts) {
+    check_contact(c, face.normal, face.tolerant);
+    check_height(height(c.p), face.tolerant);
+  }
+  const std::size_t sides = std::min(face.sides.size(), face.contacts.size());
+  for (std::size_t k = 0; k < sides; ++k) check_side(face, k);
+  for (const dvec3& p : face.boundary) check_height(height(p), face.tolerant);
+  for (const auto& [c, sense] : face.outline) {
+    const HullDocument::Curve& curve = hull_.curves[to_size(c)];
+    for (const dvec3& p : curve.points) check_height(height(p), bound_of(hull_, curve));
+  }
+}
+
 void HullVerifier::check_geometry() {
   for (const HullDocument::Face& face : hull_.faces) {
     for (const HullDocument::Ruling& r : face.rulings) {
-      check_contact(r.a, r.n);
-      check_contact(r.b, r.n);
-      raise(result_.flatness, relative(glm::dot(r.a.p - r.b.p, r.n)));
+      raise(result_.tangency, std::abs(glm::length(r.n) - 1));
+      check_contact(r.a, r.n, face.tolerant);
+      check_contact(r.b, r.n, face.tolerant);
+      check_height(glm::dot(r.a.p - r.b.p, r.n), face.tolerant);
     }
-    if (face.kind != FaceKind::facet) continue;
-    const double offset = face.offset - glm::dot(geometry_.origin(), face.normal);
-    const auto off_plane = [&](const dvec3& p) {
-      return relative(glm::dot(geometry_.local(p), face.normal) - offset);
-    };
-    for (const HullDocument::Contact& c : face.contacts) {
-      check_contact(c, face.normal);
-      raise(result_.flatness, off_plane(c.p));
-    }
-    const std::size_t sides = std::min(face.sides.size(), face.contacts.size());
-    for (std::size_t k = 0; k < sides; ++k) check_side(face, k);
-    for (const dvec3& p : face.boundary) raise(result_.flatness, off_plane(p));
-    for (const auto& [curve, sense] : face.outline) {
-      for (const dvec3& p : hull_.curves[to_size(curve)].points) {
-        raise(result_.flatness, off_plane(p));
-      }
-    }
+    if (face.kind == FaceKind::facet) check_facet(face);
   }
 }
 
 /// What needs the model's sources to be the document's.
 void HullVerifier::check_faces() {
-  for (std::size_t i = 0; i < hull_.sources.size(); ++i) {
-    place_of_source_[hull_.sources[i].id] = int(i);
-  }
   const DocumentOutlines outlines(geometry_);
-  std::vector<Claim> claims;
-  add_listed_claims(claims);
-  add_claims_between(outlines, claims);
-  check_support(claims);
+  check_support(listed_claims(geometry_));
+  check_support(claims_between(geometry_, outlines));
   options_.progress.update("verify", 0.4);
   std::optional<DocumentMeasures> measures;
   if (hull_.dimension >= 2) {
@@ -270,117 +311,34 @@ void HullVerifier::check_faces() {
   }
   if (hull_.dimension == 3) {
     measures = measure(geometry_, outlines, options_.progress);
-    raise(result_.vector_area, glm::length(measures->vector_area) / measures->area);
+    raise(result_.vector_area,
+          std::max(glm::length(measures->vector_area) - measures->vector_area_bound, 0.0) /
+              measures->area);
     raise(result_.measures_error, measures->error);
     if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
-    raise(result_.patch_outside, check_patches(geometry_, outlines, scene_, options_, faults_));
+    const Coverage coverage(geometry_, outlines, scene_, promised_length());
+    raise(result_.patch_outside,
+          check_patches(geometry_, outlines, coverage, scene_, options_, faults_));
     options_.progress.update("verify", 0.8);
-    check_even_directions(outlines, measures);
+    check_even_directions(coverage, measures);
   } else {
     check_points();
   }
   check_report(hull_, measures, rounding_, faults_);
 }
 
-void HullVerifier::add_listed_claims(std::vector<Claim>& claims) {
-  const dvec3& center = scene_.frame().center;
-  for (const HullDocument::Face& face : hull_.faces) {
-    for (const HullDocument::Ruling& r : face.rulings) {
-      const dvec3 n = unit(r.n);
-      raise(result_.tangency, std::abs(glm::length(r.n) - 1));
-      for (const dvec3& p : {r.a.p, r.b.p}) claims.push_back({n, glm::dot(p - center, n)});
-    }
-    if (face.kind != FaceKind::facet) continue;
-    raise(result_.tangency, std::abs(glm::length(face.normal) - 1));
-    claims.push_back({unit(face.normal), face.offset - glm::dot(face.normal, center)});
-  }
-}
-
-/// Rulings between the listed ones support as well.
-void HullVerifier::add_claims_between(const DocumentOutlines& outlines,
-                                      std::vector<Claim>& claims) const {
-  for (const std::vector<RulingInterval>& intervals : outlines.intervals()) {
-    for (const RulingInterval& interval : intervals) {
-      for (const RulingPanel& panel : interval.panels) {
-        if (!interval.solved) break;
-        // The first and the last one of the interval are listed.
-        for (std::size_t i = 1; i < panel.nodes().size() && panel.nodes()[i] < 1; ++i) {
-          const RulingState& state = panel.states()[i];
-          for (std::size_t k = 0; k < 2; ++k) {
-            const SourceJet j = geometry_.jet(interval.source[k], {interval.patch[k], state.t[k]});
-            claims.push_back({state.n, glm::dot(j.x, state.n)});
-          }
-        }
-      }
-    }
-  }
-}
-
-void HullVerifier::check_support(const std::vector<Claim>& claims) {
-  const SceneFrame& frame = scene_.frame();
-  std::vector<double> gap(claims.size());
-  constexpr std::size_t grain = 64;
-  parallel_for(claims.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
-    options_.progress.check();
-    SupportQuery query(scene_, options_.progress.stop);
-    Contact near;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!(glm::length(claims[i].n) > 0.5)) {
-        gap[i] = infinity;
-        continue;
-      }
-      const Support s = query(claims[i].n, near);
-      near = s.contact;
-      gap[i] = frame.length_to_model(s.h) - claims[i].h;
-    }
-  });
-  for (const double g : gap) {
-    raise(result_.model_outside, g > 0 ? relative(g) : std::isnan(g) ? g : 0);
-    raise(result_.hull_outside, g < 0 ? relative(g) : 0);
-  }
+void HullVerifier::check_support(const std::vector<SupportClaim>& claims) {
+  const SupportGaps gaps = support_gaps(claims, scene_, options_);
+  raise(result_.model_outside, relative(gaps.above));
+  raise(result_.hull_outside, relative(gaps.below));
   result_.directions += int(claims.size());
 }
 
-/// On an edge or vertex that the document names, or on a patch, be it at its border; or in a point
-/// of its curves, where a corner is named as the end of an edge.
-bool HullVerifier::covers(const DocumentOutlines& outlines, const NearestPoint& curves,
-                          const Contact& contact) const {
-  if (curves.distance(scene_.point(contact)) <= (same_point + rounding_) * diagonal_) return true;
-  // The document may name any of the copies in one place.
-  const int instances = int(scene_.model().instances().size());
-  Contact copy = contact;
-  for (copy.instance = 0; copy.instance < instances; ++copy.instance) {
-    const bool same =
-        scene_.first_instance(copy.instance) == scene_.first_instance(contact.instance);
-    if (same && names(outlines, copy)) return true;
-  }
-  return false;
-}
-
-/// The contact is on a source that the document names, and inside of the patch's outline there.
-bool HullVerifier::names(const DocumentOutlines& outlines, const Contact& contact) const {
-  const SourceContact c = scene_.source(contact);
-  if (c.kind != SourceKind::face && place_of_source_.contains(c.source)) return true;
-  if (contact.kind != SourceKind::face) return false;
-  const Model& model = scene_.model();
-  const Part& part = model.parts()[to_size(model.instances()[to_size(contact.instance)].part)];
-  const Patch& patch = part.patches()[to_size(contact.element)];
-  const auto place =
-      place_of_source_.find(model.source_id({SourceKind::face, contact.instance, patch.face}));
-  return place != place_of_source_.end() &&
-         outlines.covers(place->second, {patch.u.at(contact.u), patch.v.at(contact.v)});
-}
-
-void HullVerifier::check_even_directions(const DocumentOutlines& outlines,
+void HullVerifier::check_even_directions(const Coverage& coverage,
                                          const std::optional<DocumentMeasures>& measures) {
   const std::vector<dvec3> directions = even_directions(options_.random_directions, options_.seed);
   std::vector<double> h(directions.size(), 0);
   std::vector<char> missed(directions.size(), 0);
-  std::vector<dvec3> points;
-  for (const HullDocument::Curve& curve : hull_.curves) {
-    points.insert(points.end(), curve.points.begin(), curve.points.end());
-  }
-  const NearestPoint curves(std::move(points));
   constexpr std::size_t grain = 64;
   parallel_for(directions.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
     options_.progress.check();
@@ -388,7 +346,7 @@ void HullVerifier::check_even_directions(const DocumentOutlines& outlines,
     for (std::size_t i = begin; i < end; ++i) {
       const Support s = query(directions[i]);
       h[i] = s.h;
-      missed[i] = covers(outlines, curves, s.contact) ? 0 : 1;
+      missed[i] = coverage.covers(directions[i], s.contact) ? 0 : 1;
     }
   });
   result_.uncovered = int(std::count(missed.begin(), missed.end(), 1));
@@ -413,9 +371,9 @@ void HullVerifier::check_points() {
       for (const HullDocument::Patch& p : source.patches) points.emplace_back(p.points[0]);
     }
   }
-  std::vector<Claim> claims;
+  std::vector<SupportClaim> claims;
   for (const dvec3& n : even_directions(options_.random_directions, options_.seed)) {
-    Claim claim{n, -infinity};
+    SupportClaim claim{n, -infinity};
     for (const dvec3& p : points) claim.h = std::max(claim.h, glm::dot(geometry_.local(p), n));
     claims.push_back(claim);
   }

@@ -9,6 +9,10 @@ namespace taut {
 
 /// What verify() found of a hull document. Lengths are fractions of the model's diagonal, and as
 /// large as they were found: lower bounds of what may be wrong.
+///
+/// They are lengths beyond what the document states: a face's bound (HullDocument::Face::tolerant)
+/// is taken off what places of it, and of its curves, are below supporting planes and off planes
+/// by. Nothing is taken off what is above the model, off sources or off outlines.
 struct HullVerification {
   /// What the rounding of coordinates, large against the diagonal far from the origin, may do to
   /// lengths.
@@ -23,8 +27,10 @@ struct HullVerification {
   int euler = 0;
   /// Largest distance of a source's control point from the model's, and difference of diagonals.
   double off_model = 0;
-  /// Largest slope of a contact's surface or edge against its supporting plane: derivative along
-  /// n over a whole Bezier patch or curve.
+  /// Largest slope by which a contact's surface or edge rises over its supporting plane: derivative
+  /// along n over a whole Bezier patch or curve, where that ends but for where it falls off; less
+  /// what a place that is off by the resolution that the document states may have of it. Of faces
+  /// that state a bound nothing.
   double tangency = 0;
   /// Largest |(a - b) . n| of a ruling, and distance of a facet's points from its plane.
   double flatness = 0;
@@ -38,12 +44,15 @@ struct HullVerification {
   double hull_outside = 0;
   /// Largest h_model(n) - x . n of points x of patches with normal n.
   double patch_outside = 0;
-  /// Directions, spread evenly, whose contact lies on a face of the model, in no region of a patch
-  /// of the hull nor near its outline, or on another source that the document does not name.
+  /// Directions, spread evenly, in which the boundary does not reach as far as the model: the
+  /// model's contact is not on an edge or vertex that the document names, nor in a region of a
+  /// patch or near its outline, nor is any place of these as near, or a listed point as high, as
+  /// the resolution and the largest bound that the document states.
   int uncovered = 0;
   int directions = 0;
-  /// |integral of n dA| over the area, and the relative difference of the mean width by integrals
-  /// over the faces from that by support queries; of hulls of dimension 3.
+  /// |integral of n dA| over the area, beyond what outlines of facets off their planes, by the
+  /// bounds of the faces along them, make of it; and the relative difference of the mean width by
+  /// integrals over the faces from that by support queries; of hulls of dimension 3.
   double vector_area = 0;
   double mean_width_error = 0;
   /// How well the integrals over the faces are known, as far as one can tell.

@@ -1,0 +1,193 @@
+// Documents whose faces state that they are below their supporting planes, and by how much.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "boundaries.h"
+#include "judge/families.h"
+#include "sound_hull.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/convex_hull.h"
+#include "taut/io/document/boundary_document.h"
+#include "taut/io/document/polyhedral_document.h"
+#include "taut/io/report/report.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+/// What natural models are held to.
+constexpr double nearly = 1e-9;
+
+double largest_bound(const HullDocument& hull) {
+  double largest = 0;
+  for (const HullDocument::Face& face : hull.faces) largest = std::max(largest, face.tolerant);
+  return largest;
+}
+
+int tolerant_faces(const HullDocument& hull) {
+  return int(std::count_if(hull.faces.begin(), hull.faces.end(),
+                           [](const HullDocument::Face& face) { return face.tolerant > 0; }));
+}
+
+void state(HullDocument& hull, double resolution, int tolerant, double bound) {
+  Report report;
+  report.hull.resolution.emplace().rho = resolution;
+  report.hull.tolerant = {tolerant, bound};
+  hull.report = to_json(report);
+}
+
+/// A natural model's hull, solved, with a report.
+Sound solved(const std::string& name, Variant variant) {
+  for (const FamilyGroup& group : family_groups()) {
+    for (const Family& family : group.families) {
+      if (family.name != name) continue;
+      taut_test::Random random(1);
+      const Natural natural = family.make(random);
+      Sound sound{make_scene(placed(natural, variant, random).shape), {}};
+      HullOptions options;
+      options.relative = 1e-2;
+      options.threads = 1;
+      options.curves = CurveMethod::solving;
+      const Hull hull = convex_hull(sound.scene, options);
+      sound.hull = hull_document(sound.scene, *hull.boundary);
+      state(sound.hull, hull.resolution.rho, tolerant_faces(sound.hull), largest_bound(sound.hull));
+      return sound;
+    }
+  }
+  throw std::logic_error("no such family");
+}
+
+struct Rounded {
+  const char* family;
+  Variant variant;
+};
+
+class VerifyRounded : public testing::TestWithParam<Rounded> {};
+
+/// Planes, cylinders and spheres that rounding has bent: with the bounds that they state, and with
+/// no less.
+TEST_P(VerifyRounded, HullsPassWithTheirBoundsOnly) {
+  const Sound sound = solved(GetParam().family, GetParam().variant);
+  ASSERT_GT(tolerant_faces(sound.hull), 0);
+  const HullVerification whole = verified(sound.hull, sound.scene);
+  EXPECT_TRUE(whole.is_hull(nearly)) << text_of(whole);
+
+  const double largest = largest_bound(sound.hull) / sound.hull.diagonal;
+  ASSERT_GT(largest, 4 * nearly);
+  HullDocument less = sound.hull;
+  for (HullDocument::Face& face : less.faces) face.tolerant *= 0.5;
+  state(less, sound.hull.diagonal * resolution_floor, tolerant_faces(less), largest_bound(less));
+  const HullVerification found = verified(less, sound.scene);
+  EXPECT_FALSE(found.is_hull(nearly));
+  EXPECT_GE(found.worst_length(), 0.4 * largest) << text_of(found);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Natural, VerifyRounded,
+    testing::Values(Rounded{"box", Variant::float32}, Rounded{"rounded_box", Variant::float32},
+                    Rounded{"cylinder", Variant::decimals}, Rounded{"torus", Variant::float32}),
+    [](const auto& info) {
+      return std::string(info.param.family) + "_" + name_of(info.param.variant);
+    });
+
+/// Where edges and patches lie in one place a hull names one of them.
+TEST(VerifyTolerant, OneOfSeveralInOnePlaceIsNamed) {
+  const Sound duct = solved("duct", Variant::clean);
+  EXPECT_EQ(verified(duct.hull, duct.scene).uncovered, 0);
+}
+
+/// A point beside a corner, above a facet, of which the document knows nothing.
+TEST(VerifyTolerant, TheModelReachesNoFartherThanTheResolution) {
+  std::vector<dvec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Scene known = make_scene({{}, {}, points});
+  HullDocument hull = hull_document(known.model(), convex_hull(known.model()).mesh);
+  points.emplace_back(1 - 1e-8, 2e-8, 0);
+  const Scene scene = make_scene({{}, {}, points});
+  const double height = 1e-8 / std::sqrt(3.0);
+  EXPECT_EQ(failed(verified(hull, scene)), (std::set<std::string>{"covered", "model_outside"}));
+  for (HullDocument::Face& face : hull.faces) {
+    if (face.offset > 0.5) face.tolerant = 1.001 * height;
+  }
+  EXPECT_EQ(failed(verified(hull, scene)), std::set<std::string>{"covered"});
+  state(hull, 3e-9, 1, 1.001 * height);
+  EXPECT_EQ(failed(verified(hull, scene)), std::set<std::string>{"covered"});
+  state(hull, 1e-8, 1, 1.001 * height);
+  EXPECT_TRUE(verified(hull, scene).is_hull(exact)) << text_of(verified(hull, scene));
+}
+
+/// A tetrahedron with a facet's plane lowered.
+Sound lowered(double depth, double bound) {
+  KnownBoundary known = tetrahedron_boundary();
+  HullDocument hull = hull_document(known.scene, known.boundary);
+  hull.faces[0].offset -= depth * hull.diagonal;
+  hull.faces[0].tolerant = bound * hull.diagonal;
+  return {std::move(known.scene), hull};
+}
+
+TEST(VerifyTolerant, FacetsBelowTheirPlanes) {
+  const Sound told = lowered(1e-7, 1e-7 + 1e-15);
+  EXPECT_TRUE(verified(told.hull, told.scene).is_hull(exact));
+  const Sound half = lowered(1e-7, 5e-8);
+  EXPECT_EQ(failed(verified(half.hull, half.scene)),
+            (std::set<std::string>{"flatness", "model_outside"}));
+  EXPECT_NEAR(verified(half.hull, half.scene).model_outside, 5e-8, 1e-14);
+  const Sound above = lowered(-1e-7, 1e-7 + 1e-15);
+  EXPECT_EQ(failed(verified(above.hull, above.scene)), std::set<std::string>{"hull_outside"});
+}
+
+/// All else is held to the bounds, which must not be stated at will.
+TEST(VerifyTolerant, BoundsHaveToBeWithinTheResolution) {
+  const std::set<std::string> bounds = {"bounds"};
+  EXPECT_EQ(failed(verified(lowered(0, 1e-4).hull, lowered(0, 0).scene)), bounds);
+  EXPECT_EQ(failed(verified(lowered(0, -1e-9).hull, lowered(0, 0).scene)).count("bounds"), 1U);
+  Sound stated = lowered(0, 1e-7);
+  state(stated.hull, 3e-8 * stated.hull.diagonal, 1, stated.hull.faces[0].tolerant);
+  EXPECT_TRUE(verified(stated.hull, stated.scene).is_hull(exact));
+  state(stated.hull, 2e-8 * stated.hull.diagonal, 1, stated.hull.faces[0].tolerant);
+  EXPECT_EQ(failed(verified(stated.hull, stated.scene)), bounds);
+}
+
+TEST(VerifyTolerant, ReportsTellTheFacesAndTheirBound) {
+  const std::set<std::string> report = {"report"};
+  Sound stated = lowered(0, 1e-7);
+  const double bound = stated.hull.faces[0].tolerant;
+  const double resolution = bound;
+  state(stated.hull, resolution, 2, bound);
+  EXPECT_EQ(failed(verified(stated.hull, stated.scene)), report);
+  state(stated.hull, resolution, 1, 0.9 * bound);
+  EXPECT_EQ(failed(verified(stated.hull, stated.scene)), report);
+  state(stated.hull, resolution, 1, bound);
+  EXPECT_TRUE(failed(verified(stated.hull, stated.scene)).empty());
+}
+
+/// Contacts of tolerant faces need not be tangent, others may be off by the resolution.
+TEST(VerifyTolerant, TangencyIsNotAskedBelowTheResolution) {
+  const KnownBoundary known = two_spheres_boundary();
+  const auto turned = [&](double angle, double resolution, double bound) {
+    HullDocument hull = hull_document(known.scene, known.boundary);
+    HullDocument::Face& scroll = hull.faces[2];
+    scroll.tolerant = bound * hull.diagonal;
+    for (HullDocument::Ruling& r : scroll.rulings) r.n = unit(r.n + angle * dvec3(0, 0, 1));
+    if (resolution > 0) {
+      state(hull, resolution * hull.diagonal, tolerant_faces(hull), scroll.tolerant);
+    }
+    return failed(verified(hull, known.scene));
+  };
+  EXPECT_TRUE(turned(1e-8, 0, 0).contains("tangency"));
+  EXPECT_FALSE(turned(1e-8, 1e-8, 0).contains("tangency"));
+  EXPECT_TRUE(turned(1e-6, 1e-8, 0).contains("tangency"));
+  EXPECT_FALSE(turned(1e-6, 1e-6, 2e-6).contains("tangency"));
+  EXPECT_FALSE(turned(1e-6, 1e-6, 2e-6).contains("flatness"));
+  EXPECT_TRUE(turned(1e-6, 1e-6, 1e-8).contains("flatness"));
+}
+
+}  // namespace
+}  // namespace taut
