@@ -125,6 +125,8 @@ TEST_F(Cli, HullReportHasTheNamesOfTheContract) {
                           "/dimension",
                           "/hull/resolution",
                           "/hull/resolution_source",
+                          "/hull/tolerant",
+                          "/hull/tolerant_bound",
                           "/hull/gap_bound",
                           "/mesh/vertices",
                           "/mesh/edges",
@@ -372,6 +374,60 @@ std::string rounded_patch(double size) {
   };
   return "1\n1 1\n" + corner(0.1234567, 0.7654321, 0.3) + corner(1.1928374, 0.8172635, 0.4192837) +
          corner(0.2718281, 1.8182845, 0.5904523) + corner(1.3141592, 1.9535897, 0.6932384);
+}
+
+/// A box turned and rounded to six decimals: its sides are not quite flat.
+std::string rounded_box() {
+  const double c = std::cos(0.7), s = std::sin(0.7), d = std::cos(0.4), e = std::sin(0.4);
+  const auto corner = [&](double x, double y, double z) {
+    std::array<char, 80> line;
+    std::snprintf(line.data(), line.size(), "%.6f %.6f %.6f\n", c * x - s * y,
+                  d * (s * x + c * y) - e * z, e * (s * x + c * y) + d * z);
+    return std::string(line.data());
+  };
+  std::string text = "6\n";
+  for (const double side : {0.0, 1.0}) {
+    const std::string across[] = {
+        corner(3 * side, 0, 0) + corner(3 * side, 2, 0) + corner(3 * side, 0, 1) +
+            corner(3 * side, 2, 1),
+        corner(0, 2 * side, 0) + corner(3, 2 * side, 0) + corner(0, 2 * side, 1) +
+            corner(3, 2 * side, 1),
+        corner(0, 0, side) + corner(3, 0, side) + corner(0, 2, side) + corner(3, 2, side)};
+    for (const std::string& points : across) text += "1 1\n" + points;
+  }
+  return text;
+}
+
+/// In the summary, the report, the document and the project; and verify holds faces to it.
+TEST_F(Cli, TolerantFacesAreTold) {
+  const std::string box = plant("box.bpt", rounded_box());
+  const Result result =
+      run("hull " + box + " --curves solving -o b.hull.json -o b.mlp --report r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find(" faces off by up to "), std::string::npos) << result.out;
+  EXPECT_NE(content(path("b.mlp")).find("b-tolerant.ply"), std::string::npos);
+  Json hull = Json::parse(content(path("b.hull.json")));
+  int tolerant = 0;
+  double bound = 0;
+  for (const Json& face : hull["faces"]) {
+    tolerant += face.contains("tolerant") ? 1 : 0;
+    bound = std::max(bound, face.value("tolerant", 0.0));
+  }
+  EXPECT_GT(tolerant, 0);
+  EXPECT_LT(bound, 4e-6);
+  const Json report = Json::parse(content(path("r.json")))["hull"];
+  EXPECT_EQ(report["tolerant"], tolerant);
+  EXPECT_EQ(report["tolerant_bound"].get<double>(), bound);
+
+  EXPECT_EQ(run("verify b.hull.json " + box).exit_code, 0) << run("verify b.hull.json " + box).out;
+  for (Json& face : hull["faces"]) {
+    if (face.contains("tolerant")) face["tolerant"] = 0.5 * face["tolerant"].get<double>();
+  }
+  hull["report"] = Json::object();
+  plant("half.hull.json", hull.dump());
+  const Result half = run("verify half.hull.json " + box);
+  EXPECT_EQ(half.exit_code, 1);
+  EXPECT_NE(half.err.find("not flat"), std::string::npos) << half.out << half.err;
 }
 
 TEST_F(Cli, InfoTellsTheResolution) {

@@ -16,19 +16,31 @@ constexpr double wanted_points = 50'000;
 constexpr int least_grid = 3;
 constexpr int most_grid = 65;
 
-void check_hull_points(const std::vector<dvec3>& points, const Scene& scene, double accuracy,
+/// Points of a hull, and how far inside of it each may be.
+struct HullPoints {
+  std::vector<dvec3> points;
+  std::vector<double> bounds;
+
+  void add(const dvec3& p, double bound) {
+    points.push_back(p);
+    bounds.push_back(bound);
+  }
+};
+
+void check_hull_points(const HullPoints& hull_points, const Scene& scene, double accuracy,
                        int threads, const Progress& progress, ContainedSamples& found) {
   HullContainmentOptions options;
   options.accuracy = accuracy;
   options.threads = threads;
   options.progress = progress;
   const HullContainment hull(scene, options);
-  found.hull_points = long(points.size());
-  for (const SignedDistance& d : hull.distances(points)) {
+  found.hull_points = long(hull_points.points.size());
+  const std::vector<SignedDistance> distances = hull.distances(hull_points.points);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
     // Outside by no less than what one direction tells; but inside only by what all of them do, of
     // which the best one found tells nothing.
-    found.hull_outside = std::max(found.hull_outside, d.value);
-    found.hull_inside = std::max(found.hull_inside, -d.upper);
+    found.hull_outside = std::max(found.hull_outside, distances[i].value);
+    found.hull_inside = std::max(found.hull_inside, -distances[i].upper - hull_points.bounds[i]);
   }
 }
 
@@ -74,7 +86,9 @@ Model mesh_model(const PolygonMesh& mesh) {
 ContainedSamples contained_samples(const PolygonMesh& mesh, const Scene& scene, double accuracy,
                                    int threads, const Progress& progress) {
   ContainedSamples found;
-  check_hull_points(mesh.points, scene, accuracy, threads, progress, found);
+  HullPoints corners;
+  for (const dvec3& p : mesh.points) corners.add(p, 0);
+  check_hull_points(corners, scene, accuracy, threads, progress, found);
   Model triangles = mesh_model(mesh);
   // That an open mesh bounds nothing is another check's to say.
   if (!why_not_closed(triangles).empty()) return found;
@@ -100,16 +114,22 @@ ContainedSamples contained_samples(const PolygonMesh& mesh, const Scene& scene, 
 
 ContainedSamples contained_samples(const HullDocument& hull, const Scene& scene, double accuracy,
                                    int threads, const Progress& progress) {
-  std::vector<dvec3> points;
+  HullPoints points;
   for (const HullDocument::Curve& curve : hull.curves) {
-    points.insert(points.end(), curve.points.begin(), curve.points.end());
+    double bound = 0;  // its places are those of both faces
+    for (const int face : curve.faces) {
+      if (face >= 0) bound = std::max(bound, hull.faces[std::size_t(face)].tolerant);
+    }
+    for (const dvec3& p : curve.points) points.add(p, bound);
   }
   for (const HullDocument::Face& face : hull.faces) {
     for (const HullDocument::Ruling& ruling : face.rulings) {
-      points.insert(points.end(), {ruling.a.p, 0.5 * (ruling.a.p + ruling.b.p), ruling.b.p});
+      for (const dvec3& p : {ruling.a.p, 0.5 * (ruling.a.p + ruling.b.p), ruling.b.p}) {
+        points.add(p, face.tolerant);
+      }
     }
-    for (const HullDocument::Contact& contact : face.contacts) points.push_back(contact.p);
-    points.insert(points.end(), face.boundary.begin(), face.boundary.end());
+    for (const HullDocument::Contact& contact : face.contacts) points.add(contact.p, face.tolerant);
+    for (const dvec3& p : face.boundary) points.add(p, face.tolerant);
   }
   ContainedSamples found;
   check_hull_points(points, scene, accuracy, threads, progress, found);

@@ -13,7 +13,8 @@ namespace taut::tool {
 /// What points of a hull and of its model say of each other, in model units.
 struct ContainedSamples {
   /// Points of the hull to check, and how far the farthest of them is outside of the model's hull
-  /// and is proven to be inside of it. The distances are those to the exact hull.
+  /// and is proven to be inside of it, beyond the bound that its face states. The distances are
+  /// those to the exact hull.
   long hull_points = 0;
   double hull_outside = 0;
   double hull_inside = 0;

@@ -198,6 +198,17 @@ double mean_width(const HullMesh& mesh) {
   return sum / (4 * std::numbers::pi);
 }
 
+/// How many faces of a boundary are tolerant, and the largest of their bounds.
+Report::ExactHull::Tolerant tolerant_faces(const HullBoundary& boundary) {
+  Report::ExactHull::Tolerant tolerant;
+  for (const HullFace& face : boundary.faces) {
+    if (!(face.tolerant > 0)) continue;
+    ++tolerant.faces;
+    tolerant.bound = std::max(tolerant.bound, boundary.frame.length_to_model(face.tolerant));
+  }
+  return tolerant;
+}
+
 /// What is known of the exact hull: its faces and its measures.
 Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method,
                              Console& console) {
@@ -209,6 +220,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
     exact.counts = {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
                     boundary.count(FaceKind::facet), int(boundary.curves.size()),
                     int(boundary.unresolved.size())};
+    exact.tolerant = tolerant_faces(boundary);
     if (input.model().polyhedral()) {
       exact.measures = measure(polygons(hull.mesh));
       exact.mean_width = mean_width(hull.mesh);
@@ -229,6 +241,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
     }
   } else if (input.model().polyhedral() && method == "precise") {
     exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
+    exact.tolerant.emplace();
     exact.measures = measure(polygons(hull.mesh));
     exact.mean_width = mean_width(hull.mesh);
   }
@@ -309,6 +322,10 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
             counted(counts->curves, "curve", "curves");
     if (counts->unresolved > 0) hull += ", " + number(long(counts->unresolved)) + " unresolved";
   }
+  if (const auto& tolerant = report.hull.tolerant; tolerant && tolerant->faces > 0) {
+    hull += ", " + counted(tolerant->faces, "face", "faces") + " off by up to " +
+            number(tolerant->bound, 3);
+  }
   text += line("hull", hull);
   if (const auto& resolution = report.hull.resolution) {
     text += line("resolution", " " + number(resolution->rho, 3) + ": " + reason_of(*resolution));
@@ -367,10 +384,13 @@ WrittenMesh write_output(const std::string& file, const std::string& format, Inp
     return {};
   }
   if (format == ".mlp") {
-    write_project(
-        file, hull.mesh,
-        hull.boundary ? hull_curves(input.scene().frame(), *hull.boundary) : hull_curves(hull.mesh),
-        input.model());
+    if (!hull.boundary) {
+      write_project(file, hull.mesh, hull_curves(hull.mesh), input.model());
+      return {};
+    }
+    const SceneFrame& frame = input.scene().frame();
+    write_project(file, hull.mesh, hull_curves(frame, *hull.boundary), input.model(),
+                  tolerant_curves(frame, *hull.boundary));
     return {};
   }
   if (file != "-") return write_mesh(file, hull.mesh);
