@@ -42,7 +42,7 @@ TEST(DocumentMeasures, OfATetrahedron) {
   const double long_sides = 3 * std::sqrt(2) * (pi - std::acos(1 / std::sqrt(3)));
   EXPECT_NEAR(found.mean_width, (short_sides + long_sides) / (4 * pi), 1e-13);
   EXPECT_LE(glm::length(found.vector_area), 1e-14);
-  EXPECT_LE(found.error, 1e-13);
+  EXPECT_LE(found.error(), 1e-13);
 }
 
 TEST(DocumentMeasures, OfTwoSpheres) {
@@ -65,14 +65,14 @@ TEST(DocumentMeasures, OfACylinder) {
   EXPECT_NEAR(found.volume, 2 * pi, 1e-12);
   EXPECT_NEAR(found.area, 6 * pi, 1e-12);
   EXPECT_NEAR(found.mean_width, 1 + pi / 2, 1e-11);
-  EXPECT_LE(found.error, 1e-13);
+  EXPECT_LE(found.error(), 1e-13);
 
   for (HullDocument::Curve& curve : hull.curves) curve.kind = HullCurveKind::bitangent;
   const DocumentMeasures near = measured(hull, known.scene);
   EXPECT_NEAR(near.volume, 2 * pi, 1e-7);
   EXPECT_NEAR(near.mean_width, 1 + pi / 2, 1e-7);
-  EXPECT_GE(near.error, std::abs(near.volume / (2 * pi) - 1));
-  EXPECT_LE(near.error, 1e-5);
+  EXPECT_GE(near.error(), std::abs(near.volume / (2 * pi) - 1));
+  EXPECT_LE(near.error(), 1e-5);
 }
 
 /// Facets within curves of which only the points are known, and along which the surface's third
@@ -88,9 +88,9 @@ TEST(DocumentMeasures, OfTorusCages) {
       const BoundaryMeasures known = measure(scene, ContactGeometry(scene), boundary);
       const DocumentMeasures found = measured(hull_document(scene, boundary), scene);
       const std::string name = std::to_string(m) + " x " + std::to_string(n);
-      EXPECT_LE(std::abs(found.area / known.area - 1), found.error + 1e-12) << name;
-      EXPECT_LE(std::abs(found.volume / known.volume - 1), found.error + 1e-12) << name;
-      EXPECT_LE(found.error, 1e-5) << name;
+      EXPECT_LE(std::abs(found.area / known.area - 1), found.error() + 1e-12) << name;
+      EXPECT_LE(std::abs(found.volume / known.volume - 1), found.error() + 1e-12) << name;
+      EXPECT_LE(found.error(), 1e-5) << name;
     }
   }
 }

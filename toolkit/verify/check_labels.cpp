@@ -90,12 +90,13 @@ void LabelCheck::check_told(std::size_t f) {
   const HullDocument::Source& source = geometry_.source(face.source);
   if (source.kind != SourceKind::face) return wrong(f, "its source is no face");
   if (source.patches.empty()) return;
+  const double near = near_ + face.tolerant;
   if (face.kind == FaceKind::facet) {
-    if (!in_plane(source, face, near_)) wrong(f, "its source is not in its plane");
+    if (!in_plane(source, face, near)) wrong(f, "its source is not in its plane");
     return;
   }
   for (const HullDocument::Ruling& r : face.rulings) {
-    if (!on_face(geometry_, face.source, r, near_))
+    if (!on_face(geometry_, face.source, r, near))
       return wrong(f, "its source has no such rulings");
   }
 }

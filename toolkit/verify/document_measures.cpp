@@ -156,7 +156,9 @@ class MeasureSums {
   Terms sums_;
   Fit fit_;
   bool interpolated_ = false;
-  double open_ = 0;  ///< what the vector area lacks by facets' outlines off their planes
+  /// What the vector area lacks by facets' outlines off their planes, and the volume between these
+  /// and others that the bounds allow.
+  double open_ = 0, between_ = 0;
 };
 
 MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
@@ -201,8 +203,13 @@ DocumentMeasures MeasureSums::run(const Progress& progress) {
   measures.area = unit_ * unit_ * value[area];
   measures.vector_area = unit_ * unit_ * dvec3(value[area_x], value[area_y], value[area_z]);
   measures.vector_area_bound = unit_ * unit_ * open_;
+  measures.volume_bound = unit_ * unit_ * unit_ * between_;
   measures.mean_width = unit_ * value[curvature] / (2 * std::numbers::pi);
-  measures.error = std::max({share(volume), share(area), share(curvature)});
+  measures.volume_error = share(volume);
+  measures.area_error = share(area);
+  measures.mean_width_error = share(curvature);
+  measures.vector_area_error =
+      (sums_.error[area_x] + sums_.error[area_y] + sums_.error[area_z]) / std::abs(value[area]);
   return measures;
 }
 
@@ -398,6 +405,7 @@ void MeasureSums::add_facet(const Face& face) {
     whole.error[volume] = whole.error[area] * std::abs(height) / 3;
   }
   sums_.add(1, whole);
+  between_ += face.tolerant / unit_ * std::abs(whole.value[area]);
 }
 
 /// Its share of the facet's vector area, and its outline: along the model's edge between points of
@@ -463,9 +471,10 @@ DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutline
   const DocumentMeasures worse = MeasureSums(geometry, outlines, Fit::worse).run(progress);
   // Where the curve is not as smooth as the polynomials suppose, both err by as much.
   constexpr double safety = 2;
-  best.error += safety * std::max({std::abs(worse.volume / best.volume - 1),
-                                   std::abs(worse.area / best.area - 1),
-                                   std::abs(worse.mean_width / best.mean_width - 1)});
+  best.volume_error += safety * std::abs(worse.volume / best.volume - 1);
+  best.area_error += safety * std::abs(worse.area / best.area - 1);
+  best.mean_width_error += safety * std::abs(worse.mean_width / best.mean_width - 1);
+  best.vector_area_error += safety * glm::length(worse.vector_area - best.vector_area) / best.area;
   return best;
 }
 

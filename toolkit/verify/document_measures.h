@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "taut/core/progress.h"
 #include "taut/verify/region_outlines.h"
 
@@ -13,11 +15,19 @@ struct DocumentMeasures {
   double mean_width = 0;
   /// Integral of the outward unit normal over all faces: zero if they make up a closed surface.
   dvec3 vector_area = dvec3(0.0);
-  /// How large that may be since outlines of facets are off their planes by what is stated.
+  /// How large that may be, and how far off the volume, since outlines of facets are off their
+  /// planes by what is stated.
   double vector_area_bound = 0;
-  /// Estimated relative error of volume, area and mean width: of the quadrature, and of curves that
-  /// are interpolated, twice what worse polynomials would change.
-  double error = 0;
+  double volume_bound = 0;
+  /// Estimated relative errors: of the quadrature, and of curves that are interpolated, twice what
+  /// worse polynomials would change. That of the vector area is a share of the area.
+  double volume_error = 0;
+  double area_error = 0;
+  double mean_width_error = 0;
+  double vector_area_error = 0;
+
+  /// The largest of volume, area and mean width.
+  double error() const { return std::max({volume_error, area_error, mean_width_error}); }
 };
 
 /// By integrals over all faces: patches by Green's theorem in their parameters, scrolls along their

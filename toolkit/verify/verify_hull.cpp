@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
-#include <random>
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/integers.h"
@@ -17,6 +15,7 @@
 #include "taut/verify/check_sources.h"
 #include "taut/verify/check_support.h"
 #include "taut/verify/coverage.h"
+#include "taut/verify/even_directions.h"
 #include "taut/verify/hull_structure.h"
 #include "taut/verify/stated_bounds.h"
 
@@ -72,30 +71,6 @@ bool FiniteNumbers::all(const HullDocument& hull) {
     see(face.boundary);
   }
   return finite_;
-}
-
-/// Directions spread evenly (spherical Fibonacci lattice: Swinbank and Purser 2006), turned at
-/// random.
-std::vector<dvec3> even_directions(int count, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> gaussian;
-  const auto vector = [&] {
-    const double x = gaussian(random);
-    const double y = gaussian(random);
-    return dvec3(x, y, gaussian(random));
-  };
-  const dvec3 z = unit(vector());
-  const dvec3 x = unit(glm::cross(z, vector()));
-  const dvec3 y = glm::cross(z, x);
-  std::vector<dvec3> directions;
-  directions.reserve(to_size(std::max(count, 0)));
-  for (int k = 0; k < count; ++k) {
-    const double height = 1 - (2 * k + 1.0) / count;
-    const double radius = std::sqrt(1 - height * height);
-    const double angle = 2 * std::numbers::pi * std::fmod(k * std::numbers::phi, 1.0);
-    directions.push_back(unit(radius * (std::cos(angle) * x + std::sin(angle) * y) + height * z));
-  }
-  return directions;
 }
 
 /// What the rounding of a scene's coordinates may do to lengths, as a fraction of its diagonal.
@@ -314,7 +289,8 @@ void HullVerifier::check_faces() {
     raise(result_.vector_area,
           std::max(glm::length(measures->vector_area) - measures->vector_area_bound, 0.0) /
               measures->area);
-    raise(result_.measures_error, measures->error);
+    raise(result_.measures_error, measures->error());
+    raise(result_.vector_area_error, measures->vector_area_error);
     if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
     const Coverage coverage(geometry_, outlines, scene_, promised_length());
     raise(result_.patch_outside,
@@ -388,7 +364,7 @@ double HullVerification::worst_length() const {
 }
 
 bool HullVerification::closes_up(double relative) const {
-  return vector_area <= std::max(relative, measure_accuracy) + rounding + measures_error;
+  return vector_area <= std::max(relative, measure_accuracy) + rounding + vector_area_error;
 }
 
 bool HullVerification::has_width(double relative) const {

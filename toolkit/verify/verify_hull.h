@@ -55,8 +55,10 @@ struct HullVerification {
   /// integrals over the faces from that by support queries; of hulls of dimension 3.
   double vector_area = 0;
   double mean_width_error = 0;
-  /// How well the integrals over the faces are known, as far as one can tell.
+  /// How well the integrals over the faces are known, as far as one can tell: volume, area and mean
+  /// width, and the vector area.
   double measures_error = 0;
+  double vector_area_error = 0;
   /// How well that many queries tell it.
   double mean_width_accuracy = 0;
   /// The document's numbers are finite and its sources are the model's, else nothing was looked at

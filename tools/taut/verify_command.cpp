@@ -114,8 +114,8 @@ std::vector<Check> checks(const HullVerification& found, double relative) {
     check.made = found.comparable || !of_model.contains(check.key);
     const std::string key = check.key;
     if (key == "width") check.accuracy = found.mean_width_accuracy;
-    if (key == "no_vector_area" && found.measures_error > relative) {
-      check.accuracy = found.measures_error;
+    if (key == "no_vector_area" && found.vector_area_error > relative) {
+      check.accuracy = found.vector_area_error;
     }
   }
   return all;
