@@ -104,6 +104,14 @@ TEST(VerifyTolerant, OneOfSeveralInOnePlaceIsNamed) {
   EXPECT_EQ(verified(duct.hull, duct.scene).uncovered, 0);
 }
 
+/// The outlines of two domes over one square touch at its sides, between facets without area.
+TEST(VerifyTolerant, PartsThatTouchInAPointAreOneSurface) {
+  const Sound domes = solved("mirrored_domes", Variant::clean);
+  const HullVerification found = verified(domes.hull, domes.scene);
+  EXPECT_TRUE(found.closed);
+  EXPECT_EQ(found.euler, 2);
+}
+
 /// A point beside a corner, above a facet, of which the document knows nothing.
 TEST(VerifyTolerant, TheModelReachesNoFartherThanTheResolution) {
   std::vector<dvec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "taut/core/disjoint_sets.h"
 #include "taut/core/integers.h"
 
 namespace taut {
@@ -37,22 +38,32 @@ CurveEnds::CurveEnds(const HullDocument& hull, double tolerance) {
       return glm::distance(p, curve.points.front()) <= tolerance;
     }));
   }
-  // Sweeps along x; each end takes the number of the first one that it is close to.
+  // Ends of two curves that no face brings together are two, be they in one place: where parts of
+  // the boundary touch in a point, between facets without area.
+  const auto together = [&](std::size_t a, std::size_t b) {
+    const HullDocument::Curve& one = hull.curves[a / 2];
+    const HullDocument::Curve& other = hull.curves[b / 2];
+    return a / 2 == b / 2 || std::any_of(one.faces.begin(), one.faces.end(), [&](int f) {
+             return f >= 0 && (f == other.faces[0] || f == other.faces[1]);
+           });
+  };
+  // Sweeps along x.
   std::vector<std::size_t> order(ends.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return ends[a].x != ends[b].x ? ends[a].x < ends[b].x : a < b;
   });
-  vertex_.assign(ends.size(), -1);
+  DisjointSets vertices(ends.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::size_t a = order[i];
-    if (vertex_[a] < 0) vertex_[a] = int(a);
     for (std::size_t k = i + 1; k < order.size(); ++k) {
       const std::size_t b = order[k];
       if (ends[b].x - ends[a].x > tolerance) break;
-      if (vertex_[b] < 0 && glm::distance(ends[a], ends[b]) <= tolerance) vertex_[b] = vertex_[a];
+      if (glm::distance(ends[a], ends[b]) <= tolerance && together(a, b))
+        vertices.unite(int(a), int(b));
     }
   }
+  for (int i = 0; i < int(ends.size()); ++i) vertex_.push_back(vertices.find(i));
 }
 
 /// Checks one document.

@@ -16,7 +16,8 @@ struct HullStructure {
   int euler = 0;
 };
 
-/// Ends of curves closer than the tolerance, in model units, are one.
+/// Ends of curves with a face in common that are closer than the tolerance, in model units, are
+/// one.
 HullStructure hull_structure(const HullDocument& hull, double tolerance);
 
 }  // namespace taut
