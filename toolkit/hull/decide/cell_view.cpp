@@ -29,7 +29,8 @@ void CellView::turn_to(const std::array<dvec3, 4>& corners, const dvec3& q,
   beacons_.clear();
   for (const dvec3& beacon : beacons) beacons_.push_back(heights({beacon, 1}, q_, d_));
   find_envelope();
-  depth_ = noise_;
+  // What beats a piece may be its own point, told as another element's.
+  depth_ = noise_ + pieces_.geometry().tie() * longest_direction();
   seen_.clear();
   values_.clear();
   highest_ = {};
@@ -184,7 +185,7 @@ bool CellView::sharpen(double depth) {
     if (envelope_.is_highest(k)) beacons_[left++] = beacons_[k];
   }
   beacons_.resize(left);
-  depth_ = noise_ + depth * longest_direction();
+  depth_ = noise_ + (depth + pieces_.geometry().tie()) * longest_direction();
   before_.swap(seen_);
   seen_.clear();
   bool any = false;

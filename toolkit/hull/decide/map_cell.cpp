@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "taut/hull/decide/direction_map.h"
+
 namespace taut {
 namespace {
 
@@ -19,12 +21,29 @@ std::size_t farthest_translate(const std::vector<MapCell::Translate>& all, std::
   return best;
 }
 
+/// What is known of the normal of a cell's plane.
+struct NormalBall {
+  dvec3 center;
+  double radius;
+};
+
+/// From the points that touch it or, where they are nearly in line, from where the cell is: the
+/// normal is in it or beside it, by no more than its width.
+NormalBall normal_of(const MapCell& cell, double resolution) {
+  const auto d = DirectionMap::corners(cell);
+  const dvec3 middle = unit(d[0] + d[3]);
+  double reach = 0;
+  for (const dvec3& corner : d) reach = std::max(reach, glm::distance(unit(corner), middle));
+  const double off = facet_slack * resolution / cell.width;
+  return off <= 2 * reach ? NormalBall{cell.normal, off} : NormalBall{middle, 2 * reach};
+}
+
 }  // namespace
 
 bool MapCell::shares_plane(const MapCell& other, double resolution) const {
-  const double slack = facet_slack * resolution / std::min(width, other.width);
-  return glm::dot(normal, other.normal) > 0 &&
-         glm::length(glm::cross(normal, other.normal)) <= slack;
+  const NormalBall a = normal_of(*this, resolution);
+  const NormalBall b = normal_of(other, resolution);
+  return glm::distance(a.center, b.center) <= a.radius + b.radius;
 }
 
 std::size_t MapCell::contact_of(const dvec3& d, const dvec3& x) const {

@@ -353,13 +353,14 @@ class Weaving {
   }
 
   /// Arcs that leave a node and come back, and are no longer than its cells are wide: the cells
-  /// have a hole.
+  /// have a hole, as no single one has.
   std::set<int> arcs_within_nodes() const {
     std::set<int> found;
     for (int k = 0; k < int(graph_.arcs.size()); ++k) {
       const MapGraph::Arc& arc = graph_.arcs[std::size_t(k)];
       if (arc.is_closed() || arc.node[0] != arc.node[1]) continue;
       const std::vector<int>& cells = graph_.nodes[std::size_t(arc.node[0])].cells;
+      if (cells.size() == 1) continue;
       double reach = 0;
       for (const int own : cells) reach = std::max(reach, std::ldexp(2.0, 1 - cell(own).level));
       const bool within =

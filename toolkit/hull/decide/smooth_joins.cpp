@@ -182,11 +182,14 @@ void SmoothJoins::pair_ends(const Contact& vertex) {
   for (const ContactGeometry::PieceEnd& end : geometry_.ends(vertex)) {
     const Contact piece = piece_end(vertex, end);
     if (geometry_.is_repeated(piece)) continue;
-    all.push_back(end);
     any_passed = any_passed || passes(piece);
-    all_curves = all_curves && !is_smooth(piece) && !geometry_.is_straight(piece);
+    // Straight ones have no contacts but where curves pass.
+    if (geometry_.is_straight(piece)) continue;
+    all.push_back(end);
+    all_curves = all_curves && !is_smooth(piece);
   }
-  if (any_passed ? is_surrounded(vertex) : all_curves && several && join(vertex, all)) {
+  if (any_passed ? is_surrounded(vertex)
+                 : all_curves && several && all.size() > 1 && join(vertex, all)) {
     passed_.insert({vertex.kind, vertex.instance, vertex.element});
   }
 }

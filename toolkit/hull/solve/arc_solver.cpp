@@ -153,8 +153,7 @@ bool ArcSolver::is_smooth(const Ruling& to) const {
   if (!exact) return false;
   const Ruling middle = exact->at.ruling();
   // Beside a flat end the interpolated ruling is what is integrated.
-  if (between.is_straight() &&
-      gap(middle, between.interpolated(s).at.ruling()) > geometry_.tie()) {
+  if (between.is_straight() && gap(middle, between.interpolated(s).at.ruling()) > geometry_.tie()) {
     return false;
   }
   return gap(middle, middle_of(last(), to)) <= middle_share * way &&
