@@ -42,23 +42,32 @@ int CellContacts::winner(int k, const dvec3& d) {
 }
 
 std::vector<int> CellContacts::passed(int k, const dvec3& from, const dvec3& to) {
-  const int first = winner(k, from);
+  if (cell(k).kind != MapCellKind::in_line) return passed_by_height(k, from, to, -infinity);
   const int last = winner(k, to);
-  std::vector<int> all = {first};
-  if (cell(k).kind == MapCellKind::in_line) {
-    const int step = last < first ? -1 : 1;
-    for (int c = first; c != last; c += step) all.push_back(c + step);
-  } else if (last != first) {
-    const int between = cell(k).kind == MapCellKind::node ? third(k, from, to) : first;
-    if (between != first) all.push_back(between);
-    all.push_back(last);
-  }
+  std::vector<int> all = {winner(k, from)};
+  while (all.back() != last) all.push_back(all.back() + (last < all.back() ? -1 : 1));
   return all;
 }
 
-/// Of three contacts the one that supports where those at the ends of a side are as high as each
-/// other; the one at its beginning where none does.
-int CellContacts::third(int k, const dvec3& from, const dvec3& to) {
+std::vector<int> CellContacts::passed_by_height(int k, const dvec3& from, const dvec3& to,
+                                                double least) {
+  const int first = winner(k, from);
+  const int last = winner(k, to);
+  if (first == last) return {first};
+  const std::optional<dvec3> between =
+      has_line(k) ? where_another_supports(k, from, to, least) : std::nullopt;
+  if (!between) return {first, last};
+  if (cell(k).kind == MapCellKind::node) return {first, winner(k, *between), last};
+  std::vector<int> all = passed_by_height(k, from, *between, least);
+  const std::vector<int> rest = passed_by_height(k, *between, to, least);
+  all.insert(all.end(), rest.begin() + 1, rest.end());
+  return all;
+}
+
+/// Between two directions, about where the contacts that support in these are as high as each
+/// other; none where no other one is above them by more than so much.
+std::optional<dvec3> CellContacts::where_another_supports(int k, const dvec3& from, const dvec3& to,
+                                                          double least) {
   std::array<dvec3, 2> d = {unit(from), unit(to)};
   const std::array<int, 2> contact = {winner(k, from), winner(k, to)};
   for (int step = 0; step < exchange_steps; ++step) {
@@ -67,12 +76,13 @@ int CellContacts::third(int k, const dvec3& from, const dvec3& to) {
     if (!(lead[0] > 0 && lead[1] > 0)) break;
     const dvec3 n = unit(lead[1] * d[0] + lead[0] * d[1]);
     const int there = winner(k, n);
-    if (there != contact[0] && there != contact[1]) return there;
     const double above = glm::dot(point(n) - point(d[0]), n);
-    if (above <= map_.resolution) break;
+    const bool is_other = there != contact[0] && there != contact[1];
+    if (is_other && above > least) return n;
+    if (is_other || above <= map_.resolution) break;
     d[there == contact[0] ? 0 : 1] = n;
   }
-  return contact[0];
+  return std::nullopt;
 }
 
 /// The point that supports in a direction, which is asked for from several cells.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "taut/bounds/support_query.h"
@@ -27,6 +28,12 @@ class CellContacts {
   /// The cell holds, or may hold, the normal of a plane that more than three contacts touch.
   bool is_of_facet(int k) const;
 
+  /// It tells more than two contacts apart, all or some of which may be in line.
+  bool has_line(int k) const {
+    return cell(k).kind == MapCellKind::in_line ||
+           (cell(k).kind == MapCellKind::node && is_closed(k));
+  }
+
   /// The contact that supports in a direction.
   int winner(int k, const dvec3& d);
 
@@ -36,9 +43,13 @@ class CellContacts {
   /// The contacts that support one after the other on the way from one direction to another, both
   /// on a side of the cell. @pre the cell is closed
   std::vector<int> passed(int k, const dvec3& from, const dvec3& to);
+  /// Of these the first, the last, and those that are above others by more than so much where these
+  /// exchange: of contacts in line not all are.
+  std::vector<int> passed_by_height(int k, const dvec3& from, const dvec3& to, double least);
 
  private:
-  int third(int k, const dvec3& from, const dvec3& to);
+  std::optional<dvec3> where_another_supports(int k, const dvec3& from, const dvec3& to,
+                                              double least);
 
   const DirectionMap& map_;
   SupportQuery& query_;

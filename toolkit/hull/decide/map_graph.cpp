@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "taut/core/disjoint_sets.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/decide/cell_contacts.h"
 #include "taut/hull/decide/cell_tree.h"
 #include "taut/hull/decide/graph_edits.h"
@@ -62,12 +63,43 @@ class Weaving {
   SideCrossing& crossing(int k) { return crossings_[std::size_t(k)]; }
 
   void find_sides() {
+    std::vector<CellTree::CellSide> sides;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
       for (int number = 0; number < 4; ++number) {
         CellTree::CellSide found;
-        if (tree_.side(k, number, found)) add(found);
+        if (tree_.side(k, number, found)) sides.push_back(found);
       }
     }
+    tell_in_line(sides);
+    for (const CellTree::CellSide& side : sides) add(side);
+  }
+
+  /// Points in line with others may be told apart in one cell and not beside it: where the cell
+  /// agrees with all of its neighbours only so, those count alone that are above the others.
+  void tell_in_line(const std::vector<CellTree::CellSide>& sides) {
+    std::set<int> differ;
+    for (const CellTree::CellSide& s : sides) {
+      for (const auto& [own, other] : {std::pair(s.finer, s.other), std::pair(s.other, s.finer)}) {
+        if (!contacts_.has_line(own) || contacts_.has_line(other)) continue;
+        if (!contacts_.is_closed(other) || !has_points_between(own)) continue;
+        const std::size_t there = contacts_.passed(other, s.from, s.to).size();
+        if (contacts_.passed(own, s.from, s.to).size() != there) high_alone_.insert(own);
+        if (passed_high(own, s).size() != there) differ.insert(own);
+      }
+    }
+    for (const int k : differ) high_alone_.erase(k);
+  }
+
+  /// Of its contacts in line those between the outer ones are points, which are in the convex hull
+  /// of these.
+  bool has_points_between(int k) const {
+    const std::vector<Box>& all = cell(k).contacts;
+    return std::all_of(all.begin() + 1, all.begin() + cell(k).apart - 1,
+                       [](const Box& b) { return b.lower == b.upper; });
+  }
+
+  std::vector<int> passed_high(int k, const CellTree::CellSide& side) {
+    return contacts_.passed_by_height(k, side.from, side.to, tie_share * map_.resolution);
   }
 
   void add(const CellTree::CellSide& found) {
@@ -79,7 +111,9 @@ class Weaving {
     for (const std::size_t i : {0u, 1u}) {
       sides_of_[std::size_t(own.cell[i])].push_back(index);
       if (!contacts_.is_closed(own.cell[i])) continue;
-      passed[i] = contacts_.passed(own.cell[i], found.from, found.to);
+      passed[i] = high_alone_.count(own.cell[i]) > 0
+                      ? passed_high(own.cell[i], found)
+                      : contacts_.passed(own.cell[i], found.from, found.to);
     }
     const std::size_t teller = passed[0].size() >= passed[1].size() ? 0 : 1;
     const bool agree = passed[0].size() == passed[1].size();
@@ -383,6 +417,7 @@ class Weaving {
   CellTree tree_;
   CellContacts contacts_;
   DisjointSets clusters_;
+  std::set<int> high_alone_;
   std::set<int> opened_;
   std::vector<CrossedSide> sides_;
   std::vector<SideCrossing> crossings_;
