@@ -45,7 +45,7 @@ struct HullArguments {
   std::optional<double> relative;
   std::optional<double> tolerance;
   std::optional<double> resolution;
-  std::string curves = "solving";
+  std::string curves = "tracing";
   int max_vertices = HullOptions().max_vertices;
   int size = EnvelopeOptions().size;
 };
