@@ -6,10 +6,12 @@
 #include <cmath>
 #include <memory>
 #include <ostream>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "boundary_checks.h"
+#include "cages.h"
 #include "exact_checks.h"
 #include "judge/families.h"
 #include "judge/patterns.h"
@@ -26,7 +28,8 @@ struct Solved {
   Scene scene;
   std::shared_ptr<const HullBoundary> boundary;
 
-  explicit Solved(const Shape& shape) : scene(make_scene(shape)) {
+  explicit Solved(const Shape& shape) : Solved(make_model(shape)) {}
+  explicit Solved(const Model& model) : scene(model) {
     const GaussMap map(scene, {.threads = 1, .progress = {}});
     HullOptions options;
     options.curves = CurveMethod::solving;
@@ -178,6 +181,26 @@ INSTANTIATE_TEST_SUITE_P(Natural, SolvedFamilies,
                                          SolvedFamily{"blade", {1, 4, 3}},
                                          SolvedFamily{"ball_of_two_seams", {1, 0, 0}}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+/// A sheet of a cage above a quad. Where its boundary turns inwards facets have corners on two
+/// edges and on the face between, nearly in line.
+TEST(SolvedGraph, FacetsNearlyInLine) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 10; ++k) {
+    ControlCage cage = sheet_cage(4, 4);
+    for (dvec3& x : cage.points) x = 0.04 * (x + dvec3(0, 0, 0.03 * normal(random)));
+    const int first = int(cage.points.size());
+    for (const dvec3& x :
+         {dvec3(-1, -1, -2), dvec3(1, -1, -2), dvec3(1, 1, -2), dvec3(-1, 1, -2)}) {
+      cage.points.push_back(x);
+    }
+    cage.faces.push_back({first, first + 1, first + 2, first + 3});
+    if (k != 3 && k != 5 && k != 9) continue;
+    SCOPED_TRACE(k);
+    Solved(cage_model(cage)).expect_closed();
+  }
+}
 
 /// The cone about two spheres of radii R and r at distance d touches them where its normals make
 /// the angle with the axis whose cosine is (R - r) / d.

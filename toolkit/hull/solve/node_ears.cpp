@@ -89,6 +89,14 @@ class EarCutter {
   KnownArcs& known_;
 };
 
+/// The cell's plane is across a direction not far from this one: where three contacts are nearly in
+/// line the cell does not tell it.
+bool tells_plane(const MapCell& cell, const dvec3& beside) {
+  if (cell.kind == MapCellKind::facet) return true;
+  const auto d = DirectionMap::corners(cell);
+  return glm::distance(cell.normal, beside) <= glm::distance(unit(d[0]), unit(d[3]));
+}
+
 }  // namespace
 
 NodeCorners corners_of(const KnownArcs& known, const MapGraph::Node& node,
@@ -100,11 +108,12 @@ NodeCorners corners_of(const KnownArcs& known, const MapGraph::Node& node,
     corners.beside.push_back(r.n);
     corners.n += r.n;
   }
+  corners.n = unit(corners.n);
+  const dvec3 beside = corners.n;
   for (const int k : node.cells) {
     const MapCell& cell = map.cells[std::size_t(k)];
-    if (cell.has_plane()) corners.n = cell.normal;
+    if (cell.has_plane() && tells_plane(cell, beside)) corners.n = cell.normal;
   }
-  corners.n = unit(corners.n);
   return corners;
 }
 

@@ -135,10 +135,38 @@ class GraphSolver {
     return corners;
   }
 
+  /// From the middle of the directions beside the node or, where that leads nowhere, from each.
+  TouchingPlane plane_of(const MapGraph::Node& node, const NodeCorners& corners) {
+    TouchingPlane plane = touching_plane(geometry_, query_, corners.n, corners.contacts);
+    const bool is_lost = plane.in_line && has_merged(plane, corners);
+    if (plane.off() <= map_.resolution && !is_lost) return plane;
+    for (std::size_t k = 0; k < node.ends.size(); ++k) {
+      const Ruling& r = known_.ruling_at(node.ends[k]);
+      std::vector<Contact> contacts = corners.contacts;
+      contacts[(k + 1) % contacts.size()] = r.contact[contact_beside(node.ends[k], 1)];
+      const TouchingPlane other = touching_plane(geometry_, query_, r.n, contacts);
+      if (other.off() <= map_.resolution && !other.in_line) return other;
+    }
+    return plane;
+  }
+
+  /// Two corners that were apart have become one.
+  bool has_merged(const TouchingPlane& plane, const NodeCorners& corners) const {
+    for (std::size_t a = 0; a < corners.contacts.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const double apart = glm::distance(geometry_.point(corners.contacts[a]),
+                                           geometry_.point(corners.contacts[b]));
+        const double now = glm::distance(plane.contacts[a].x, plane.contacts[b].x);
+        if (now <= same_contact && apart > map_.contact_extent()) return true;
+      }
+    }
+    return false;
+  }
+
   /// Contacts between arcs that follow each other are its corners.
   std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
     const NodeCorners corners = corners_of(known_, node, map_);
-    TouchingPlane plane = touching_plane(geometry_, query_, corners.n, corners.contacts);
+    TouchingPlane plane = plane_of(node, corners);
     if (plane.in_line) {
       plane = turned_to_part(geometry_, query_, plane, corners.contacts, corners.beside,
                              map_.resolution);

@@ -20,6 +20,8 @@ constexpr double shortest_step = 1e-15;
 constexpr double line_width = 1e-6;
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_slack = 1e-9;
+/// How often Newton's method begins anew with contacts that have left their elements.
+constexpr int most_moves = 6;
 
 class PlaneSearch {
  public:
@@ -163,8 +165,33 @@ class LineTurn {
   dvec3 across_ = dvec3(0.0);
 };
 
-/// Three contacts' common plane, where Newton's method leaves them in their elements and near where
-/// they begin: there climbs may lead over to others.
+enum class Move { none, over, lost };
+
+/// Lets contacts that have left their elements go on in those that they have come to.
+Move move_over(const ContactGeometry& geometry, CommonSupport& s) {
+  Move move = Move::none;
+  for (Contact& c : s.contact) {
+    const Contact own = clamped(c);
+    if (glm::distance(parameters(c), parameters(own)) <= parameter_slack) continue;
+    const std::optional<Contact> there = climbed(geometry, own, s.n);
+    if (!there || same_element(*there, own)) return Move::lost;
+    c = geometry.first(*there);
+    move = Move::over;
+  }
+  s.evaluate(geometry);
+  return move;
+}
+
+/// No farther from the longest of the segments between them than so much.
+bool are_in_line(const std::vector<ClimbedContact>& three, double distance) {
+  const dvec3 a = three[1].x - three[0].x;
+  const dvec3 b = three[2].x - three[0].x;
+  const double longest = std::max({glm::length(a), glm::length(b), glm::length(a - b)});
+  return glm::length(glm::cross(a, b)) <= distance * longest;
+}
+
+/// Three contacts' common plane, where Newton's method leaves them near where they begin, there
+/// climbs may lead over to others, and not in line.
 std::optional<TouchingPlane> solved_plane(const ContactGeometry& geometry, const dvec3& n,
                                           const std::vector<Contact>& contacts) {
   if (contacts.size() != CommonSupport::capacity) return std::nullopt;
@@ -172,21 +199,25 @@ std::optional<TouchingPlane> solved_plane(const ContactGeometry& geometry, const
   s.n = n;
   for (const Contact& c : contacts) s.add(geometry, c);
   const CommonSupport start = s;
-  if (!ContactSystem(geometry).solve(s)) return std::nullopt;
+  for (int k = 0;; ++k) {
+    if (k == most_moves || !ContactSystem(geometry).solve(s)) return std::nullopt;
+    const Move move = move_over(geometry, s);
+    if (move == Move::none) break;
+    if (move == Move::lost) return std::nullopt;
+  }
   TouchingPlane found;
   found.n = s.n;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact c = clamped(s.contact[k]);
-    const bool has_left =
-        glm::distance(dvec2(c.u, c.v), dvec2(s.contact[k].u, s.contact[k].v)) > parameter_slack;
     const dvec3 x = geometry.point(c);
     double nearest = infinity;
     for (std::size_t other = 0; other < contacts.size(); ++other) {
       if (other != k) nearest = std::min(nearest, glm::distance(x, start.jet[other].x));
     }
-    if (has_left || glm::distance(x, start.jet[k].x) > nearest) return std::nullopt;
+    if (glm::distance(x, start.jet[k].x) > nearest) return std::nullopt;
     found.contacts.push_back({c, x, glm::dot(x, s.n)});
   }
+  if (are_in_line(found.contacts, geometry.tie())) return std::nullopt;
   const auto [lowest, highest] = std::minmax_element(
       found.contacts.begin(), found.contacts.end(),
       [](const ClimbedContact& a, const ClimbedContact& b) { return a.h < b.h; });
