@@ -25,6 +25,8 @@ constexpr double beside_turn = 1e-6;
 constexpr double like_share = 0.3;
 /// How much wider than the way between two rulings a bracket between them may be, at most.
 constexpr double widest_bracket = 8;
+/// Halvings of such a bracket that has others than these contacts in it.
+constexpr int narrow_halvings = 16;
 
 bool is_in_element(const Contact& c) {
   const auto within = [](double t) {
@@ -37,6 +39,15 @@ bool is_in_element(const Contact& c) {
 bool is_off_borders(const Contact& c) {
   const auto within = [](double t) { return t > 0 && t < 1; };
   return c.kind == SourceKind::face && within(c.u) && within(c.v);
+}
+
+/// It is nearer to either of two rulings than these are to each other.
+bool is_between(const Ruling& from, const Ruling& to, const Ruling& r) {
+  const auto square = [](const Ruling& a, const Ruling& b) {
+    const auto part = [](const dvec3& x) { return glm::dot(x, x); };
+    return part(a.n - b.n) + part(a.point[0] - b.point[0]) + part(a.point[1] - b.point[1]);
+  };
+  return std::max(square(from, r), square(r, to)) < square(from, to);
 }
 
 /// Where the great arc between two directions passes the plane in which both points are as high;
@@ -187,6 +198,25 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
   return {n, {right.contact, left.contact}, {right.x, left.x}};
 }
 
+/// Beyond a narrow region of either contact others support: from a contact that is like the one
+/// towards those, to one that is like the other.
+std::array<SupportingContact, 2> RulingSearch::narrowed(const SupportingContact& right,
+                                                        const SupportingContact& left,
+                                                        const Which& which) const {
+  std::array<SupportingContact, 2> own = {right, left};
+  std::array<bool, 2> is_like = {which(right).is_like, which(left).is_like};
+  for (int k = 0; k < narrow_halvings && is_like[0] != is_like[1]; ++k) {
+    const SupportingContact middle = supporting(unit(own[0].n + own[1].n), own[0].contact);
+    const Likeness like = which(middle);
+    const std::size_t unlike = is_like[0] ? 1 : 0;
+    const std::size_t side = like.is_like ? std::size_t(like.side) : unlike;
+    own[side] = middle;
+    is_like[side] = like.is_like;
+  }
+  if (is_like[0] && is_like[1]) return own;
+  return {right, left};
+}
+
 Ruling RulingSearch::at(const MapCrossing& crossing) const {
   const MapCell& cell = map_.cells[std::size_t(crossing.cell)];
   const auto& [first, second] = crossing.contact;
@@ -215,7 +245,8 @@ std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to
   for (std::size_t i = 0; i < 2; ++i) {
     contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
   }
-  if (const auto found = polished(n, contacts, across, geometry_.tie())) return settled(*found);
+  const auto found = polished(n, contacts, across, geometry_.tie());
+  if (found && is_between(from, to, *found)) return settled(*found);
   const Which which = [&](const SupportingContact& s) {
     const int side = glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;
     const double gap = glm::distance(s.x, x[std::size_t(side)]);
@@ -225,9 +256,11 @@ std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to
   for (double width = 1; width <= widest_bracket; width *= 2) {
     const SupportingContact a = supporting(unit(n + width * way * right), from.contact[0]);
     const SupportingContact b = supporting(unit(n - width * way * right), from.contact[1]);
-    if (which(a).side == 0 && which(b).side == 1) return bracketed(a, b, which);
+    if (which(a).side != 0 || which(b).side != 1) continue;
+    const auto [right_one, left_one] = narrowed(a, b, which);
+    return bracketed(right_one, left_one, which);
   }
-  return std::nullopt;
+  return found;
 }
 
 }  // namespace taut

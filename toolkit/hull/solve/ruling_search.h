@@ -62,6 +62,9 @@ class RulingSearch {
   };
   using Which = std::function<Likeness(const SupportingContact&)>;
   SupportingContact climbed_from(const SupportingContact& s, const dvec3& n) const;
+  std::array<SupportingContact, 2> narrowed(const SupportingContact& right,
+                                            const SupportingContact& left,
+                                            const Which& which) const;
   Ruling bracketed(SupportingContact right, SupportingContact left, const Which& which) const;
 
   const ContactSystem& system_;
