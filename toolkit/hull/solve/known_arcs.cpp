@@ -10,6 +10,7 @@
 #include "taut/hull/decide/cell_contacts.h"
 #include "taut/hull/decide/graph_edits.h"
 #include "taut/hull/decide/top_parts.h"
+#include "taut/hull/solve/level_pieces.h"
 
 namespace taut {
 namespace {
@@ -34,12 +35,35 @@ class ArcFinder {
 
   KnownArcs run() {
     known_.graph = map_graph(search_.map(), search_.query());
+    pass_narrow_facets();
     find_rulings();
     while (drop_shallow_arcs() || contract_short_arcs()) find_rulings();
     return std::move(known_);
   }
 
  private:
+  /// A facet that two arcs leave has a side that is curved at least: else cells are so small that
+  /// the contacts along an arc are in one plane there.
+  void pass_narrow_facets() {
+    bool passed = false;
+    for (MapGraph::Node& node : known_.graph.nodes) {
+      if (!node.is_facet || node.ends.size() != 2 || has_curved_side(node)) continue;
+      node.is_facet = false;
+      passed = true;
+    }
+    if (passed) remove_arcs(known_.graph, search_.map(), {});
+  }
+
+  bool has_curved_side(const MapGraph::Node& node) const {
+    return std::any_of(node.cells.begin(), node.cells.end(), [&](int k) {
+      const MapCell& cell = search_.map().cells[std::size_t(k)];
+      if (!cell.has_plane()) return false;
+      return !level_pieces(search_.geometry(), search_.query(), cell.normal,
+                           search_.map().resolution)
+                  .pieces.empty();
+    });
+  }
+
   void find_rulings() {
     known_.rulings.clear();
     for (const MapGraph::Arc& arc : known_.graph.arcs) {
