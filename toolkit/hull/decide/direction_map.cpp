@@ -19,6 +19,8 @@ namespace {
 
 /// Cells that are decided at once, on several threads.
 constexpr std::size_t batch_limit = 256;
+/// Of the limits the part that may be added to part nodes from each other.
+constexpr long share_of_nodes = 8;
 /// Coordinates of directions of a face of the cube whose support points the first cells have for
 /// beacons.
 constexpr double first_beacons[] = {-0.9, -0.3, 0.3, 0.9};
@@ -39,9 +41,11 @@ class MapMaker {
     } else {
       split_cube();
     }
-    do {
-      decide_waiting();
-    } while (!is_spent() && split_nodes_beside_others());
+    decide_waiting();
+    // Nodes are parted even where others have taken all there was.
+    options_.cell_limit += options_.cell_limit / share_of_nodes;
+    options_.candidate_limit += options_.candidate_limit / share_of_nodes;
+    while (!is_spent() && split_nodes_beside_others()) decide_waiting();
     std::sort(map_.cells.begin(), map_.cells.end(), comes_before);
     map_.resolution = options_.resolution;
     return std::move(map_);
