@@ -207,17 +207,26 @@ bool same_elements(const Ruling& a, const Ruling& b) {
   return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
 }
 
-void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+                   double distance) {
   std::vector<ArcPiece> told;
   for (ArcPiece& piece : pieces) {
     for (const std::size_t i : {0u, 1u}) {
       const Ruling first = piece.rulings.front();
-      const bool stays = std::all_of(piece.rulings.begin(), piece.rulings.end(),
-                                     [&](const Ruling& r) { return r.point[i] == first.point[i]; });
+      const dvec3& end = first.point[i];
+      const bool stays =
+          piece.rulings.back().point[i] == end &&
+          std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
+            return glm::distance(r.point[i], end) <= distance &&
+                   glm::dot(r.point[i] - end, r.n) <= geometry.tie();
+          });
       if (!stays || first.contact[i].kind != SourceKind::edge) continue;
       const Contact vertex = geometry.first(geometry.canonical(first.contact[i]));
       if (vertex.kind != SourceKind::vertex) continue;
-      for (Ruling& r : piece.rulings) r.contact[i] = vertex;
+      for (Ruling& r : piece.rulings) {
+        r.contact[i] = vertex;
+        r.point[i] = first.point[i];
+      }
     }
     std::vector<ArcPiece> own;
     own.push_back(std::move(piece));
