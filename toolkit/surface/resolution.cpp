@@ -77,8 +77,7 @@ Resolution resolution_of(const Model& model, double diagonal, std::optional<doub
   Resolution result;
   result.grid = found.grid;
   result.worst_join = found.join_gap;
-  // Ties of surfaces and curves are rounding, and shares of the resolution.
-  const double rounding = rounding_in(model.control_box()) / (model.polyhedral() ? 1 : tie_share);
+  const double rounding = rounding_in(model.control_box());
   result.of_model = rounding;
   const auto ask = [&](double length, ResolutionSource source) {
     if (length <= result.of_model) return;
