@@ -142,7 +142,8 @@ bool ArcSolver::stays(const Ruling& to) {
   return true;
 }
 
-bool ArcSolver::is_smooth(const Ruling& to) const {
+/// The piece goes on smoothly to the ruling; tells how deep it is on the way.
+bool ArcSolver::is_smooth(const Ruling& to) {
   const double way = gap(last(), to);
   if (glm::distance(last().n, to.n) > largest_turn) return false;
   if (way <= same_contact || are_vertices(to)) return true;
@@ -156,8 +157,11 @@ bool ArcSolver::is_smooth(const Ruling& to) const {
   if (between.is_straight() && gap(middle, between.interpolated(s).at.ruling()) > geometry_.tie()) {
     return false;
   }
-  return gap(middle, middle_of(last(), to)) <= middle_share * way &&
-         search_.depth(middle) <= search_.map().resolution;
+  if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
+  const double depth = search_.depth(middle);
+  if (depth > search_.map().resolution) return false;
+  if (depth > geometry_.tie()) pieces_.back().tolerant = std::max(pieces_.back().tolerant, depth);
+  return true;
 }
 
 void ArcSolver::divide(const Ruling& to, int depth) {
@@ -174,7 +178,8 @@ void ArcSolver::divide(const Ruling& to, int depth) {
 
 /// The two are neighbours for all that is known.
 void ArcSolver::jump(const Ruling& to) {
-  const double depth = depth_on_the_way(to);
+  // Between the places on the way it may be deeper.
+  const double depth = std::max(depth_on_the_way(to), geometry_.tie());
   const std::size_t first = pieces_.size() - 1;
   leap(to);
   for (std::size_t k = first; k < pieces_.size(); ++k) {
@@ -193,7 +198,7 @@ double ArcSolver::depth_on_the_way(const Ruling& to) const {
     for (std::size_t i = 0; i < 2; ++i) r.point[i] = glm::mix(from.point[i], to.point[i], share);
     deepest = std::max(deepest, search_.depth(r));
   }
-  return deepest <= geometry_.tie() ? 0 : deepest;
+  return deepest;
 }
 
 void ArcSolver::leap(const Ruling& to) {

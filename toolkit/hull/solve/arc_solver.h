@@ -35,7 +35,7 @@ class ArcSolver {
   void append(const Ruling& r) { pieces_.back().rulings.push_back(r); }
   void go_on(const Ruling& to, int depth);
   bool stays(const Ruling& to);
-  bool is_smooth(const Ruling& to) const;
+  bool is_smooth(const Ruling& to);
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);
   void jump(const Ruling& to);

@@ -8,8 +8,9 @@
 namespace taut {
 namespace {
 
-/// Places looked at along a facet's curved side.
+/// Parts of a facet's curved side, and of the way between two rulings, at whose ends it is looked.
 constexpr int side_places = 8;
+constexpr int ruling_places = 8;
 
 class TolerantPlaces {
  public:
@@ -19,13 +20,17 @@ class TolerantPlaces {
   double of(const ArcPiece& piece) {
     double deepest = piece.tolerant;
     for (const Ruling& r : piece.rulings) deepest = std::max(deepest, depth(r));
-    if (deepest <= geometry_.tie()) return 0;
+    if (piece.tolerant == 0 && deepest <= geometry_.tie()) return 0;
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
-      const std::optional<Ruling> middle =
-          ruling_at_share(system_, piece.rulings[k - 1], piece.rulings[k], 0.5);
-      if (middle) deepest = std::max(deepest, depth(*middle));
+      const RulingsBetween between(system_, piece.rulings[k - 1], piece.rulings[k]);
+      if (between.empty()) continue;
+      for (int place = 1; place < ruling_places; ++place) {
+        const double s = between.at_share(double(place) / ruling_places);
+        const std::optional<MovingRuling> exact = between(s);
+        deepest = std::max(deepest, depth((exact ? *exact : between.interpolated(s)).at.ruling()));
+      }
     }
-    return deepest;
+    return deepest <= geometry_.tie() ? 0 : deepest;
   }
 
   double of(const HullFace& facet) {
