@@ -13,7 +13,12 @@ namespace taut {
 /// boundary's curves too, and its faces are labelled by the boundary's faces. What of the boundary
 /// could not be resolved is listed there; the mesh is true all the same. A scene that is flat has
 /// no boundary: its hull is that of sampled_hull().
-/// @throws as sampled_hull()
+///
+/// With CurveMethod::solving the boundary is closed always, and faces that are below supporting
+/// planes say by how much (HullFace::tolerant). Where none is found that is exact to within the
+/// resolution HullNotConverged says why, and the boundary of the best hull is the one that was
+/// found or, if that is not closed or farther off, the faces of the mesh.
+/// @throws as sampled_hull(), HullNotConverged also where the resolution is missed
 Hull precise_hull(const Scene& scene, const HullOptions& options = {});
 
 }  // namespace taut
