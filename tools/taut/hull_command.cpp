@@ -241,7 +241,7 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
     }
   } else if (input.model().polyhedral() && method == "precise") {
     exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
-    exact.tolerant.emplace();
+    exact.tolerant = Report::ExactHull::Tolerant{};
     exact.measures = measure(polygons(hull.mesh));
     exact.mean_width = mean_width(hull.mesh);
   }

@@ -144,7 +144,7 @@ class GraphSolver {
       const Ruling& r = known_.ruling_at(node.ends[k]);
       std::vector<Contact> contacts = corners.contacts;
       contacts[(k + 1) % contacts.size()] = r.contact[contact_beside(node.ends[k], 1)];
-      const TouchingPlane other = touching_plane(geometry_, query_, r.n, contacts);
+      TouchingPlane other = touching_plane(geometry_, query_, r.n, contacts);
       if (other.off() <= map_.resolution && !other.in_line) return other;
     }
     return plane;
