@@ -1,6 +1,5 @@
 #include "taut/verify/check_support.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "taut/bounds/support_query.h"
@@ -31,7 +30,7 @@ std::vector<SupportClaim> listed_claims(const DocumentGeometry& geometry) {
 }
 
 std::vector<SupportClaim> claims_between(const DocumentGeometry& geometry,
-                                         const DocumentOutlines& outlines, double resolution) {
+                                         const DocumentOutlines& outlines) {
   std::vector<SupportClaim> claims;
   const auto add_panel = [&](const RulingInterval& interval, const RulingPanel& panel,
                              double bound) {
@@ -45,11 +44,10 @@ std::vector<SupportClaim> claims_between(const DocumentGeometry& geometry,
     }
   };
   for (std::size_t f = 0; f < outlines.intervals().size(); ++f) {
-    const double bound = geometry.hull().faces[f].tolerant;
     for (const RulingInterval& interval : outlines.intervals()[f]) {
       if (!interval.solved) continue;
       for (const RulingPanel& panel : interval.panels) {
-        add_panel(interval, panel, bound > 0 ? std::max(bound, resolution) : 0);
+        add_panel(interval, panel, geometry.hull().faces[f].tolerant);
       }
     }
   }

@@ -19,11 +19,9 @@ struct SupportClaim {
 /// Those of all rulings and facets that are listed; of tolerant facets also those of their contacts
 /// and of their boundaries.
 std::vector<SupportClaim> listed_claims(const DocumentGeometry& geometry);
-/// Those of rulings between the listed ones, which support as well; of tolerant faces, whose
-/// rulings are solved anew here, to within the resolution at least (in model units, 0: none is
-/// stated).
+/// Those of rulings between the listed ones, which support as well.
 std::vector<SupportClaim> claims_between(const DocumentGeometry& geometry,
-                                         const DocumentOutlines& outlines, double resolution);
+                                         const DocumentOutlines& outlines);
 
 /// By how much the model rises above claims and their bounds, and by how much they rise above the
 /// model, at most; in model units, infinite where a direction is none.

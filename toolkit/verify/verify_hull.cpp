@@ -276,7 +276,7 @@ void HullVerifier::check_geometry() {
 void HullVerifier::check_faces() {
   const DocumentOutlines outlines(geometry_);
   check_support(listed_claims(geometry_));
-  check_support(claims_between(geometry_, outlines, resolution_));
+  check_support(claims_between(geometry_, outlines));
   options_.progress.update("verify", 0.4);
   std::optional<DocumentMeasures> measures;
   if (hull_.dimension >= 2) {

@@ -14,8 +14,8 @@ constexpr int ruling_places = 8;
 
 class TolerantPlaces {
  public:
-  TolerantPlaces(const ContactSystem& system, SupportQuery& query)
-      : system_(system), geometry_(system.geometry()), query_(query) {}
+  TolerantPlaces(const ContactSystem& system, SupportQuery& query, double resolution)
+      : system_(system), geometry_(system.geometry()), query_(query), resolution_(resolution) {}
 
   double of(const ArcPiece& piece) {
     double deepest = piece.tolerant;
@@ -27,7 +27,8 @@ class TolerantPlaces {
       for (int place = 1; place < ruling_places; ++place) {
         const double s = between.at_share(double(place) / ruling_places);
         const std::optional<MovingRuling> exact = between(s);
-        deepest = std::max(deepest, depth((exact ? *exact : between.interpolated(s)).at.ruling()));
+        // Where none is found, what there is has no depth that could be looked at.
+        deepest = std::max(deepest, exact ? depth(exact->at.ruling()) : resolution_);
       }
     }
     return deepest <= geometry_.tie() ? 0 : deepest;
@@ -59,13 +60,14 @@ class TolerantPlaces {
   const ContactSystem& system_;
   const ContactGeometry& geometry_;
   SupportQuery& query_;
+  double resolution_;
 };
 
 }  // namespace
 
-void find_tolerant_places(const ContactSystem& system, SupportQuery& query,
-                          HullBoundary& boundary) {
-  TolerantPlaces places(system, query);
+void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
+                          double resolution) {
+  TolerantPlaces places(system, query, resolution);
   for (SeparatingArc& arc : boundary.arcs) {
     for (ArcPiece& piece : arc.pieces) piece.tolerant = places.of(piece);
   }
