@@ -47,6 +47,7 @@ class RulingsBetween {
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
   /// to, or one of them is at an end or a side where its element is flat, or far from the origin
   /// lies flat.
+  bool lies_flat() const { return lies_flat_; }
   bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
   /// At one end one contact, not both, leaves where its element is flat.
   bool is_straight() const { return straight_[0] || straight_[1]; }

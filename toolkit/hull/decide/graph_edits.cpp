@@ -1,6 +1,7 @@
 #include "taut/hull/decide/graph_edits.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -55,26 +56,33 @@ class GraphEdit {
     other = {};
   }
 
+  /// Ends of arcs that go on into each other through the node: two alone, or each two that follow
+  /// each other there between the same contacts.
+  std::vector<std::array<MapGraph::End, 2>> pairs_that_pass(const MapGraph::Node& node) const {
+    std::vector<MapGraph::End> left = node.ends;
+    std::vector<std::array<MapGraph::End, 2>> pairs;
+    for (std::size_t i = 0; i < left.size() && left.size() > 1;) {
+      const std::size_t j = (i + 1) % left.size();
+      if (left.size() > 2 && !go_on(left[i], left[j])) {
+        ++i;
+        continue;
+      }
+      pairs.push_back({left[i], left[j]});
+      left.erase(left.begin() + std::ptrdiff_t(std::max(i, j)));
+      left.erase(left.begin() + std::ptrdiff_t(std::min(i, j)));
+      i = 0;
+    }
+    return pairs;
+  }
+
   void join_arcs_that_pass() {
     std::map<std::pair<int, int>, MapGraph::End> on;
     std::set<int> passed;
     for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
       const MapGraph::Node& node = graph_.nodes[k];
       if (node.is_facet) continue;
-      std::vector<MapGraph::End> left = node.ends;
-      std::vector<std::pair<MapGraph::End, MapGraph::End>> pairs;
-      for (std::size_t i = 0; i < left.size() && left.size() > 1;) {
-        const std::size_t j = (i + 1) % left.size();
-        if (left.size() > 2 && !go_on(left[i], left[j])) {
-          ++i;
-          continue;
-        }
-        pairs.emplace_back(left[i], left[j]);
-        left.erase(left.begin() + std::ptrdiff_t(std::max(i, j)));
-        left.erase(left.begin() + std::ptrdiff_t(std::min(i, j)));
-        i = 0;
-      }
-      if (!left.empty()) continue;
+      const auto pairs = pairs_that_pass(node);
+      if (pairs.size() * 2 < node.ends.size()) continue;
       passed.insert(int(k));
       for (const auto& [a, b] : pairs) {
         on[{a.arc, a.end}] = b;
@@ -183,6 +191,10 @@ void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& 
   GraphEdit edit(graph, map);
   if (!arcs.empty()) edit.drop(arcs);
   edit.join_arcs_that_pass();
+}
+
+bool arcs_pass(MapGraph& graph, const DirectionMap& map, const MapGraph::Node& node) {
+  return GraphEdit(graph, map).pairs_that_pass(node).size() * 2 == node.ends.size();
 }
 
 void contract_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs) {

@@ -13,6 +13,10 @@ namespace taut {
 /// @pre the graph is the map's
 void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs);
 
+/// The arcs that end in a node go on into each other: two alone, or as remove_arcs() says.
+/// @pre the graph is the map's
+bool arcs_pass(MapGraph& graph, const DirectionMap& map, const MapGraph::Node& node);
+
 /// Makes one node of the two that each of the arcs leads between, and leaves the arcs out, those
 /// that lead from a node to itself, too.
 /// @pre the graph is the map's; none of the arcs is closed

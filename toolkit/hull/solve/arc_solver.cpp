@@ -30,6 +30,9 @@ constexpr double middle_share = 0.1;
 constexpr double largest_turn = 0.4;
 /// Parts of the way between rulings between which none is found, at whose ends it is looked at.
 constexpr int places_on_the_way = 8;
+/// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
+/// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
+constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
 /// How far before the way or beyond it a change may be by rounding, as a share.
 constexpr double way_slack = 1e-9;
 
@@ -153,15 +156,21 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   const std::optional<MovingRuling> exact = between(s);
   if (!exact) return false;
   const Ruling middle = exact->at.ruling();
-  // Beside a flat end the interpolated ruling is what is integrated.
-  if (between.is_straight() && gap(middle, between.interpolated(s).at.ruling()) > geometry_.tie()) {
-    return false;
-  }
+  if (between.lies_flat() && !is_interpolated(between)) return false;
   if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
   const double depth = search_.depth(middle);
   if (depth > search_.map().resolution) return false;
   if (depth > geometry_.tie()) pieces_.back().tolerant = std::max(pieces_.back().tolerant, depth);
   return true;
+}
+
+/// Beside a flat end the interpolated ruling is what is integrated: whether it is exact is seen near
+/// the ends, where it is the farthest from those that it is made of.
+bool ArcSolver::is_interpolated(const RulingsBetween& between) const {
+  return std::all_of(beside_ends.begin(), beside_ends.end(), [&](double s) {
+    const std::optional<MovingRuling> exact = between(s);
+    return exact && gap(exact->at.ruling(), between.interpolated(s).at.ruling()) <= geometry_.tie();
+  });
 }
 
 void ArcSolver::divide(const Ruling& to, int depth) {

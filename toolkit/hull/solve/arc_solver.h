@@ -8,6 +8,8 @@
 
 namespace taut {
 
+class RulingsBetween;
+
 /// A separating curve as it becomes known, from ruling to ruling.
 class ArcSolver {
  public:
@@ -36,6 +38,7 @@ class ArcSolver {
   void go_on(const Ruling& to, int depth);
   bool stays(const Ruling& to);
   bool is_smooth(const Ruling& to);
+  bool is_interpolated(const RulingsBetween& between) const;
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);
   void jump(const Ruling& to);

@@ -42,12 +42,16 @@ class ArcFinder {
   }
 
  private:
-  /// A facet that two arcs leave has a side that is curved at least: else cells are so small that
-  /// the contacts along an arc are in one plane there.
+  /// A facet that two arcs leave, or several in pairs between the same two contacts, has a side that
+  /// is curved at least: else cells are so small that the contacts along the arcs, or between two of
+  /// them that are as near to each other, are in one plane there.
   void pass_narrow_facets() {
     bool passed = false;
     for (MapGraph::Node& node : known_.graph.nodes) {
-      if (!node.is_facet || node.ends.size() != 2 || has_curved_side(node)) continue;
+      if (!node.is_facet || node.ends.empty() || has_curved_side(node) ||
+          !arcs_pass(known_.graph, search_.map(), node)) {
+        continue;
+      }
       node.is_facet = false;
       passed = true;
     }

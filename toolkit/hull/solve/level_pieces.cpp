@@ -29,12 +29,40 @@ dvec3 fitted(const std::vector<dvec3>& points, const dvec3& n) {
   return aligned(unit({u[0], u[1], u[2]}), n);
 }
 
-/// The points are no farther from the segment between the first and the last.
-bool is_straight(const std::vector<dvec3>& points, double distance) {
+std::vector<dvec3> control_points(const ContactGeometry& geometry, const Contact& piece) {
+  std::vector<dvec3> points;
+  for (const dvec4& p : geometry.curve(piece).points) points.push_back(euclidean(p));
+  return points;
+}
+
+/// The piece is no farther from the segment between its ends.
+bool is_straight(const ContactGeometry& geometry, const Contact& piece, double distance) {
+  const std::vector<dvec3> points = control_points(geometry, piece);
   const dvec3 along = unit(points.back() - points.front());
   return std::all_of(points.begin(), points.end(), [&](const dvec3& x) {
     return glm::length(glm::cross(x - points.front(), along)) <= distance;
   });
+}
+
+/// The piece is straight, and so are those that it goes on into as far as the next vertex: one that
+/// goes on into a bent one is a stretch of a curved side.
+bool is_straight_to_vertices(const ContactGeometry& geometry, const Contact& piece,
+                             double distance) {
+  if (!is_straight(geometry, piece, distance)) return false;
+  for (const std::size_t out : {0U, 1U}) {
+    Contact at = piece;
+    std::size_t end = out;
+    while (geometry.piece(at).end_vertex[end] < 0) {
+      const int next = geometry.piece(at).end_neighbor[end];
+      if (next < 0 || next == piece.element) break;
+      const std::array<int, 2>& back =
+          geometry.piece({at.instance, SourceKind::edge, next, 0, 0}).end_neighbor;
+      end = back[0] == at.element ? 1 : 0;
+      at.element = next;
+      if (!is_straight(geometry, at, distance)) return false;
+    }
+  }
+  return true;
 }
 
 class PieceSearch {
@@ -58,11 +86,10 @@ class PieceSearch {
     std::vector<dvec3> points;
     for (const Contact& piece : all_) {
       if (glm::dot(geometry_.point(piece), found.n) < least) continue;
-      std::vector<dvec3> own;
-      for (const dvec4& p : geometry_.curve(piece).points) own.push_back(euclidean(p));
+      const std::vector<dvec3> own = control_points(geometry_, piece);
       const bool level = std::all_of(own.begin(), own.end(),
                                      [&](const dvec3& x) { return glm::dot(x, found.n) >= least; });
-      if (!level || is_straight(own, depth)) continue;
+      if (!level || is_straight_to_vertices(geometry_, piece, depth)) continue;
       found.pieces.push_back(piece);
       points.insert(points.end(), own.begin(), own.end());
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/contact_system.h"
@@ -20,6 +21,9 @@ constexpr double shortest_step = 1e-15;
 constexpr double line_width = 1e-6;
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_slack = 1e-9;
+/// Slope in the scene's frame of a contact that is told exactly: of one that Newton's method has
+/// left outside of its element, and that is moved onto its border, it is more.
+constexpr double most_slope = 1e-12;
 /// How often Newton's method begins anew with contacts that have left their elements.
 constexpr int most_moves = 6;
 
@@ -104,6 +108,7 @@ class LineTurn {
     across_ = glm::cross(unit(to_ - from_), plane.n);
   }
 
+  double length() const { return glm::distance(from_, to_); }
   dvec3 turned(double angle) const {
     return std::cos(angle) * plane_.n + std::sin(angle) * across_;
   }
@@ -114,8 +119,7 @@ class LineTurn {
   bool parts(double angle) const {
     const dvec3 n = turned(angle);
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
-      const dvec3 x = climb(geometry_, c, n).x;
-      return glm::length(glm::cross(x - from_, unit(to_ - from_))) > parted_;
+      return off_line(climb(geometry_, c, n).x) > parted_;
     });
   }
   /// The plane at which the first leaves the line, between an angle at which none has and one at
@@ -127,19 +131,25 @@ class LineTurn {
     }
     TouchingPlane found = plane_;
     found.n = turned(together);
-    double lowest = infinity;
-    double highest = -infinity;
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
-      ClimbedContact& c = found.contacts[k];
       const Contact parted_one = climb(geometry_, contacts_[k], turned(apart)).contact;
-      c.contact = on_border(parted_one, found.n, depth);
-      c.x = geometry_.point(c.contact);
-      c.h = glm::dot(c.x, found.n);
-      lowest = std::min(lowest, c.h);
-      highest = std::max(highest, c.h);
+      found.contacts[k].contact = on_border(parted_one, found.n, depth);
     }
-    found.spread = highest - lowest;
+    take_heights(found);
     return found;
+  }
+  /// The same, where the contact that leaves the line tells the plane: it is tangent to the way on
+  /// which it leaves. Along a straight border that is where this plane turns least.
+  std::optional<TouchingPlane> tangent(TouchingPlane plane, std::size_t k, double depth) const {
+    Contact& c = plane.contacts[k].contact;
+    const Contact start = c = on_border(c, plane.n, depth);
+    const std::optional<dvec3> n = settle(c);
+    if (!n || glm::distance(geometry_.point(c), geometry_.point(start)) > std::sqrt(depth)) {
+      return std::nullopt;
+    }
+    plane.n = *n;
+    take_heights(plane);
+    return plane;
   }
 
   /// The contact on a border of its element, if that is no lower by more than the depth, and no
@@ -149,7 +159,84 @@ class LineTurn {
     return glm::dot(geometry_.point(c) - geometry_.point(there), n) <= depth ? there : c;
   }
 
+  /// The contact that has left the line the farthest, at an angle, or in the plane.
+  std::size_t first_to_part(double apart) const {
+    std::vector<ClimbedContact> there;
+    for (const Contact& c : contacts_) there.push_back(climb(geometry_, c, turned(apart)));
+    return farthest(there);
+  }
+  std::size_t first_to_part() const { return farthest(plane_.contacts); }
+
  private:
+  void take_heights(TouchingPlane& plane) const {
+    double lowest = infinity;
+    double highest = -infinity;
+    for (ClimbedContact& c : plane.contacts) {
+      c.x = geometry_.point(c.contact);
+      c.h = glm::dot(c.x, plane.n);
+      lowest = std::min(lowest, c.h);
+      highest = std::max(highest, c.h);
+    }
+    plane.spread = highest - lowest;
+  }
+
+  double off_line(const dvec3& x) const {
+    return glm::length(glm::cross(x - from_, unit(to_ - from_)));
+  }
+
+  std::size_t farthest(const std::vector<ClimbedContact>& contacts) const {
+    const auto most = std::max_element(contacts.begin(), contacts.end(),
+                                       [&](const ClimbedContact& a, const ClimbedContact& b) {
+                                         return off_line(a.x) < off_line(b.x);
+                                       });
+    return std::size_t(most - contacts.begin());
+  }
+
+  /// The normal across the line and a tangent, nearest to the plane's. None if they are parallel.
+  std::optional<dvec3> across(const dvec3& tangent) const {
+    const dvec3 n = glm::cross(unit(to_ - from_), tangent);
+    if (glm::length(n) <= line_width * glm::length(tangent)) return std::nullopt;
+    return unit(glm::dot(n, plane_.n) < 0 ? -n : n);
+  }
+
+  /// The plane in which a contact on the line leaves it, moved along the line to where that plane
+  /// is a stationary one: between the ends of the border by the secant rule, or at one of them.
+  std::optional<dvec3> settle(Contact& c) const {
+    const auto axis = [&](const ContactJet& j) {
+      const dvec3 line = unit(to_ - from_);
+      return j.dimension == 2 && glm::length(glm::cross(unit(j.dx[1]), line)) >
+                                     glm::length(glm::cross(unit(j.dx[0]), line))
+                 ? 1U
+                 : 0U;
+    };
+    const auto rate = [&](const ContactJet& j) {
+      const std::optional<dvec3> n = across(j.dx[axis(j)]);
+      return n ? glm::dot(j.dxy, *n) : 0.0;
+    };
+    ContactJet j = geometry_.jet(c);
+    if (j.dimension == 0) return std::nullopt;
+    if (j.dimension == 1) return across(j.dx[0]);
+    double& along = axis(j) == 0 ? c.v : c.u;
+    double last = along;
+    double before = rate(j);
+    along += along < 0.5 ? secant_start : -secant_start;
+    for (int k = 0; k < secant_steps; ++k) {
+      j = geometry_.jet(c);
+      const double now = rate(j);
+      const double next =
+          now == before ? along : std::clamp(along - now * (along - last) / (now - before), 0.0, 1.0);
+      last = std::exchange(along, next);
+      before = now;
+      if (std::abs(along - last) <= shortest_step) break;
+    }
+    j = geometry_.jet(c);
+    return across(j.dx[axis(j)]);
+  }
+
+  /// First step of the secant rule, the cube root of rounding, and how many are taken.
+  static constexpr double secant_start = 1e-5;
+  static constexpr int secant_steps = 20;
+
   /// How far from the line a contact has left it, which grows with the angle: in the scene's frame,
   /// or in units of what the contacts are off their plane.
   static constexpr double least_parted = 1e-9;
@@ -190,6 +277,16 @@ bool are_in_line(const std::vector<ClimbedContact>& three, double distance) {
   return glm::length(glm::cross(a, b)) <= distance * longest;
 }
 
+/// How fast x . n rises along the contact's element.
+double slope(const ContactGeometry& geometry, const Contact& c, const dvec3& n) {
+  const ContactJet j = geometry.jet(c);
+  double most = 0;
+  for (int k = 0; k < j.dimension; ++k) {
+    most = std::max(most, std::abs(glm::dot(j.dx[std::size_t(k)], n)));
+  }
+  return most;
+}
+
 /// Three contacts' common plane, where Newton's method leaves them near where they begin, there
 /// climbs may lead over to others, and not in line.
 std::optional<TouchingPlane> solved_plane(const ContactGeometry& geometry, const dvec3& n,
@@ -215,6 +312,7 @@ std::optional<TouchingPlane> solved_plane(const ContactGeometry& geometry, const
       if (other != k) nearest = std::min(nearest, glm::distance(x, start.jet[other].x));
     }
     if (glm::distance(x, start.jet[k].x) > nearest) return std::nullopt;
+    if (slope(geometry, c, s.n) > most_slope) return std::nullopt;
     found.contacts.push_back({c, x, glm::dot(x, s.n)});
   }
   if (are_in_line(found.contacts, geometry.tie())) return std::nullopt;
@@ -246,14 +344,35 @@ TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& quer
   if (!together || !apart) return plane;
   TouchingPlane found = turn.found(*together, *apart, depth);
   find_above(query, found);
+  if (std::optional<TouchingPlane> exact = turn.tangent(found, turn.first_to_part(*apart), depth)) {
+    find_above(query, *exact);
+    if (exact->off() <= std::max(found.off(), geometry.tie())) return *exact;
+  }
   return found;
 }
+
+namespace {
+
+/// A plane that contacts so nearly in line tell to the root of rounding only: what the one that
+/// leaves the line tells of it instead, where that plane touches as well.
+TouchingPlane told_in_line(const ContactGeometry& geometry, SupportQuery& query,
+                           const TouchingPlane& plane, const std::vector<Contact>& contacts) {
+  const LineTurn turn(geometry, plane, contacts);
+  if (!are_in_line(plane.contacts, line_width * turn.length())) return plane;
+  std::optional<TouchingPlane> exact =
+      turn.tangent(plane, turn.first_to_part(), turn.length() * turn.length() * line_width * line_width);
+  if (!exact) return plane;
+  find_above(query, *exact);
+  return exact->off() <= geometry.tie() ? *exact : plane;
+}
+
+}  // namespace
 
 TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& query, dvec3 n,
                              const std::vector<Contact>& contacts) {
   if (std::optional<TouchingPlane> solved = solved_plane(geometry, n, contacts)) {
     find_above(query, *solved);
-    if (solved->off() <= geometry.tie()) return *solved;
+    if (solved->off() <= geometry.tie()) return told_in_line(geometry, query, *solved, contacts);
   }
   TouchingPlane plane = PlaneSearch(geometry, n, contacts).run();
   find_above(query, plane);
