@@ -46,9 +46,12 @@ class RulingsBetween {
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
   /// to, or one of them is at an end or a side where its element is flat, or far from the origin
-  /// lies flat.
+  /// lies flat, or it leaves a pole and is still close to it.
+  bool is_smoother() const {
+    return merges() || touches_ || nearly_merges_ || lies_flat_ || leaves_pole_;
+  }
+  /// One of them is at an end or a side where its element is flat, or lies flat.
   bool lies_flat() const { return lies_flat_; }
-  bool is_smoother() const { return merges() || touches_ || nearly_merges_ || lies_flat_; }
   /// At one end one contact, not both, leaves where its element is flat.
   bool is_straight() const { return straight_[0] || straight_[1]; }
   /// At one end both contacts leave where their elements are flat: n stands still there.
@@ -110,6 +113,7 @@ class RulingsBetween {
   double shorter_ = 0;  // of the two rulings' lengths
   bool nearly_merges_ = false;
   bool lies_flat_ = false;
+  bool leaves_pole_ = false;
   std::array<bool, 2> straight_ = {false, false};  // at either end
   std::array<bool, 2> stands_ = {false, false};    // n, at either end
   int free_end_ = -1;                              // at which the contacts merge

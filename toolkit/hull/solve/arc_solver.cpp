@@ -164,8 +164,8 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   return true;
 }
 
-/// Beside a flat end the interpolated ruling is what is integrated: whether it is exact is seen near
-/// the ends, where it is the farthest from those that it is made of.
+/// Beside a flat end the interpolated ruling is what is integrated: whether it is exact is seen
+/// near the ends, where it is the farthest from those that it is made of.
 bool ArcSolver::is_interpolated(const RulingsBetween& between) const {
   return std::all_of(beside_ends.begin(), beside_ends.end(), [&](double s) {
     const std::optional<MovingRuling> exact = between(s);
@@ -298,6 +298,8 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   Change found{s.ruling(), s.ruling(), 0};
   found.way = share_of_way(last(), to, found.before);
   if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
+  const double farthest = (1 + way_slack) * gap(last(), to) + geometry_.tie();
+  if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
   // A pole is on all patches about it.
   const std::optional<Contact> next = pole_side(geometry_, s.contact[i])
                                           ? pole_in(geometry_, s.contact[i], to.contact[i])

@@ -42,9 +42,9 @@ class ArcFinder {
   }
 
  private:
-  /// A facet that two arcs leave, or several in pairs between the same two contacts, has a side that
-  /// is curved at least: else cells are so small that the contacts along the arcs, or between two of
-  /// them that are as near to each other, are in one plane there.
+  /// A facet that two arcs leave, or several in pairs between the same two contacts, has a side
+  /// that is curved at least: else cells are so small that the contacts along the arcs, or between
+  /// two of them that are as near to each other, are in one plane there.
   void pass_narrow_facets() {
     bool passed = false;
     for (MapGraph::Node& node : known_.graph.nodes) {

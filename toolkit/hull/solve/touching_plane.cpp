@@ -223,8 +223,9 @@ class LineTurn {
     for (int k = 0; k < secant_steps; ++k) {
       j = geometry_.jet(c);
       const double now = rate(j);
-      const double next =
-          now == before ? along : std::clamp(along - now * (along - last) / (now - before), 0.0, 1.0);
+      const double next = now == before
+                              ? along
+                              : std::clamp(along - now * (along - last) / (now - before), 0.0, 1.0);
       last = std::exchange(along, next);
       before = now;
       if (std::abs(along - last) <= shortest_step) break;
@@ -359,8 +360,8 @@ TouchingPlane told_in_line(const ContactGeometry& geometry, SupportQuery& query,
                            const TouchingPlane& plane, const std::vector<Contact>& contacts) {
   const LineTurn turn(geometry, plane, contacts);
   if (!are_in_line(plane.contacts, line_width * turn.length())) return plane;
-  std::optional<TouchingPlane> exact =
-      turn.tangent(plane, turn.first_to_part(), turn.length() * turn.length() * line_width * line_width);
+  std::optional<TouchingPlane> exact = turn.tangent(
+      plane, turn.first_to_part(), turn.length() * turn.length() * line_width * line_width);
   if (!exact) return plane;
   find_above(query, *exact);
   return exact->off() <= geometry.tie() ? *exact : plane;
