@@ -156,6 +156,7 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   const std::optional<MovingRuling> exact = between(s);
   if (!exact) return false;
   const Ruling middle = exact->at.ruling();
+  if (leaves_elements(middle)) return false;
   if (between.lies_flat() && !is_interpolated(between)) return false;
   if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
   const double depth = search_.depth(middle);
@@ -171,6 +172,15 @@ bool ArcSolver::is_interpolated(const RulingsBetween& between) const {
     const std::optional<MovingRuling> exact = between(s);
     return exact && gap(exact->at.ruling(), between.interpolated(s).at.ruling()) <= geometry_.tie();
   });
+}
+
+/// A contact lies beyond the border of its element, by more than rounding.
+bool ArcSolver::leaves_elements(const Ruling& r) const {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const dvec3 inside = geometry_.point(clamped(r.contact[i]));
+    if (glm::distance(r.point[i], inside) > geometry_.tie()) return true;
+  }
+  return false;
 }
 
 void ArcSolver::divide(const Ruling& to, int depth) {
