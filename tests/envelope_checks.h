@@ -13,6 +13,8 @@
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
 #include "taut/envelope/trace_envelope.h"
+#include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/result/hull.h"
 
 namespace taut_test {
@@ -171,14 +173,30 @@ bool all_support(const taut::EnvelopeImages& images, taut::SupportQuery& query, 
   });
 }
 
+/// Those of a piece's rulings, and of some between each two.
+inline std::vector<dvec3> normals_along(const taut::ContactSystem& system,
+                                        const std::vector<taut::Ruling>& rulings) {
+  constexpr int parts = 8;
+  std::vector<dvec3> normals = {rulings.front().n};
+  for (std::size_t k = 1; k < rulings.size(); ++k) {
+    for (int i = 1; i < parts; ++i) {
+      const auto r = ruling_between(system, rulings[k - 1], rulings[k], double(i) / parts);
+      if (r) normals.push_back(r->n);
+    }
+    normals.push_back(rulings[k].n);
+  }
+  return normals;
+}
+
 inline void match_curves(const taut::EnvelopeImages& images, const taut::EnvelopeMap& map,
                          const taut::HullBoundary& boundary, MatchCounts& counts) {
   std::vector<std::vector<dvec3>> exact;
   std::vector<std::vector<dvec3>> seen;
+  const taut::ContactGeometry geometry(images.scene());
+  const taut::ContactSystem system(geometry);
   for (const taut::SeparatingArc& arc : boundary.arcs) {
     for (const taut::ArcPiece& piece : arc.pieces) {
-      exact.emplace_back();
-      for (const taut::Ruling& r : piece.rulings) exact.back().push_back(r.n);
+      exact.push_back(normals_along(system, piece.rulings));
     }
   }
   for (const taut::EnvelopeCurve& curve : map.curves) {
