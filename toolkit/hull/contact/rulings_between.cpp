@@ -31,11 +31,6 @@ constexpr double longest_flat = 0.05;
 /// An arc that is so many times its chord is none that was traced.
 constexpr double longest_arc = 10;
 
-/// Chords from a pole so long that a parameter about it, which rounding moves by a rounding unit over
-/// the way from the pole, is known as well as from a quadratic, which misses by the cube: the fourth
-/// root of the unit.
-constexpr double pole_reach = 1e-4;
-
 double square(const dvec3& x) { return glm::dot(x, x); }
 
 /// A free end: its two points are one, though they may come from two elements.
@@ -61,12 +56,6 @@ std::optional<Side> segment_side(const ContactGeometry& geometry, const Contact&
 bool begins_on_segment(const ContactGeometry& geometry, const Ruling& r) {
   return std::any_of(r.contact.begin(), r.contact.end(),
                      [&](const Contact& c) { return segment_side(geometry, c).has_value(); });
-}
-
-bool is_at_pole(const ContactGeometry& geometry, const Ruling& r) {
-  return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
-    return collapsed_side(geometry, c).has_value();
-  });
 }
 
 /// n turns with the square of the contact's way: at the end of an edge that does not bend there,
@@ -190,6 +179,12 @@ RulingsBetween::State RulingsBetween::rate(const MovingRuling& m) {
   return state(m.dn, m.dp[0], m.dp[1]);
 }
 
+bool lies_at_pole(const ContactGeometry& geometry, const Ruling& r) {
+  return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
+    return collapsed_side(geometry, c).has_value();
+  });
+}
+
 RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, const Ruling& to)
     : system_(system),
       from_(from),
@@ -219,8 +214,8 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     const auto lies_flat = [&](const Ruling& r) {
       return begins_on_segment(system.geometry(), r) || is_flat_far_off(r);
     };
-    leaves_pole_ = length() <= pole_reach && (is_at_pole(system.geometry(), from) ||
-                                              is_at_pole(system.geometry(), to));
+    leaves_pole_ = length() <= pole_chord && (lies_at_pole(system.geometry(), from) ||
+                                              lies_at_pole(system.geometry(), to));
     lies_flat_ = is_straight() || stands_[0] || stands_[1] || lies_flat(from) || lies_flat(to);
     fit();
   } else {

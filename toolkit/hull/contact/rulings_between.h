@@ -52,6 +52,8 @@ class RulingsBetween {
   }
   /// One of them is at an end or a side where its element is flat, or lies flat.
   bool lies_flat() const { return lies_flat_; }
+  /// At one end one of them is at a pole, and both rulings are close to it.
+  bool leaves_pole() const { return leaves_pole_; }
   /// At one end one contact, not both, leaves where its element is flat.
   bool is_straight() const { return straight_[0] || straight_[1]; }
   /// At one end both contacts leave where their elements are flat: n stands still there.
@@ -121,6 +123,14 @@ class RulingsBetween {
   bool touches_ = false;   // ... and their distance falls with the square of the way there
   Polynomial polynomial_;  // in s, or in the length's share
 };
+
+/// Chords from a pole so long that a parameter about it, which rounding moves by a rounding unit
+/// over the way from the pole, is known as well as from a quadratic, which misses by the cube: the
+/// fourth root of the unit, in the scene's frame.
+inline constexpr double pole_chord = 1e-4;
+
+/// One of its contacts is at a pole, or in a corner that a side is collapsed to.
+bool lies_at_pole(const ContactGeometry& geometry, const Ruling& r);
 
 /// A single ruling of RulingsBetween.
 std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& from,

@@ -30,6 +30,8 @@ constexpr double middle_share = 0.1;
 constexpr double largest_turn = 0.4;
 /// Parts of the way between rulings between which none is found, at whose ends it is looked at.
 constexpr int places_on_the_way = 8;
+/// Steps of Newton's method to where a segment passes a side.
+constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
 /// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
@@ -60,6 +62,23 @@ Ruling middle_of(const Ruling& a, const Ruling& b) {
   return r;
 }
 
+/// Where the segment from one point to another passes a side of a patch, nearly: of the side's
+/// points the nearest to the segment's line, from the contact on the side on.
+Contact passed_on_side(const ContactGeometry& geometry, Contact c, Side side, const dvec3& from,
+                       const dvec3& to) {
+  const dvec3 way = unit(to - from);
+  const auto off = [&](const dvec3& x) { return x - glm::dot(x, way) * way; };
+  double& t = along_v(side) ? c.v : c.u;
+  for (int k = 0; k < side_steps; ++k) {
+    const ContactJet j = geometry.jet(c);
+    const dvec3 rate = off(j.dx[along_v(side) ? 1 : 0]);
+    const double square = glm::dot(rate, rate);
+    if (!(square > 0)) break;
+    t = std::clamp(t - glm::dot(rate, off(j.x - from)) / square, 0.0, 1.0);
+  }
+  return c;
+}
+
 /// Borders from one element to another that a contact passes, in each as one of the element before
 /// and one of that beyond. None if there are more than a few between the two.
 std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometry,
@@ -75,7 +94,10 @@ std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometr
     std::optional<Way> best;
     for (const Way& way : ways) {
       for (const ContactExit& exit : exits(geometry, way.at)) {
-        const Contact border = at_exit(way.at, exit);
+        Contact border = at_exit(way.at, exit);
+        if (exit.kind == ContactExit::Kind::side) {
+          border = passed_on_side(geometry, border, Side(exit.index), geometry.point(way.at), aim);
+        }
         const std::optional<Contact> over = beyond(geometry, border, exit);
         if (!over) continue;
         Way next = {*over, way.steps};
@@ -153,7 +175,8 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   const RulingsBetween between(search_.system(), last(), to);
   if (between.empty()) return true;
   const double s = between.at_share(0.5);
-  const std::optional<MovingRuling> exact = between(s);
+  const std::optional<MovingRuling> exact =
+      between.leaves_pole() ? std::optional(between.interpolated(s)) : between(s);
   if (!exact) return false;
   const Ruling middle = exact->at.ruling();
   if (leaves_elements(middle)) return false;
