@@ -180,9 +180,8 @@ RulingsBetween::State RulingsBetween::rate(const MovingRuling& m) {
 }
 
 bool lies_at_pole(const ContactGeometry& geometry, const Ruling& r) {
-  return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
-    return collapsed_side(geometry, c).has_value();
-  });
+  return std::any_of(r.contact.begin(), r.contact.end(),
+                     [&](const Contact& c) { return collapsed_side(geometry, c).has_value(); });
 }
 
 RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, const Ruling& to)
@@ -214,8 +213,8 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     const auto lies_flat = [&](const Ruling& r) {
       return begins_on_segment(system.geometry(), r) || is_flat_far_off(r);
     };
-    leaves_pole_ = length() <= pole_chord && (lies_at_pole(system.geometry(), from) ||
-                                              lies_at_pole(system.geometry(), to));
+    leaves_pole_ = length() <= pole_chord &&
+                   (lies_at_pole(system.geometry(), from) || lies_at_pole(system.geometry(), to));
     lies_flat_ = is_straight() || stands_[0] || stands_[1] || lies_flat(from) || lies_flat(to);
     fit();
   } else {

@@ -256,8 +256,8 @@ class GraphSolver {
     }
   }
 
-  /// Rulings at a free end that are so short that rounding moves their contacts: merge() begins with
-  /// a longer one, if there is one.
+  /// Rulings at a free end that are so short that rounding moves their contacts: merge() begins
+  /// with a longer one, if there is one.
   void drop_merging(std::vector<Ruling>& known, int end) const {
     const auto length = [](const Ruling& r) { return glm::distance(r.point[0], r.point[1]); };
     while (known.size() > 1) {
@@ -305,8 +305,8 @@ class GraphSolver {
     graph_.arcs.push_back(std::move(arc));
   }
 
-  /// The contacts of the pieces' last ruling, or first, run into each other: rulings of less and less
-  /// length lead to where the end is told.
+  /// The contacts of the pieces' last ruling, or first, run into each other: rulings of less and
+  /// less length lead to where the end is told.
   void merge(std::vector<ArcPiece>& pieces, int end) {
     if (end == 0) reverse(pieces);
     while (!ends_exactly(pieces)) {
@@ -341,12 +341,19 @@ class GraphSolver {
   std::optional<Ruling> shorter(const Ruling& r) const {
     const CommonSupport last(geometry_, r);
     const double length = glm::length(last.d());
-    for (const double share : {0.5, 0.75, 0.875}) {
+    for (const double share : {0.75, 0.875}) {
       CommonSupport next = last;
       if (share * length < shortest_merging) break;
       const bool solved = system_.solve(
           next, [&](const CommonSupport& s) { return distance_equation(s, share * length); });
-      if (solved && search_.depth(next.ruling()) <= map_.resolution) return next.ruling();
+      const bool is_inside =
+          std::all_of(next.contact.begin(), next.contact.begin() + 2, [&](const Contact& c) {
+            return glm::distance(geometry_.point(clamped(c)), geometry_.point(c)) <=
+                   geometry_.tie();
+          });
+      if (solved && is_inside && search_.depth(next.ruling()) <= map_.resolution) {
+        return next.ruling();
+      }
     }
     return std::nullopt;
   }
