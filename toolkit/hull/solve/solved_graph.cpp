@@ -7,7 +7,7 @@
 #include "taut/bounds/contact_climb.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
-#include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/solve/arc_ends.h"
 #include "taut/hull/solve/arc_solver.h"
 #include "taut/hull/solve/edge_places.h"
 #include "taut/hull/solve/facet_corners.h"
@@ -16,7 +16,6 @@
 #include "taut/hull/solve/node_ears.h"
 #include "taut/hull/solve/touching_plane.h"
 #include "taut/hull/trace/arc_pieces.h"
-#include "taut/hull/trace/merging.h"
 
 namespace taut {
 namespace {
@@ -25,9 +24,6 @@ namespace {
 constexpr double first_corner_depths = 8;
 /// Places on edges that are one, in units of the resolution.
 constexpr double place_depths = 8;
-/// Rulings at a free end are no shorter: the root of what rounding moves contacts by that are so
-/// near to each other (merge_distance).
-constexpr double shortest_merging = 1e-4;
 
 class GraphSolver {
  public:
@@ -242,32 +238,6 @@ class GraphSolver {
     return r;
   }
 
-  /// Rulings so close to the one in which the arc begins, or ends, at a pole tell nothing that this
-  /// one and the next do not; one is left.
-  void drop_close_to_pole(const Ruling& r, std::vector<Ruling>& known, int end) const {
-    if (!lies_at_pole(geometry_, r)) return;
-    const auto is_close = [&](const Ruling& next) {
-      return glm::distance(next.n, r.n) <= pole_chord &&
-             glm::distance(next.point[0], r.point[0]) <= pole_chord &&
-             glm::distance(next.point[1], r.point[1]) <= pole_chord;
-    };
-    while (known.size() > 1 && is_close(end == 0 ? known.front() : known.back())) {
-      known.erase(end == 0 ? known.begin() : known.end() - 1);
-    }
-  }
-
-  /// Rulings at a free end that are so short that rounding moves their contacts: merge() begins
-  /// with a longer one, if there is one.
-  void drop_merging(std::vector<Ruling>& known, int end) const {
-    const auto length = [](const Ruling& r) { return glm::distance(r.point[0], r.point[1]); };
-    while (known.size() > 1) {
-      const Ruling& last = end == 0 ? known.front() : known.back();
-      const Ruling& next = end == 0 ? known[1] : known[known.size() - 2];
-      if (length(last) >= merging_distance(geometry_) || length(next) <= length(last)) break;
-      known.erase(end == 0 ? known.begin() : known.end() - 1);
-    }
-  }
-
   void solve(std::size_t k) {
     progress_.check();
     const MapGraph::Arc& told = known_.graph.arcs[k];
@@ -281,11 +251,7 @@ class GraphSolver {
       const Ruling& next = end == 0 ? known.front() : known.back();
       const std::optional<Ruling> r = plug(int(k), end, next);
       merges[std::size_t(end)] = !r;
-      if (r) {
-        drop_close_to_pole(*r, known, end);
-      } else {
-        drop_merging(known, end);
-      }
+      drop_close(geometry_, r, known, end);
       if (r) known.insert(end == 0 ? known.begin() : known.end(), *r);
     }
     if (arc.closed) known.push_back(known.front());
@@ -293,7 +259,10 @@ class GraphSolver {
     for (std::size_t i = 1; i < known.size(); ++i) solver.go_on(known[i]);
     arc.pieces = solver.take();
     for (const int end : {1, 0}) {
-      if (merges[std::size_t(end)]) merge(arc.pieces, end);
+      if (!merges[std::size_t(end)]) continue;
+      if (end == 0) reverse(arc.pieces);
+      merge(search_, arc.pieces);
+      if (end == 0) reverse(arc.pieces);
     }
     if (arc.closed && arc.pieces.size() > 1 &&
         same_elements(arc.pieces.back().rulings.back(), arc.pieces.front().rulings.front())) {
@@ -303,59 +272,6 @@ class GraphSolver {
       append(arc.pieces, std::move(first));
     }
     graph_.arcs.push_back(std::move(arc));
-  }
-
-  /// The contacts of the pieces' last ruling, or first, run into each other: rulings of less and
-  /// less length lead to where the end is told.
-  void merge(std::vector<ArcPiece>& pieces, int end) {
-    if (end == 0) reverse(pieces);
-    while (!ends_exactly(pieces)) {
-      if (const std::optional<Ruling> next = shorter(pieces.back().rulings.back())) {
-        ArcSolver solver(search_, pieces.back().rulings.back());
-        solver.go_on(*next);
-        append(pieces, solver.take());
-        continue;
-      }
-      // How deep what is left of the arc lies is told with its pieces.
-      ArcSolver solver(search_, pieces.back().rulings.back());
-      solver.end_in_one_contact();
-      append(pieces, solver.take());
-      break;
-    }
-    if (end == 0) reverse(pieces);
-  }
-
-  /// Adds what is left of the arc, if its end is near and told.
-  bool ends_exactly(std::vector<ArcPiece>& pieces) {
-    const CommonSupport last(geometry_, pieces.back().rulings.back());
-    if (glm::length(last.d()) > merging_distance(geometry_)) return false;
-    CurvePoint point(system_, query_, last);
-    if (!point.settle()) return false;
-    std::optional<MergedEnd> merged = merged_end(point);
-    if (!merged) return false;
-    append(pieces, std::move(merged->pieces));
-    return true;
-  }
-
-  /// A ruling ahead that is shorter by half, or by less; none where rounding moves contacts.
-  std::optional<Ruling> shorter(const Ruling& r) const {
-    const CommonSupport last(geometry_, r);
-    const double length = glm::length(last.d());
-    for (const double share : {0.75, 0.875}) {
-      CommonSupport next = last;
-      if (share * length < shortest_merging) break;
-      const bool solved = system_.solve(
-          next, [&](const CommonSupport& s) { return distance_equation(s, share * length); });
-      const bool is_inside =
-          std::all_of(next.contact.begin(), next.contact.begin() + 2, [&](const Contact& c) {
-            return glm::distance(geometry_.point(clamped(c)), geometry_.point(c)) <=
-                   geometry_.tie();
-          });
-      if (solved && is_inside && search_.depth(next.ruling()) <= map_.resolution) {
-        return next.ruling();
-      }
-    }
-    return std::nullopt;
   }
 
   const ContactGeometry& geometry_;

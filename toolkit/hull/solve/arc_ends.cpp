@@ -1,0 +1,126 @@
+#include "taut/hull/solve/arc_ends.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/solve/arc_solver.h"
+#include "taut/hull/trace/arc_pieces.h"
+#include "taut/hull/trace/merging.h"
+
+namespace taut {
+namespace {
+
+/// Rulings at a free end are no shorter: the root of what rounding moves contacts by that are so
+/// near to each other (merge_distance).
+constexpr double shortest_merging = 1e-4;
+
+double length_of(const Ruling& r) { return glm::distance(r.point[0], r.point[1]); }
+
+bool is_close(const Ruling& a, const Ruling& b) {
+  return glm::distance(a.n, b.n) <= pole_chord &&
+         glm::distance(a.point[0], b.point[0]) <= pole_chord &&
+         glm::distance(a.point[1], b.point[1]) <= pole_chord;
+}
+
+class FreeEndSearch {
+ public:
+  explicit FreeEndSearch(const RulingSearch& search)
+      : search_(search), geometry_(search.geometry()) {}
+
+  /// Adds what is left of the arc, if its end is near and told.
+  bool ends(std::vector<ArcPiece>& pieces) const {
+    const CommonSupport last(geometry_, pieces.back().rulings.back());
+    if (glm::length(last.d()) > merging_distance(geometry_)) return false;
+    CurvePoint point(search_.system(), search_.query(), last);
+    if (!point.settle()) return false;
+    std::optional<MergedEnd> merged = merged_end(point);
+    if (!merged) return false;
+    append(pieces, std::move(merged->pieces));
+    return true;
+  }
+
+  /// A ruling ahead that is shorter by a quarter, or by less; none where rounding moves contacts.
+  std::optional<Ruling> shorter(const Ruling& r) const {
+    for (const double share : {0.75, 0.875}) {
+      const double length = share * length_of(r);
+      if (length < shortest_merging) break;
+      const std::optional<Ruling> next = with_length(r, length);
+      if (next && search_.depth(*next) <= search_.map().resolution) return next;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// Of contacts that have run over into other elements on the way, with those.
+  std::optional<Ruling> with_length(const Ruling& r, double length) const {
+    CommonSupport s(geometry_, r);
+    for (int k = 0; k < most_moves; ++k) {
+      const bool solved = search_.system().solve(
+          s, [&](const CommonSupport& now) { return distance_equation(now, length); });
+      if (!solved) return std::nullopt;
+      if (stays(s)) return s.ruling();
+    }
+    return std::nullopt;
+  }
+
+  /// False if a contact has been moved to the element that it has run over into.
+  bool stays(CommonSupport& s) const {
+    bool stays = true;
+    for (std::size_t i = 0; i < 2; ++i) {
+      Contact& c = s.contact[i];
+      const Contact inside = clamped(c);
+      if (glm::distance(geometry_.point(inside), geometry_.point(c)) <= geometry_.tie() &&
+          c.kind == SourceKind::face) {
+        continue;
+      }
+      const std::optional<Contact> there = climbed(geometry_, inside, s.n);
+      if (!there || same_element(*there, c)) continue;
+      c = geometry_.first(*there);
+      stays = false;
+    }
+    if (!stays) s.evaluate(geometry_);
+    return stays;
+  }
+
+  static constexpr int most_moves = 4;
+
+  const RulingSearch& search_;
+  const ContactGeometry& geometry_;
+};
+
+}  // namespace
+
+void drop_close(const ContactGeometry& geometry, const std::optional<Ruling>& end_ruling,
+                std::vector<Ruling>& known, int end) {
+  if (end_ruling && !lies_at_pole(geometry, *end_ruling)) return;
+  while (known.size() > 1) {
+    const Ruling& last = end == 0 ? known.front() : known.back();
+    const Ruling& next = end == 0 ? known[1] : known[known.size() - 2];
+    const bool tells = end_ruling ? !is_close(last, *end_ruling)
+                                  : length_of(last) >= merging_distance(geometry) ||
+                                        length_of(next) <= length_of(last);
+    if (tells) return;
+    known.erase(end == 0 ? known.begin() : known.end() - 1);
+  }
+}
+
+void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces) {
+  const FreeEndSearch ends(search);
+  while (!ends.ends(pieces)) {
+    const std::optional<Ruling> next = ends.shorter(pieces.back().rulings.back());
+    ArcSolver solver(search, pieces.back().rulings.back());
+    if (next) {
+      solver.go_on(*next);
+    } else {
+      // How deep what is left of the arc lies is told with its pieces.
+      solver.end_in_one_contact();
+    }
+    append(pieces, solver.take());
+    if (!next) return;
+  }
+}
+
+}  // namespace taut
