@@ -121,7 +121,7 @@ bool is_flat(const ContactJet& j, const dvec3& n, double least) {
   return uu * vv - uv * uv < least * std::abs(uu + vv);
 }
 
-ContactGeometry::ContactGeometry(const Scene& scene, std::stop_token stop, double same)
+ContactGeometry::ContactGeometry(const Scene& scene, Stop stop, double same)
     : scene_(scene), stop_(std::move(stop)) {
   const Box box = scene.model().control_box();
   const dvec3 farthest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
@@ -331,7 +331,7 @@ dvec3 ContactGeometry::to_frame(int instance, const dvec3& direction) const {
 }
 
 void ContactGeometry::start_evaluation() const {
-  check_stop(stop_);
+  stop_.check();
   evaluations_.fetch_add(1, std::memory_order_relaxed);
 }
 

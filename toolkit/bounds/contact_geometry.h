@@ -5,11 +5,11 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
 #include "taut/bounds/repeated_elements.h"
 #include "taut/bounds/scene.h"
+#include "taut/core/stop.h"
 
 namespace taut {
 
@@ -52,7 +52,7 @@ class ContactGeometry {
   /// that works on contacts stops. `same`: elements that miss each other by no more, in the scene's
   /// frame, are one, and edges straight that are no farther from a segment than four times as much;
   /// rounding apart.
-  explicit ContactGeometry(const Scene& scene, std::stop_token stop = {}, double same = 0);
+  explicit ContactGeometry(const Scene& scene, Stop stop = {}, double same = 0);
 
   const Scene& scene() const { return scene_; }
   /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
@@ -151,7 +151,7 @@ class ContactGeometry {
   void share(const Contact& repeated);
 
   const Scene& scene_;
-  std::stop_token stop_;
+  Stop stop_;
   mutable std::atomic<long> evaluations_ = 0;
   double rounding_ = 0;
   double tie_ = 0;

@@ -20,7 +20,7 @@ constexpr int split_limit = 64;
 
 class ReachTest::Search {
  public:
-  Search(const SceneContent& scene, std::stop_token stop) : scene_(scene), stop_(std::move(stop)) {}
+  Search(const SceneContent& scene, Stop stop) : scene_(scene), stop_(std::move(stop)) {}
 
   bool run(std::span<const dvec3> points, const std::array<dvec3, 4>& corners,
            std::span<const PatchRectangle> except, int finest) {
@@ -122,7 +122,7 @@ class ReachTest::Search {
   }
 
   bool cells_below(std::size_t index) {
-    check_stop(stop_);
+    stop_.check();
     const BoxTree& tree = part_->tree;
     const BoxTree::Node& node = tree.nodes[index];
     const bool has_slabs = !tree.slabs.empty();
@@ -229,7 +229,7 @@ class ReachTest::Search {
   };
 
   const SceneContent& scene_;
-  std::stop_token stop_;
+  Stop stop_;
   Directions frame_, local_;
   dvec4 offset_ = dvec4(0.0);  // of the instance that is looked at
   std::vector<dvec4> limits_;  // of x . n by each of the points
@@ -243,7 +243,7 @@ class ReachTest::Search {
   std::vector<std::array<Quarter, 4>> quarters_;  // per depth
 };
 
-ReachTest::ReachTest(const Scene& scene, std::stop_token stop)
+ReachTest::ReachTest(const Scene& scene, Stop stop)
     : search_(std::make_unique<Search>(scene.content(), std::move(stop))) {}
 ReachTest::~ReachTest() = default;
 

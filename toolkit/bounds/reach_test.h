@@ -3,9 +3,9 @@
 #include <array>
 #include <memory>
 #include <span>
-#include <stop_token>
 
 #include "taut/bounds/scene.h"
+#include "taut/core/stop.h"
 
 namespace taut {
 
@@ -24,7 +24,7 @@ struct PatchRectangle {
 class ReachTest {
  public:
   /// `stop`: makes what follows throw Cancelled.
-  explicit ReachTest(const Scene& scene, std::stop_token stop = {});
+  explicit ReachTest(const Scene& scene, Stop stop = {});
   ~ReachTest();
 
   /// True is certain: for every point x of the scene, those of the rectangles apart, one of the

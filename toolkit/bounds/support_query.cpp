@@ -41,7 +41,7 @@ constexpr double narrow_weights = 4;
 /// iteration, so rational elements need no quotient rule.
 class SupportQuery::Search {
  public:
-  Search(const SceneContent& scene, std::stop_token stop, SupportBounds bounds)
+  Search(const SceneContent& scene, Stop stop, SupportBounds bounds)
       : scene_(scene),
         stop_(std::move(stop)),
         bounds_(bounds),
@@ -159,7 +159,7 @@ class SupportQuery::Search {
   void finish();
 
   const SceneContent& scene_;
-  std::stop_token stop_;
+  Stop stop_;
   SupportBounds bounds_;
   double rounding_;  ///< of a value x . n
   dvec3 n_ = dvec3(0.0);
@@ -520,7 +520,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
 
   stack_.push({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
-    if (count % stop_interval == 0) check_stop(stop_);
+    if (count % stop_interval == 0) stop_.check();
     if (count == patience) stack_.turn_best_first();
     const Entry entry = stack_.pop();
     if (!(entry.bound > threshold())) continue;
@@ -546,7 +546,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
           scene_.frame_point(best_)};
 }
 
-SupportQuery::SupportQuery(const SceneContent& scene, std::stop_token stop, SupportBounds bounds)
+SupportQuery::SupportQuery(const SceneContent& scene, Stop stop, SupportBounds bounds)
     : search_(std::make_unique<Search>(scene, std::move(stop), bounds)) {}
 SupportQuery::~SupportQuery() = default;
 SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;

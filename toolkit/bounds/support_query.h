@@ -1,9 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <stop_token>
 
 #include "taut/bounds/contact.h"
+#include "taut/core/stop.h"
 
 namespace taut {
 
@@ -34,7 +34,7 @@ enum class SupportBounds {
 class SupportQuery {
  public:
   /// `stop`: makes the query that runs throw Cancelled, and each one after.
-  explicit SupportQuery(const SceneContent& scene, std::stop_token stop = {},
+  explicit SupportQuery(const SceneContent& scene, Stop stop = {},
                         SupportBounds bounds = SupportBounds::bezier_nets);
   ~SupportQuery();
   SupportQuery(SupportQuery&&) noexcept;

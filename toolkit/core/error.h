@@ -57,4 +57,10 @@ class LimitExceeded : public Error {
   using Error::Error;
 };
 
+/// The same, of the limits that an operation was given (limits.h); the message names the limit.
+class LimitMet : public LimitExceeded {
+ public:
+  using LimitExceeded::LimitExceeded;
+};
+
 }  // namespace taut

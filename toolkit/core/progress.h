@@ -1,17 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <stop_token>
 #include <string_view>
 
-#include "taut/core/error.h"
+#include "taut/core/stop.h"
 
 namespace taut {
-
-/// @throws Cancelled if stopping was asked for
-inline void check_stop(const std::stop_token& stop) {
-  if (stop.stop_requested()) throw Cancelled();
-}
 
 /// How a long operation tells where it stands and learns that it should stop.
 ///
@@ -22,9 +16,9 @@ struct Progress {
   std::function<void(std::string_view step, double share)> report;
   /// Called with a warning: a code fit for scripts ("open-border") and a sentence for a person.
   std::function<void(std::string_view code, std::string_view text)> warn;
-  /// Stopping is asked for through the token's source, from any thread or a signal handler's
-  /// helper.
-  std::stop_token stop;
+  /// Stopping is asked for through the source of its token, from any thread or a signal handler's
+  /// helper; or it has limits.
+  Stop stop;
 
   void update(std::string_view step, double share) const {
     check();
@@ -33,8 +27,8 @@ struct Progress {
   void warning(std::string_view code, std::string_view text) const {
     if (warn) warn(code, text);
   }
-  /// @throws Cancelled if stopping was asked for
-  void check() const { check_stop(stop); }
+  /// @throws Cancelled if stopping was asked for, LimitMet if a limit is met
+  void check() const { stop.check(); }
 };
 
 }  // namespace taut

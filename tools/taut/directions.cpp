@@ -21,7 +21,7 @@ constexpr std::size_t max_line_length = 4096;
 /// and then to see whether it should stop.
 class LineReader {
  public:
-  LineReader(const std::string& path, const std::stop_token& stop)
+  LineReader(const std::string& path, const Stop& stop)
       : name_(path == "-" ? standard_input : path),
         descriptor_(path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)),
         stop_(stop) {
@@ -64,7 +64,7 @@ class LineReader {
 
   std::string name_;
   int descriptor_;
-  std::stop_token stop_;
+  Stop stop_;
   std::array<char, 65536> buffer_;
   std::string_view rest_;
   long line_ = 0;
@@ -104,8 +104,7 @@ dvec3 parse_vector(const std::vector<std::string_view>& fields, const std::strin
 
 /// Calls take with the vector of each line and its place.
 template <class Take>
-void read_vectors(const std::string& path, const std::stop_token& stop, const std::string& what,
-                  Take take) {
+void read_vectors(const std::string& path, const Stop& stop, const std::string& what, Take take) {
   LineReader reader(path, stop);
   std::string line;
   while (reader.next(line)) {
@@ -116,7 +115,7 @@ void read_vectors(const std::string& path, const std::stop_token& stop, const st
 
 }  // namespace
 
-std::vector<dvec3> read_directions(const std::string& path, const std::stop_token& stop) {
+std::vector<dvec3> read_directions(const std::string& path, const Stop& stop) {
   std::vector<dvec3> directions;
   read_vectors(path, stop, "direction", [&](const dvec3& direction, const std::string& place) {
     if (direction == dvec3(0.0)) throw InvalidInput(place + "the zero vector is no direction");
@@ -125,7 +124,7 @@ std::vector<dvec3> read_directions(const std::string& path, const std::stop_toke
   return directions;
 }
 
-std::vector<dvec3> read_points(const std::string& path, const std::stop_token& stop) {
+std::vector<dvec3> read_points(const std::string& path, const Stop& stop) {
   std::vector<dvec3> points;
   read_vectors(path, stop, "point",
                [&](const dvec3& point, const std::string&) { points.push_back(point); });

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "taut/core/geometry.h"
+#include "taut/core/stop.h"
 
 namespace taut::tool {
 
@@ -12,9 +12,9 @@ namespace taut::tool {
 /// lines are passed over, and so is the rest of a line from a '#'. "-" is standard input.
 /// @throws IoError (FILE:LINE: ...) for a line that is not three numbers, InvalidInput (likewise)
 /// for a zero vector and for numbers that are not finite, Cancelled
-std::vector<dvec3> read_directions(const std::string& path, const std::stop_token& stop);
+std::vector<dvec3> read_directions(const std::string& path, const Stop& stop);
 
 /// The same of points, of which any that are finite will do.
-std::vector<dvec3> read_points(const std::string& path, const std::stop_token& stop);
+std::vector<dvec3> read_points(const std::string& path, const Stop& stop);
 
 }  // namespace taut::tool

@@ -12,9 +12,9 @@
 namespace taut::tool {
 
 std::size_t read_some(int descriptor, std::span<char> buffer, const std::string& name,
-                      const std::stop_token& stop) {
+                      const Stop& stop) {
   for (;;) {
-    if (stop.stop_requested()) throw Cancelled();
+    stop.check();
     pollfd wait = {descriptor, POLLIN, 0};
     if (poll(&wait, 1, 25) == 0) continue;
     const ssize_t count = read(descriptor, buffer.data(), buffer.size());
@@ -26,7 +26,7 @@ std::size_t read_some(int descriptor, std::span<char> buffer, const std::string&
   }
 }
 
-std::string read_standard_input(const std::stop_token& stop) {
+std::string read_standard_input(const Stop& stop) {
   constexpr std::size_t most = std::size_t{1} << 31;
   std::string text;
   std::array<char, 65536> buffer;

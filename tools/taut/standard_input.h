@@ -1,8 +1,9 @@
 #pragma once
 
 #include <span>
-#include <stop_token>
 #include <string>
+
+#include "taut/core/stop.h"
 
 namespace taut::tool {
 
@@ -14,9 +15,9 @@ inline constexpr const char* standard_output = "standard output";
 /// see whether it should stop. Returns the number of bytes, 0 at the end.
 /// @throws IoError with the name, Cancelled
 std::size_t read_some(int descriptor, std::span<char> buffer, const std::string& name,
-                      const std::stop_token& stop);
+                      const Stop& stop);
 
 /// All of standard input. @throws as read_some(), LimitExceeded beyond 2 GiB
-std::string read_standard_input(const std::stop_token& stop);
+std::string read_standard_input(const Stop& stop);
 
 }  // namespace taut::tool

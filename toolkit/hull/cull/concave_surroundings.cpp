@@ -53,7 +53,7 @@ struct ConcaveSurroundings::Subject {
   }
 };
 
-ConcaveSurroundings::ConcaveSurroundings(const Scene& scene, std::stop_token stop)
+ConcaveSurroundings::ConcaveSurroundings(const Scene& scene, Stop stop)
     : scene_(scene), reach_(scene, stop), surfaces_(scene, std::move(stop)) {}
 
 void ConcaveSurroundings::begin_anew() {

@@ -2,13 +2,13 @@
 
 #include <map>
 #include <memory>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
 #include "taut/bounds/patch_cell.h"
 #include "taut/bounds/reach_test.h"
 #include "taut/bounds/scene.h"
+#include "taut/core/stop.h"
 #include "taut/hull/cull/convex_cap.h"
 
 namespace taut {
@@ -25,7 +25,7 @@ namespace taut {
 class ConcaveSurroundings {
  public:
   /// `stop`: makes what follows throw Cancelled.
-  explicit ConcaveSurroundings(const Scene& scene, std::stop_token stop = {});
+  explicit ConcaveSurroundings(const Scene& scene, Stop stop = {});
 
   /// True is certain. `pyramid`: of the cell's normals Su x Sv, `sign` times which are outward.
   /// Whether the proof is found depends on the cells before.

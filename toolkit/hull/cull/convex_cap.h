@@ -4,13 +4,13 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
 #include "taut/bounds/normal_pyramid.h"
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
+#include "taut/core/stop.h"
 #include "taut/hull/cull/concave_patch.h"
 #include "taut/hull/cull/osculating_paraboloid.h"
 
@@ -21,7 +21,7 @@ namespace taut {
 class ConcaveSurfaces {
  public:
   /// `stop`: makes walks over them throw Cancelled.
-  explicit ConcaveSurfaces(const Scene& scene, std::stop_token stop = {})
+  explicit ConcaveSurfaces(const Scene& scene, Stop stop = {})
       : scene_(scene), stop_(std::move(stop)) {}
 
   const std::vector<Patch>& patches(int part) const;
@@ -30,11 +30,11 @@ class ConcaveSurfaces {
   void forget() { held_.clear(); }
   /// Numbers of walks over them, see ConcavePatch::Mark.
   long next_walk() { return ++walks_; }
-  void check_stop() const { taut::check_stop(stop_); }
+  void check_stop() const { stop_.check(); }
 
  private:
   const Scene& scene_;
-  std::stop_token stop_;
+  Stop stop_;
   long walks_ = 0;
   std::map<std::pair<int, int>, std::unique_ptr<ConcavePatch>> held_;  // by part and patch
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stop_token>
 #include <string>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "taut/core/error.h"
 #include "taut/core/parallel.h"
 #include "taut/core/pool.h"
+#include "taut/core/stop.h"
 #include "taut/hull/cull/concave_surroundings.h"
 
 namespace taut {
@@ -137,7 +137,7 @@ struct PatchResult {
 
 /// Scratch memory of a task.
 struct Tools {
-  Tools(const Scene& scene, ConcaveSurroundings& with, std::stop_token stop = {})
+  Tools(const Scene& scene, ConcaveSurroundings& with, Stop stop = {})
       : query(scene, stop), reach(scene, std::move(stop)), surroundings(with) {}
   /// To be asked before each query; those that are not made count too.
   bool may_ask() {
@@ -526,7 +526,7 @@ void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
 }  // namespace
 
 struct CellRefinement::Content {
-  Content(const Scene& of, const std::stop_token& stop)
+  Content(const Scene& of, const Stop& stop)
       : scene(of),
         spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}),
         surroundings(of, stop),
@@ -537,7 +537,7 @@ struct CellRefinement::Content {
   Tools tools;
 };
 
-CellRefinement::CellRefinement(const Scene& scene, const std::stop_token& stop)
+CellRefinement::CellRefinement(const Scene& scene, const Stop& stop)
     : content_(std::make_unique<Content>(scene, stop)) {}
 CellRefinement::~CellRefinement() = default;
 

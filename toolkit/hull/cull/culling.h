@@ -2,11 +2,11 @@
 
 #include <memory>
 #include <set>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
 #include "taut/bounds/gauss_map.h"
+#include "taut/core/stop.h"
 #include "taut/hull/result/sample.h"
 
 namespace taut {
@@ -104,7 +104,7 @@ Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& opti
 class CellRefinement {
  public:
   /// `stop`: makes refined() throw Cancelled.
-  explicit CellRefinement(const Scene& scene, const std::stop_token& stop = {});
+  explicit CellRefinement(const Scene& scene, const Stop& stop = {});
   ~CellRefinement();
 
   /// Each of the cells as one that is on, or its quarters. Not in parallel.

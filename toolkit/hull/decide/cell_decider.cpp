@@ -56,7 +56,7 @@ CellDecider::CellDecider(const MapPieces& pieces, const DirectionMapOptions& opt
       border_(view_, branches_, query_) {}
 
 LookedAtCell CellDecider::decide(const OpenCell& open) {
-  check_stop(options_.stop);
+  options_.stop.check();
   const long queries = query_.queries();
   const long looked = view_.looked();
   LookedAtCell result;

@@ -53,7 +53,7 @@ struct DirectionMapOptions {
   long cell_limit = 1'000'000;
   long candidate_limit = 1'000'000'000;
   int threads = 0;  ///< 0: as many as the machine has
-  std::stop_token stop;
+  Stop stop;
 };
 
 /// Splits cells, level by level, until each is decided or a limit is reached.
