@@ -104,6 +104,7 @@ void HullContainment::Content::make_mesh() {
   for (const dvec3& p : coarse.hull.points()) points.push_back(p / scene.frame().scale);
   const SampledPolytope mesh =
       sampled_polytope(scene, hull_options, tolerance, coarse.samples, points);
+  if (mesh.limit) throw LimitMet(*mesh.limit);
   samples = mesh.samples;
   mesh_distance = mesh.distance_bound;
   points.clear();

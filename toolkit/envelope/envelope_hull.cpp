@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
@@ -57,6 +58,7 @@ class ImagePolytope {
   SampledPolytope run();
 
  private:
+  void refine(std::optional<SampledPolytope>& last);
   using Cell = std::array<std::int64_t, 3>;
   Cell cell_of(const dvec3& x) const;
   bool add(const Sample& sample);
@@ -159,33 +161,48 @@ std::vector<Sample> ImagePolytope::seen_above(const SampledPolytope& polytope,
   return seen;
 }
 
+/// Where a limit is met, the last polytope before.
 SampledPolytope ImagePolytope::run() {
+  std::optional<SampledPolytope> last;
+  try {
+    refine(last);
+  } catch (const LimitMet& met) {
+    if (!last) throw;
+    last->failure = nullptr;
+    last->limit = met.what();
+  }
+  if (last->limit) options_.progress.stop.lift_limits();
+  return std::move(*last);
+}
+
+/// Until the last one is within the tolerance, or tells why it is not.
+void ImagePolytope::refine(std::optional<SampledPolytope>& last) {
   HullStatistics statistics;
   for (;;) {
     // Any distance ends the refinement by queries before it begins.
-    SampledPolytope polytope = sampled_polytope(content_.scene, options_,
-                                                2 * content_.scene.diagonal(), samples_, points_);
-    polytope.statistics += statistics;
-    statistics = polytope.statistics;
-    if (polytope.distance_bound <= tolerance_) return polytope;
-    polytope.failure = images_too_coarse;
+    last.emplace(sampled_polytope(content_.scene, options_, 2 * content_.scene.diagonal(), samples_,
+                                  points_));
+    last->statistics += statistics;
+    statistics = last->statistics;
+    if (last->limit || last->distance_bound <= tolerance_) return;
+    last->failure = images_too_coarse;
     if (int(samples_.size()) >= options_.max_vertices) {
-      polytope.failure = vertex_limit_met;
-      return polytope;
+      last->failure = vertex_limit_met;
+      return;
     }
-    const std::vector<Sample> more = seen_above(polytope, wanted_facets(polytope));
+    const std::vector<Sample> more = seen_above(*last, wanted_facets(*last));
     bool added = false;
     for (const Sample& sample : more) {
       if (int(samples_.size()) < options_.max_vertices) added = add(sample) || added;
     }
-    if (!added) return polytope;
+    if (!added) return;
   }
 }
 
 }  // namespace
 
-Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
-                   const HullOptions& options) {
+Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map, const HullOptions& asked) {
+  const HullOptions options = within_limits(asked);
   const Scene& scene = images.scene();
   const double tolerance = tolerance_for(options, scene.diagonal());
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());

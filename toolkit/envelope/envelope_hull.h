@@ -15,7 +15,7 @@ namespace taut {
 /// scene that is flat has the hull of sampled_hull(). Same bits for any number of threads.
 /// @throws InvalidInput if the tolerance or the resolution is not valid, HullNotConverged if the
 /// images do not show enough for the tolerance (features between pixels), or max_vertices was met,
-/// Cancelled
+/// HullLimitExceeded or LimitMet for limits (HullOptions), Cancelled
 Hull envelope_hull(const EnvelopeImages& images, const EnvelopeMap& map,
                    const HullOptions& options = {});
 

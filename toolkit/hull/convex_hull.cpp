@@ -9,11 +9,13 @@ Hull convex_hull(const Model& model, const HullOptions& options) {
   if (model.empty()) {
     tolerance_for(options, 0);
     resolution_for(options, model, 0);
+    within_limits(options);
     return {};
   }
   if (model.polyhedral()) return polyhedral_hull(model, options);
-  const Scene scene(model, {options.threads, options.progress});
-  return precise_hull(scene, options);
+  const HullOptions own = within_limits(options);
+  const Scene scene(model, {own.threads, own.progress});
+  return precise_hull(scene, own);
 }
 
 Hull convex_hull(const Scene& scene, const HullOptions& options) {

@@ -2,12 +2,15 @@
 
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "taut/core/stopwatch.h"
 #include "taut/hull/cull/culling.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/mesh/boundary_mesh.h"
+#include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_hull.h"
 #include "taut/hull/sample/sampled_start.h"
 
@@ -18,6 +21,8 @@ namespace {
 /// unless more spots than so many could not be resolved: such points are then not what it wants.
 constexpr int uncovered_rounds = 2;
 constexpr std::size_t few_unresolved = 16;
+/// Share of the limits of time and memory that goes to a hull to fall back on.
+constexpr double fallback_share = 0.25;
 
 bool wants_more(const HullBoundary& boundary) {
   return !boundary.exhausted && boundary.unresolved.size() <= few_unresolved;
@@ -48,15 +53,20 @@ Hull solved_hull(const Scene& scene, const ContactGeometry& geometry, HullBounda
   std::vector<Sample> uncovered;
   Hull hull;
   std::string failure;
+  std::optional<std::string> limit;
   try {
     hull = boundary_mesh(scene, geometry, own, options, &uncovered);
   } catch (const HullNotConverged& stopped) {
     hull = *stopped.best;
     failure = stopped.what();
+  } catch (const HullLimitExceeded& stopped) {
+    hull = *stopped.best;
+    limit = stopped.what();
   }
   for (const Sample& s : uncovered) {
     own->unresolved.push_back({s.n, "a support point lies on no face that was found"});
   }
+  if (limit) throw HullLimitExceeded(*limit, std::move(hull));
   const std::string broken = broken_promise(*own, hull.resolution);
   if (broken.empty() && failure.empty()) return hull;
   if (broken.empty()) throw HullNotConverged(failure, std::move(hull));
@@ -69,10 +79,94 @@ Hull solved_hull(const Scene& scene, const ContactGeometry& geometry, HullBounda
   throw HullNotConverged(broken + "; its faces are those of the mesh", std::move(facetted));
 }
 
+/// The hull with a boundary that was traced.
+Hull traced_hull(const Scene& scene, const ContactGeometry& geometry, const Culling& culling,
+                 const DirectionMap& directions, const HullOptions& options,
+                 HullStatistics& statistics) {
+  std::vector<Sample> found;
+  for (int round = 0;; ++round) {
+    auto boundary = std::make_shared<HullBoundary>(
+        exact_boundary(geometry, culling, directions, options, statistics, found));
+    std::vector<Sample> uncovered;
+    Hull hull;
+    std::optional<std::string> limit;
+    try {
+      hull = boundary_mesh(scene, geometry, boundary, options, &uncovered);
+    } catch (const HullLimitExceeded& stopped) {
+      hull = *stopped.best;
+      limit = stopped.what();
+    }
+    if (!limit && !uncovered.empty() && round < uncovered_rounds && wants_more(*boundary)) {
+      // The mesh has met faces that were not known: once more, with what it met.
+      found.insert(found.end(), uncovered.begin(), uncovered.end());
+      statistics += hull.statistics;
+      continue;
+    }
+    // Of a search that was given up the samples tell nothing new.
+    if (boundary->exhausted) uncovered.clear();
+    for (const Sample& s : uncovered) {
+      boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
+    }
+    return unless_failed(std::move(hull), nullptr, limit);
+  }
+}
+
+/// The hull with its exact boundary. What it took until then is added to the statistics, also where
+/// it throws.
+Hull exact_hull(const Scene& scene, const HullOptions& options, HullStatistics& statistics) {
+  Stopwatch watch;
+  const GaussMap map(scene, {.levels = culling_levels(scene.patch_count()),
+                             .threads = options.threads,
+                             .progress = options.progress});
+  statistics.seconds_gauss_map = watch.lap();
+  const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
+  const Culling culling = culling_of(scene, map, options, statistics);
+  const DirectionMap directions = directions_of(geometry, options, statistics);
+  if (options.curves == CurveMethod::tracing) {
+    return traced_hull(scene, geometry, culling, directions, options, statistics);
+  }
+  HullBoundary boundary = exact_boundary(geometry, culling, directions, options, statistics);
+  return solved_hull(scene, geometry, std::move(boundary), options);
+}
+
+/// The mesh with its faces as the boundary, within the tolerance or as far as a share of what the
+/// limits leave goes; none if that is too little for any.
+std::optional<Hull> fallback_hull(const Scene& scene, const HullOptions& options) {
+  HullOptions own = options;
+  own.progress.stop = options.progress.stop.within_share(fallback_share);
+  try {
+    return facetted_hull(scene, own);
+  } catch (const HullNotConverged& failure) {
+    return *failure.best;
+  } catch (const HullLimitExceeded& stopped) {
+    return *stopped.best;
+  } catch (const LimitMet&) {
+    return std::nullopt;
+  }
+}
+
+/// Whether the boundary is closed and as near to the exact one as the mesh is.
+bool is_closed_answer(const Hull& hull) {
+  if (!hull.boundary) return true;
+  const HullBoundary& boundary = *hull.boundary;
+  return boundary.unresolved.empty() &&
+         boundary.frame.length_to_model(deepest_tolerant(boundary)) <= hull.distance_bound;
+}
+
+/// The nearer one of a hull that was found until a limit was met and the one to fall back on.
+/// @throws LimitMet if there is none that is closed
+Hull best_of(const HullLimitExceeded& met, const std::optional<Hull>& fallback) {
+  const bool closed = is_closed_answer(*met.best);
+  if (!closed && !fallback) throw LimitMet(met.what());
+  return closed && (!fallback || met.best->distance_bound <= fallback->distance_bound) ? *met.best
+                                                                                       : *fallback;
+}
+
 }  // namespace
 
-Hull precise_hull(const Scene& scene, const HullOptions& options) {
+Hull precise_hull(const Scene& scene, const HullOptions& asked) {
   // What is wrong with the options is told at once.
+  const HullOptions options = within_limits(asked);
   tolerance_for(options, scene.diagonal());
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
   SupportQuery query(scene, options.progress.stop);
@@ -82,44 +176,22 @@ Hull precise_hull(const Scene& scene, const HullOptions& options) {
   HullStatistics statistics;
   statistics.support_queries = query.queries();
   statistics.newton_iterations = query.newton_iterations();
-  Stopwatch watch;
-  const GaussMap map(scene, {.levels = culling_levels(scene.patch_count()),
-                             .threads = options.threads,
-                             .progress = options.progress});
-  statistics.seconds_gauss_map = watch.lap();
-  const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
-  const Culling culling = culling_of(scene, map, options, statistics);
-  const DirectionMap directions = directions_of(geometry, options, statistics);
-  std::vector<Sample> found;
-  for (int round = 0;; ++round) {
-    auto boundary = std::make_shared<HullBoundary>(
-        exact_boundary(geometry, culling, directions, options, statistics, found));
-    std::vector<Sample> uncovered_samples;
-    try {
-      if (options.curves == CurveMethod::solving) {
-        Hull hull = solved_hull(scene, geometry, std::move(*boundary), options);
-        hull.statistics += statistics;
-        return hull;
-      }
-      Hull hull = boundary_mesh(scene, geometry, boundary, options, &uncovered_samples);
-      if (!uncovered_samples.empty() && round < uncovered_rounds && wants_more(*boundary)) {
-        // The mesh has met faces that were not known: once more, with what it met.
-        found.insert(found.end(), uncovered_samples.begin(), uncovered_samples.end());
-        statistics += hull.statistics;
-        continue;
-      }
-      // Of a search that was given up the samples tell nothing new.
-      if (boundary->exhausted) uncovered_samples.clear();
-      for (const Sample& s : uncovered_samples) {
-        boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
-      }
-      hull.statistics += statistics;
-      return hull;
-    } catch (const HullNotConverged& failure) {
-      Hull best = *failure.best;
-      best.statistics += statistics;
-      throw HullNotConverged(failure.what(), std::move(best));
-    }
+  std::optional<Hull> fallback;
+  if (options.progress.stop.has_limits()) fallback = fallback_hull(scene, options);
+  if (fallback) statistics += std::exchange(fallback->statistics, {});
+  const auto with_statistics = [&](Hull hull) {
+    hull.statistics += statistics;
+    return hull;
+  };
+  try {
+    return with_statistics(exact_hull(scene, options, statistics));
+  } catch (const HullNotConverged& failure) {
+    throw HullNotConverged(failure.what(), with_statistics(*failure.best));
+  } catch (const HullLimitExceeded& met) {
+    throw HullLimitExceeded(met.what(), with_statistics(best_of(met, fallback)));
+  } catch (const LimitMet& met) {
+    if (!fallback) throw;
+    throw HullLimitExceeded(met.what(), with_statistics(*std::move(fallback)));
   }
 }
 

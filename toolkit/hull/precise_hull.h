@@ -18,6 +18,10 @@ namespace taut {
 /// planes say by how much (HullFace::tolerant). Where none is found that is exact to within the
 /// resolution HullNotConverged says why, and the boundary of the best hull is the one that was
 /// found or, if that is not closed or farther off, the faces of the mesh.
+///
+/// Under limits (HullOptions, Progress::stop) a mesh comes first, for which a quarter of them is
+/// kept; where one is met HullLimitExceeded has the nearer of that, with its faces as the boundary,
+/// and of what was found until then, if that is closed.
 /// @throws as sampled_hull(), HullNotConverged also where the resolution is missed
 Hull precise_hull(const Scene& scene, const HullOptions& options = {});
 

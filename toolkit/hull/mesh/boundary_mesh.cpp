@@ -111,6 +111,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   ConstrainedEdges chords(geometry, *boundary, faces, start.chords, width);
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);
+  if (polytope.limit) options.progress.stop.lift_limits();
   polytope.statistics.support_queries += query.queries();
   polytope.statistics.newton_iterations += query.newton_iterations();
   for (std::size_t k = start.faces.size(); k < polytope.samples.size(); ++k) {
@@ -132,11 +133,11 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   const BoundaryLabels labels(*boundary, std::move(start.faces));
   polytope.statistics.seconds_sample = 0;
   const char* const failure = std::exchange(polytope.failure, nullptr);
+  const std::optional<std::string> limit = std::exchange(polytope.limit, std::nullopt);
   Hull hull = polytope_hull(scene, options, polytope, {labels, int(boundary->faces.size())});
   hull.boundary = std::move(boundary);
   hull.statistics.seconds_mesh = time.seconds();
-  if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
-  return hull;
+  return unless_failed(std::move(hull), failure, limit);
 }
 
 }  // namespace taut

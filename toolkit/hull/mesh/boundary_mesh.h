@@ -21,7 +21,9 @@ namespace taut {
 ///
 /// Support points that lie on no face of the boundary, and to whose height none of it reaches
 /// within the resolution, are added to `uncovered_samples`: what the boundary lacks.
-/// @pre the boundary is the scene's, in its frame @throws as sampled_hull()
+/// @pre the boundary is the scene's, in its frame; the options have no limits but those of their
+/// progress (within_limits), which are lifted where one is met while the mesh is refined
+/// @throws as sampled_hull()
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
                    std::shared_ptr<const HullBoundary> boundary, const HullOptions& options = {},
                    std::vector<Sample>* uncovered_samples = nullptr);

@@ -399,7 +399,8 @@ void PolyhedralHull::label_faces() {
 
 }  // namespace
 
-Hull polyhedral_hull(const Model& model, const HullOptions& options) {
+Hull polyhedral_hull(const Model& model, const HullOptions& asked) {
+  const HullOptions options = within_limits(asked);
   tolerance_for(options, 0);
   const Resolution resolution = resolution_for(options, model, diagonal(model.control_box()));
   if (model.empty()) return {};

@@ -21,7 +21,7 @@ namespace taut {
 /// Faces carry as source the first polygon that lies in them and touches a corner of their hull
 /// face.
 /// @pre model.polyhedral() @throws InvalidInput if the tolerance or the resolution is not valid,
-/// Cancelled
+/// LimitMet for limits (HullOptions), since before the end there is no hull; Cancelled
 Hull polyhedral_hull(const Model& model, const HullOptions& options = {});
 
 }  // namespace taut

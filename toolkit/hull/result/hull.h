@@ -42,4 +42,14 @@ class HullNotConverged : public NotConverged {
   std::shared_ptr<const Hull> best;
 };
 
+/// A limit of time or memory was met (HullOptions::max_seconds, max_memory); `best` is the best
+/// hull found until then, a valid one whose distance_bound says how far it came, and its boundary,
+/// where it has one, is closed.
+class HullLimitExceeded : public LimitExceeded {
+ public:
+  HullLimitExceeded(const std::string& message, Hull hull)
+      : LimitExceeded(message), best(std::make_shared<const Hull>(std::move(hull))) {}
+  std::shared_ptr<const Hull> best;
+};
+
 }  // namespace taut

@@ -22,4 +22,14 @@ double tolerance_for(const HullOptions& options, double diagonal) {
   return tolerance;
 }
 
+HullOptions within_limits(const HullOptions& options) {
+  HullOptions own = options;
+  if (options.max_seconds || options.max_memory || options.progress.stop.has_limits()) {
+    own.progress.stop = options.progress.stop.within(options.max_seconds, options.max_memory);
+  }
+  own.max_seconds.reset();
+  own.max_memory.reset();
+  return own;
+}
+
 }  // namespace taut

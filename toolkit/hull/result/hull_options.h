@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "taut/core/progress.h"
@@ -28,6 +29,12 @@ struct HullOptions {
   /// Vertices, some thirty to begin with apart, after which refinement gives up (HullNotConverged
   /// is thrown). Each takes about 700 bytes meanwhile.
   int max_vertices = 4'000'000;
+  /// Seconds from the call on, and bytes of main memory that the process holds (resident_bytes),
+  /// after which the best hull that is there is thrown with HullLimitExceeded, or LimitMet where
+  /// there is none as yet. To finish and label it takes some more. None: no limit. Where results
+  /// come in time they do not depend on it; those of a limit that is met do.
+  std::optional<double> max_seconds = std::nullopt;
+  std::optional<std::size_t> max_memory = std::nullopt;
   Progress progress;
 };
 
@@ -35,6 +42,11 @@ struct HullOptions {
 /// @throws InvalidInput if the tolerance is negative or no number, or the relative one counts and
 /// is not positive and finite, or leaves the range of doubles
 double tolerance_for(const HullOptions& options, double diagonal);
+
+/// The same options, with a progress that stops at the limits they ask for, which begin now, and at
+/// those it has (Progress::stop); what is called with them adds none of its own.
+/// @throws InvalidInput unless limits are positive and finite
+HullOptions within_limits(const HullOptions& options);
 
 /// The resolution that the options ask for, or the model's. @throws InvalidInput if it is asked for
 /// and not in [0, 1]

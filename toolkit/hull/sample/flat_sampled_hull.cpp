@@ -41,9 +41,10 @@ class FlatSampler {
   std::vector<int> outline(const PlaneView& view) const {
     return convex_outline(start_.points, view);
   }
-  double certify(const std::vector<int>& corners);
+  void certify(const std::vector<int>& corners);
   double across_bound(int sample);
   Hull make_hull(HullKind kind, const std::vector<int>& corners);
+  Hull refine();
 
   const Scene& scene_;
   const HullOptions& options_;
@@ -53,6 +54,7 @@ class FlatSampler {
   std::map<std::pair<int, int>, Side> sides_;  ///< by their ends' samples
   std::vector<double> bounds_;                 ///< per corner of the outline
   double bound_ = 0;
+  std::vector<int> certified_;  ///< corners of the outline that the bounds are of
 };
 
 int FlatSampler::add(const dvec3& n, const Support& s) {
@@ -89,19 +91,21 @@ double FlatSampler::across_bound(int sample) {
 }
 
 /// The certificate of certificate.h, in the plane.
-double FlatSampler::certify(const std::vector<int>& corners) {
+void FlatSampler::certify(const std::vector<int>& corners) {
   const std::size_t count = corners.size();
   double largest = 0;
-  bounds_.assign(count, 0);
+  std::vector<double> bounds(count, 0);
   for (std::size_t k = 0; k < count; ++k) {
     const Side in = side(corners[(k + count - 1) % count], corners[k]);
     const Side out = side(corners[k], corners[(k + 1) % count]);
     const double highest =
         std::max(gap(in.support, in.n, corners[k]), gap(out.support, out.n, corners[k]));
-    bounds_[k] = distance_bound(highest, cone_depth(std::array{in.n, out.n}));
-    largest = std::max(largest, bounds_[k]);
+    bounds[k] = distance_bound(highest, cone_depth(std::array{in.n, out.n}));
+    largest = std::max(largest, bounds[k]);
   }
-  return largest;
+  bounds_ = std::move(bounds);
+  bound_ = largest;
+  certified_ = corners;
 }
 
 std::vector<int> FlatSampler::line_ends() {
@@ -153,13 +157,22 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
 Hull FlatSampler::run() {
   if (start_.span.dimension == 0) return make_hull(HullKind::point, {0});
   if (start_.span.dimension == 1) return make_hull(HullKind::segment, line_ends());
+  try {
+    return refine();
+  } catch (const LimitMet& met) {
+    if (certified_.empty()) throw;
+    options_.progress.stop.lift_limits();
+    throw HullLimitExceeded(met.what(), make_hull(HullKind::planar, certified_));
+  }
+}
 
+Hull FlatSampler::refine() {
   const auto& w = start_.span.witnesses;
   const auto witness = [&](std::size_t k) { return start_.points[std::size_t(w[k])]; };
   const PlaneView view(witness(0), witness(1), witness(2));
   for (;;) {
     const std::vector<int> corners = outline(view);
-    bound_ = certify(corners);
+    certify(corners);
     options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
     if (bound_ <= tolerance_) return make_hull(HullKind::planar, corners);
 

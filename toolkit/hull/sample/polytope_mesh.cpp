@@ -277,7 +277,12 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   hull.resolution = resolution_for(options, scene.model(), scene.diagonal());
   hull.statistics = polytope.statistics;
   hull.statistics.seconds_mesh = time.seconds();
-  if (polytope.failure != nullptr) throw HullNotConverged(polytope.failure, std::move(hull));
+  return unless_failed(std::move(hull), polytope.failure, polytope.limit);
+}
+
+Hull unless_failed(Hull hull, const char* failure, const std::optional<std::string>& limit) {
+  if (limit) throw HullLimitExceeded(*limit, std::move(hull));
+  if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
   return hull;
 }
 

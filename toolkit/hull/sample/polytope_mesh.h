@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "taut/hull/result/hull.h"
@@ -41,8 +42,12 @@ struct KnownLabels {
 /// middle as the polytope is to the hull, sought from either end, and bridges a gap otherwise; a
 /// face with no bridging edge is part of a patch, with all its edges bridging it stands for a
 /// facet, else it lies on a scroll. At a coarse tolerance that is a guess; it never moves a vertex.
-/// @throws HullNotConverged if the polytope has failed
+/// @pre the limits of the progress are lifted where the polytope has met one
+/// @throws HullNotConverged if the polytope has failed, HullLimitExceeded if it has met a limit
 Hull polytope_hull(const Scene& scene, const HullOptions& options, const SampledPolytope& polytope,
                    const KnownLabels& known = {});
+
+/// The hull itself. @throws HullNotConverged with it for a failure, HullLimitExceeded for a limit
+Hull unless_failed(Hull hull, const char* failure, const std::optional<std::string>& limit);
 
 }  // namespace taut

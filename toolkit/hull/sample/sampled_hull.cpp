@@ -10,11 +10,12 @@
 namespace taut {
 namespace {
 
-/// @pre start.span.dimension == 3
+/// Within limits; what follows, which finishes it, has none. @pre start.span.dimension == 3
 SampledPolytope polytope_from(const Scene& scene, const HullOptions& options, double tolerance,
                               SampledStart start, const SupportQuery& query) {
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
+  options.progress.stop.lift_limits();
   polytope.statistics.support_queries += query.queries();
   polytope.statistics.newton_iterations += query.newton_iterations();
   return polytope;
@@ -22,7 +23,8 @@ SampledPolytope polytope_from(const Scene& scene, const HullOptions& options, do
 
 }  // namespace
 
-Hull sampled_hull(const Scene& scene, const HullOptions& options) {
+Hull sampled_hull(const Scene& scene, const HullOptions& asked) {
+  const HullOptions options = within_limits(asked);
   const double tolerance = tolerance_for(options, scene.diagonal());
   warn_if_capped(resolution_for(options, scene.model(), scene.diagonal()), options.progress);
   const Stopwatch start_time;
@@ -39,11 +41,13 @@ Hull sampled_hull(const Scene& scene, const HullOptions& options) {
                        polytope_from(scene, options, tolerance, std::move(start), query));
 }
 
-Hull facetted_hull(const Scene& scene, const HullOptions& options) {
+Hull facetted_hull(const Scene& scene, const HullOptions& asked) {
+  const HullOptions options = within_limits(asked);
   SupportQuery query(scene, options.progress.stop);
   SampledPolytope polytope = polytope_from(scene, options, tolerance_for(options, scene.diagonal()),
                                            sampled_start(scene, query), query);
   const char* const failure = std::exchange(polytope.failure, nullptr);
+  const std::optional<std::string> limit = std::exchange(polytope.limit, std::nullopt);
   Hull hull = polytope_hull(scene, options, polytope);
   hull.boundary = std::make_shared<const HullBoundary>(
       facetted_boundary(scene, query, polytope, options.progress));
@@ -52,8 +56,7 @@ Hull facetted_hull(const Scene& scene, const HullOptions& options) {
     hull.mesh.data(f).hull_face = f.idx();
   }
   for (const auto e : hull.mesh.edges()) hull.mesh.data(e).feature = true;
-  if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
-  return hull;
+  return unless_failed(std::move(hull), failure, limit);
 }
 
 }  // namespace taut

@@ -20,7 +20,7 @@ namespace taut {
 ///
 /// @throws InvalidInput if the tolerance or the resolution is not valid, HullNotConverged if it is
 /// below what double precision can certify for this scene (about 1e-12 of its size) or max_vertices
-/// was met, Cancelled
+/// was met, HullLimitExceeded or LimitMet for limits (HullOptions), Cancelled
 Hull sampled_hull(const Scene& scene, const HullOptions& options = {});
 
 /// The same with the mesh's faces as the boundary (facetted_boundary): the best closed answer where

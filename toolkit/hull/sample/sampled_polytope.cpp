@@ -70,7 +70,9 @@ class Sampler {
   double distance_bound(double gap, int vertex) const {
     return taut::distance_bound(gap, vertex_depths_[std::size_t(vertex)]);
   }
+  const char* refine_to_tolerance();
   SampledPolytope result();
+  SampledPolytope unfinished_result();
 
   const Scene& scene_;
   const HullOptions& options_;
@@ -84,6 +86,7 @@ class Sampler {
   std::vector<Plane> planes_;          // per facet
   double tolerance_;                   // in the scene's frame
   double bound_ = 0;
+  std::optional<double> certified_;  ///< the least of the bounds until now: the polytope only grows
   HullStatistics statistics_;
 };
 
@@ -161,6 +164,7 @@ void Sampler::find_planes() {
       options_.progress.check();
       const PointHull::Facet& facet = hull_.facet(wanted[k]);
       Plane& plane = planes_[std::size_t(wanted[k])];
+      plane.known = false;
       const Facing seen = facing(wanted[k]);
       plane.n = seen.n;
       plane.facet = seen.facet;
@@ -215,6 +219,7 @@ void Sampler::bound_vertices() {
   }
   // Where nothing is certified, everything lies within the diagonal all the same.
   bound_ = std::min(bound_, scene_.frame().scale * scene_.diagonal());
+  certified_ = std::min(bound_, certified_.value_or(bound_));
 }
 
 /// Whether the point is a vertex once more, but for rounding: it would make slivers, whose normals
@@ -292,6 +297,7 @@ bool Sampler::refine() {
   });
   bool inserted = false;
   for (const Candidate& c : candidates) {
+    options_.progress.check();
     if (int(hull_.points().size()) >= options_.max_vertices) break;
     // A facet that an earlier insertion replaced has lost its plane.
     const Plane plane = planes_[std::size_t(c.facet)];
@@ -318,28 +324,52 @@ SampledPolytope Sampler::result() {
   }
   const double bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
   return {std::move(hull_), std::move(samples_), std::move(gaps), std::move(bounds), bound,
-          nullptr,          statistics_};
+          nullptr,          std::nullopt,        statistics_};
+}
+
+/// The polytope as it stands somewhere in a round: planes and bounds are not those of all of it,
+/// but the bound of each round before holds.
+SampledPolytope Sampler::unfinished_result() {
+  planes_.resize(hull_.facets().size());
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    if (!planes_[f].known) planes_[f].h_bound = infinity;
+  }
+  bound_ = *certified_;
+  vertex_gaps_.assign(hull_.points().size(), bound_);
+  vertex_depths_.assign(hull_.points().size(), 1);
+  return result();
+}
+
+/// Why the tolerance is not reached, none if it is.
+const char* Sampler::refine_to_tolerance() {
+  for (;;) {
+    find_planes();
+    bound_vertices();
+    // Vertices grow as the inverse of the distance: the orders of magnitude done tell the rounds.
+    options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
+    if (bound_ <= tolerance_) return nullptr;
+    if (int(hull_.points().size()) >= options_.max_vertices) return vertex_limit_met;
+    if (!refine() && !take_slivers_seriously()) return tolerance_too_fine;
+  }
 }
 
 SampledPolytope Sampler::run(std::vector<Sample> samples, const std::vector<dvec3>& points) {
   const Stopwatch start_time;
   options_.progress.update("sample", 0);
   begin(std::move(samples), points);
-  const char* failure = nullptr;
-  while (failure == nullptr) {
-    find_planes();
-    bound_vertices();
-    // Vertices grow as the inverse of the distance: the orders of magnitude done tell the rounds.
-    options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
-    if (bound_ <= tolerance_) break;
-    if (int(hull_.points().size()) >= options_.max_vertices) {
-      failure = vertex_limit_met;
-    } else if (!refine() && !take_slivers_seriously()) {
-      failure = tolerance_too_fine;
+  SampledPolytope polytope = [&] {
+    try {
+      const char* const failure = refine_to_tolerance();
+      SampledPolytope whole = result();
+      whole.failure = failure;
+      return whole;
+    } catch (const LimitMet& met) {
+      if (!certified_) throw;
+      SampledPolytope unfinished = unfinished_result();
+      unfinished.limit = met.what();
+      return unfinished;
     }
-  }
-  SampledPolytope polytope = result();
-  polytope.failure = failure;
+  }();
   polytope.statistics.seconds_sample = start_time.seconds();
   return polytope;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "taut/bounds/scene.h"
@@ -41,12 +42,17 @@ struct SampledPolytope {
   double distance_bound = 0;
   /// Why the tolerance is not reached, if so.
   const char* failure = nullptr;
+  /// The limit that was met before it was (Limits::text), if so.
+  std::optional<std::string> limit;
   HullStatistics statistics;
 };
 
 /// Grows the hull of samples by support points, until its distance from the scene's hull is
 /// certified to be within the tolerance (in model units). The samples keep their numbers. Before a
 /// point hides an edge that is to stay, the edge's middle is inserted.
+///
+/// Where a limit of the progress is met once a distance is certified, the polytope is the one that
+/// is there, with that distance.
 /// @pre the points, per sample in model coordinates, span space @throws Cancelled
 SampledPolytope sampled_polytope(const Scene& scene, const HullOptions& options, double tolerance,
                                  std::vector<Sample> samples, const std::vector<dvec3>& points,
