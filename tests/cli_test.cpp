@@ -320,6 +320,63 @@ TEST_F(Cli, ToleranceOutOfReachExitsWithFiveAndTheBestResult) {
   EXPECT_EQ(run("verify a.ply " + teapot_).exit_code, 1);
 }
 
+TEST_F(Cli, LimitsThatAreNoneAreWrongUsage) {
+  for (const char* wrong : {"abc", "0", "-1", "nan", "inf", "1e999", "''"}) {
+    const std::string seconds = std::string("--max-seconds=") + wrong;
+    expect_failure("hull " + teapot_ + " -o a.ply " + seconds, 2, "--max-seconds");
+  }
+  for (const char* wrong :
+       {"abc", "0", "-1", "nan", "inf", "1e30", "G", "2X", "2 G", "0.1", "''"}) {
+    const std::string memory = std::string("'--max-memory=") + wrong + "'";
+    expect_failure("hull " + teapot_ + " -o a.ply " + memory, 2, "--max-memory");
+  }
+  EXPECT_FALSE(fs::exists(path("a.ply")));
+}
+
+TEST_F(Cli, LimitsMetBeforeThereIsAHullExitWithSixAndNothing) {
+  const std::string points = plant("points.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
+  for (const std::string& input : {teapot_, points}) {
+    const std::string hull = "hull " + input + " -o a.ply --report r.json ";
+    expect_failure(hull + "--max-seconds 1e-9", 6, "the limit of 1e-09 s was met before");
+    expect_failure(hull + "--max-memory 1.5K", 6,
+                   "the limit of 1536 bytes of memory was met before");
+    expect_failure(hull + "--method sampled --max-memory 1m", 6, "1 MiB of memory was met before");
+    EXPECT_FALSE(fs::exists(path("a.ply")) || fs::exists(path("r.json"))) << input;
+  }
+}
+
+/// More vertices than there is room for.
+TEST_F(Cli, LimitsMetLaterExitWithSixAndTheBestHull) {
+  const std::string hull = "hull " + teapot_ + " -o a.ply --report r.json ";
+  ASSERT_EQ(run(hull + "--relative 1e-2").exit_code, 0);
+  const double taken = Json::parse(content(path("r.json")))["peak_bytes"];
+  std::ostringstream limit;
+  limit << "-o a.hull.json --relative 1e-7 --max-memory " << std::lround(taken) + (1L << 25);
+  for (const char* curves : {" --curves tracing", " --curves solving"}) {
+    const Result result = run(hull + limit.str() + curves);
+    EXPECT_EQ(result.exit_code, 6) << result.err;
+    EXPECT_TRUE(result.err.starts_with("taut: the limit of ")) << result.err;
+    EXPECT_NE(result.err.find("of memory was met; the hull written is within "), std::string::npos)
+        << result.err;
+    EXPECT_TRUE(fs::remove(path("a.hull.json")));
+    const Json report = Json::parse(content(path("r.json")));
+    EXPECT_EQ(report["warnings"][0]["code"], "limit-met");
+    EXPECT_EQ(report["hull"]["unresolved"], 0);
+    const double reached = report["mesh"]["distance_bound"];
+    EXPECT_GT(reached, report["mesh"]["tolerance"]);
+    std::ostringstream relative;
+    relative << 1.01 * reached / report["input"]["diagonal"].get<double>();
+    EXPECT_EQ(run("verify a.ply " + teapot_ + " --relative " + relative.str()).exit_code, 0);
+    // What is measured is a body within that distance.
+    const double accuracy = report["hull"]["measures_accuracy"];
+    const Json best = Json::parse(run("hull " + teapot_ + " --json").out)["hull"];
+    for (const char* measure : {"volume", "area", "mean_width"}) {
+      const double whole = best[measure];
+      EXPECT_NEAR(report["hull"][measure], whole, accuracy * whole) << measure;
+    }
+  }
+}
+
 TEST_F(Cli, CagesKnownToLessThanTheToleranceExitWithFiveToo) {
   const std::string cube = plant("cube.obj",
                                  "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\n"

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -12,6 +13,7 @@ namespace taut::tool {
 namespace {
 
 constexpr int max_threads = 4096;
+constexpr double most_memory = 0x1p62;  ///< bytes
 
 }  // namespace
 
@@ -45,6 +47,31 @@ CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optio
         value = parsed;
       },
       description);
+}
+
+CLI::Option* add_memory(CLI::App& command, const std::string& name,
+                        std::optional<std::size_t>& bytes, const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&bytes, name](const std::string& text) {
+            constexpr std::string_view units = "KMGT";
+            const std::size_t unit =
+                text.empty()
+                    ? std::string_view::npos
+                    : units.find(char(std::toupper(static_cast<unsigned char>(text.back()))));
+            const bool has_unit = unit != std::string_view::npos;
+            const auto parsed = parse_number(text.substr(0, text.size() - (has_unit ? 1 : 0)));
+            const double amount =
+                std::ldexp(parsed.value_or(0), has_unit ? 10 * (int(unit) + 1) : 0);
+            if (!(amount >= 1 && amount < most_memory)) {
+              throw CLI::ValidationError(name,
+                                         text + " is no amount of memory, such as 500M or 2G");
+            }
+            bytes = static_cast<std::size_t>(amount);
+          },
+          description)
+      ->type_name("M");
 }
 
 CLI::Option* add_resolution(CLI::App& command, std::optional<double>& value) {
@@ -88,6 +115,10 @@ Progress Console::progress() {
   progress.warn = [this](std::string_view code, std::string_view text) { warn(code, text); };
   progress.stop = stop_;
   return progress;
+}
+
+void Console::limit(std::optional<double> max_seconds, std::optional<std::size_t> max_memory) {
+  if (max_seconds || max_memory) stop_ = stop_.within(max_seconds, max_memory);
 }
 
 void Console::warn(std::string_view code, std::string_view text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -30,6 +31,11 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 CLI::Option* add_positive(CLI::App& command, const std::string& name, std::optional<double>& value,
                           const std::string& description);
 
+/// Adds an option whose value is an amount of memory: bytes, or a number and K, M, G or T for
+/// powers of 1024 of them.
+CLI::Option* add_memory(CLI::App& command, const std::string& name,
+                        std::optional<std::size_t>& bytes, const std::string& description);
+
 /// Adds the option --resolution, a fraction of the diagonal.
 CLI::Option* add_resolution(CLI::App& command, std::optional<double>& value);
 
@@ -46,6 +52,10 @@ class Console {
   const CommonOptions& options() const { return options_; }
   /// For the toolkit's operations; the console must outlive it.
   Progress progress();
+  /// Those begun from now on stop at these limits, of time from now.
+  void limit(std::optional<double> max_seconds, std::optional<std::size_t> max_memory);
+  /// A limit that is met no longer counts: what is there is finished.
+  void lift_limits() { stop_.lift_limits(); }
 
   /// Keeps the warning for reports, and shows it unless --quiet.
   void warn(std::string_view code, std::string_view text);
@@ -64,7 +74,7 @@ class Console {
   void message(const std::string& line);
 
   CommonOptions options_;
-  std::stop_token stop_;
+  Stop stop_;
   ProgressBar bar_;
   std::vector<Warning> warnings_;
   Stopwatch watch_;

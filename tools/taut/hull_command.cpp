@@ -47,6 +47,8 @@ struct HullArguments {
   std::optional<double> resolution;
   std::string curves = "tracing";
   int max_vertices = HullOptions().max_vertices;
+  std::optional<double> max_seconds;
+  std::optional<std::size_t> max_memory;
   int size = EnvelopeOptions().size;
 };
 
@@ -103,6 +105,12 @@ double mesh_tolerance(double tolerance, double deviation) {
 struct Outcome {
   std::shared_ptr<const Hull> hull;
   std::optional<std::string> failure;
+  bool met_limit = false;  ///< that is the reason
+
+  void meet(const std::string& limit) {
+    failure = failure ? *failure + "; " + limit : limit;
+    met_limit = true;
+  }
 };
 
 Hull hull_of_images(const Scene& scene, int size, const HullOptions& options) {
@@ -116,7 +124,8 @@ Hull hull_of_images(const Scene& scene, int size, const HullOptions& options) {
   return hull;
 }
 
-Outcome compute(Input& input, const HullArguments& arguments, const HullOptions& options) {
+Outcome compute(Input& input, const HullArguments& arguments, const HullOptions& options,
+                Console& console) {
   const std::string& method = arguments.method;
   try {
     Hull hull = method == "envelope" ? hull_of_images(input.scene(), arguments.size, options)
@@ -126,6 +135,9 @@ Outcome compute(Input& input, const HullArguments& arguments, const HullOptions&
     return {std::make_shared<const Hull>(std::move(hull)), {}};
   } catch (const HullNotConverged& failure) {
     return {failure.best, failure.what()};
+  } catch (const HullLimitExceeded& met) {
+    console.lift_limits();
+    return {met.best, met.what(), true};
   }
 }
 
@@ -209,9 +221,41 @@ Report::ExactHull::Tolerant tolerant_faces(const HullBoundary& boundary) {
   return tolerant;
 }
 
-/// What is known of the exact hull: its faces and its measures.
-Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& method,
+/// Adds the measures of a mesh whose faces are the boundary. The exact hull lies in what is no
+/// farther than the distance from it, and of that body Steiner's formulas tell the measures.
+void add_measures_of_mesh(const Hull& hull, Report::ExactHull& exact) {
+  constexpr double pi = std::numbers::pi;
+  const double d = hull.distance_bound;
+  const Measures measures = measure(polygons(hull.mesh));
+  const double width = mean_width(hull.mesh);
+  const double volume_bound = d * (measures.area + d * (2 * pi * width + d * 4 * pi / 3));
+  const double area_bound = d * (4 * pi * width + d * 4 * pi);
+  exact.measures = measures;
+  exact.mean_width = width;
+  exact.measures_accuracy =
+      std::max({volume_bound / measures.volume, area_bound / measures.area, 2 * d / width});
+}
+
+/// Adds the measures of a boundary. @throws LimitMet
+void add_measures(Input& input, const HullBoundary& boundary, Console& console,
+                  Report::ExactHull& exact) {
+  console.progress().update("measure", 0);
+  const BoundaryMeasures measures =
+      measure(input.scene(), ContactGeometry(input.scene(), console.progress().stop), boundary);
+  exact.measures = measures;
+  exact.mean_width = measures.mean_width;
+  exact.measures_accuracy = measures.accuracy;
+  if (measures.accuracy <= worst_accuracy) return;
+  console.warn("inexact-measures",
+               "the measures of the exact hull are accurate to " + number(measures.accuracy, 2) +
+                   " only: faces of it may be missing or not meet; the mesh is whole and within "
+                   "its distance");
+}
+
+/// What is known of the exact hull: its faces and, if no limit is met meanwhile, its measures.
+Report::ExactHull exact_hull(Input& input, Outcome& outcome, const std::string& method,
                              Console& console) {
+  const Hull& hull = *outcome.hull;
   Report::ExactHull exact;
   exact.gap_bound = hull.distance_bound + input.model().deviation_bound();
   if (hull.boundary) {
@@ -224,19 +268,14 @@ Report::ExactHull exact_hull(Input& input, const Hull& hull, const std::string& 
     if (input.model().polyhedral()) {
       exact.measures = measure(polygons(hull.mesh));
       exact.mean_width = mean_width(hull.mesh);
+    } else if (boundary.arcs.empty() &&
+               boundary.count(FaceKind::facet) == int(boundary.faces.size())) {
+      add_measures_of_mesh(hull, exact);
     } else if (boundary.unresolved.empty()) {
-      console.progress().update("measure", 0);
-      const BoundaryMeasures measures =
-          measure(input.scene(), ContactGeometry(input.scene(), console.progress().stop), boundary);
-      exact.measures = measures;
-      exact.mean_width = measures.mean_width;
-      exact.measures_accuracy = measures.accuracy;
-      if (!(measures.accuracy <= worst_accuracy)) {
-        console.warn("inexact-measures",
-                     "the measures of the exact hull are accurate to " +
-                         number(measures.accuracy, 2) +
-                         " only: faces of it may be missing or not meet; the mesh is whole and "
-                         "within its distance");
+      try {
+        add_measures(input, boundary, console, exact);
+      } catch (const LimitMet& met) {
+        outcome.meet(std::string(met.what()) + " before the hull was measured");
       }
     }
   } else if (input.model().polyhedral() && method == "precise") {
@@ -264,14 +303,15 @@ std::optional<Report::Subdivision> subdivision(const Model& model) {
   return sum;
 }
 
-Report make_report(Input& input, const Hull& hull, const HullArguments& arguments, double tolerance,
+Report make_report(Input& input, Outcome& outcome, const HullArguments& arguments, double tolerance,
                    Console& console) {
+  const Hull& hull = *outcome.hull;
   Report report;
   report.input = input.summary();
   report.method = arguments.method;
   report.dimension = hull.dimension();
   const Stopwatch measuring;
-  report.hull = exact_hull(input, hull, arguments.method, console);
+  report.hull = exact_hull(input, outcome, arguments.method, console);
   report.hull.resolution = hull.resolution;
   report.mesh.vertices = long(hull.mesh.n_vertices());
   report.mesh.edges = long(hull.mesh.n_edges());
@@ -429,11 +469,22 @@ void bring_up_to_date(Report& report, const Outcome& outcome, const Console& con
   report.seconds.total = console.seconds();
   report.peak_bytes = peak_bytes();
   report.warnings = console.warnings();
-  if (outcome.failure) report.warnings.push_back({"not-converged", *outcome.failure});
+  if (!outcome.failure) return;
+  report.warnings.push_back({outcome.met_limit ? "limit-met" : "not-converged", *outcome.failure});
 }
 
-ExitCode run(const HullArguments& arguments, Console& console) {
-  check(arguments, console.options().json);
+/// What a run that ends too early throws, with what was written and how far off that is.
+[[noreturn]] void fail(const Outcome& outcome, const std::vector<std::string>& written,
+                       double bound) {
+  const std::string text = *outcome.failure + "; the hull " +
+                           (written.empty() ? "found" : "written") + " is within " +
+                           number(bound, 3);
+  if (outcome.met_limit) throw LimitExceeded(text);
+  throw NotConverged(text, bound);
+}
+
+/// @throws LimitExceeded also where a limit is met before there is a hull
+ExitCode run_within_limits(const HullArguments& arguments, Console& console) {
   Input input(arguments.inputs, console);
   HullOptions options;
   const double wanted = tolerance(arguments, input.diagonal());
@@ -444,9 +495,10 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
-  Outcome outcome = compute(input, arguments, options);
+  Outcome outcome = compute(input, arguments, options, console);
 
-  Report report = make_report(input, *outcome.hull, arguments, wanted, console);
+  Report report = make_report(input, outcome, arguments, wanted, console);
+  console.lift_limits();
   if (!outcome.failure) {
     outcome.failure = failure_of_cages(report.mesh.distance_bound, deviation, wanted);
   }
@@ -469,10 +521,20 @@ ExitCode run(const HullArguments& arguments, Console& console) {
   } else if (!console.options().quiet && !mesh_on_stdout) {
     console.print(summary(report, written));
   }
-  if (!outcome.failure) return ExitCode::done;
-  throw NotConverged(*outcome.failure + "; the hull " + (written.empty() ? "found" : "written") +
-                         " is within " + number(report.mesh.distance_bound, 3),
-                     report.mesh.distance_bound);
+  if (outcome.failure) fail(outcome, written, report.mesh.distance_bound);
+  return ExitCode::done;
+}
+
+ExitCode run(const HullArguments& arguments, Console& console) {
+  check(arguments, console.options().json);
+  console.limit(arguments.max_seconds, arguments.max_memory);
+  try {
+    return run_within_limits(arguments, console);
+  } catch (const LimitExceeded& error) {
+    // They are lifted from when there is a hull on; readers tell of other limits as well.
+    if (!console.progress().stop.stop_requested()) throw;
+    throw LimitExceeded(std::string(error.what()) + " before there was a hull; nothing is written");
+  }
 }
 
 }  // namespace
@@ -486,7 +548,8 @@ Command add_hull(CLI::App& parent) {
       "  taut hull teapot.bpt -o teapot.hull.json     the exact hull: patches, scrolls, facets\n"
       "  taut hull a.bpt b.obj --tolerance 0.01 --json\n"
       "  taut hull cage.obj --scheme catmark -o hull.ply   of the subdivision surface\n"
-      "  taut hull scan.xyz -o hull.ply              points and triangles: the exact hull");
+      "  taut hull scan.xyz -o hull.ply              points and triangles: the exact hull\n"
+      "  taut hull car.obj -o hull.ply --max-seconds 60   the best that a minute brings");
   const auto arguments = std::make_shared<HullArguments>();
   CLI::App& app = *command.app;
   add_inputs(app, arguments->inputs);
@@ -522,6 +585,13 @@ Command add_hull(CLI::App& parent) {
   add_integer(app, "--max-vertices", arguments->max_vertices, 4, std::numeric_limits<int>::max(),
               "Vertices after which to give up on the tolerance, default " +
                   number(long(arguments->max_vertices)));
+  add_positive(app, "--max-seconds", arguments->max_seconds,
+               "Seconds of the whole run after which the best hull found until then\nis written, "
+               "with exit code 6; nothing is written before there is one")
+      ->type_name("S");
+  add_memory(app, "--max-memory", arguments->max_memory,
+             "Memory that the command may hold before it ends so, in bytes or\nwith a unit: 500M, "
+             "2G");
   add_integer(app, "--size", arguments->size, 8, 16000,
               "Width and height in pixels of the images of --method envelope,\ndefault " +
                   number(long(arguments->size)))
