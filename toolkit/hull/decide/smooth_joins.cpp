@@ -178,18 +178,15 @@ void SmoothJoins::pair_ends(const Contact& vertex) {
   std::vector<ContactGeometry::PieceEnd> all;
   const bool several = geometry_.ends(vertex).size() > 2;  // of two it has been told
   bool any_passed = false;
-  bool all_curves = true;
   for (const ContactGeometry::PieceEnd& end : geometry_.ends(vertex)) {
     const Contact piece = piece_end(vertex, end);
     if (geometry_.is_repeated(piece)) continue;
     any_passed = any_passed || passes(piece);
-    // Straight ones have no contacts but where curves pass.
-    if (geometry_.is_straight(piece)) continue;
+    // Straight ones have no contacts but where curves pass; along smooth ones these are patches'.
+    if (geometry_.is_straight(piece) || is_smooth(piece)) continue;
     all.push_back(end);
-    all_curves = all_curves && !is_smooth(piece);
   }
-  if (any_passed ? is_surrounded(vertex)
-                 : all_curves && several && all.size() > 1 && join(vertex, all)) {
+  if (any_passed ? is_surrounded(vertex) : several && all.size() > 1 && join(vertex, all)) {
     passed_.insert({vertex.kind, vertex.instance, vertex.element});
   }
 }
