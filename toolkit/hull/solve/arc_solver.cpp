@@ -33,7 +33,10 @@ constexpr int places_on_the_way = 8;
 /// Steps of Newton's method to where a segment passes a side.
 constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
-/// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
+/// an end and the first exact ruling that the interpolation is made of (RulingsBetween); and how
+/// far they may be apart, in units of the resolution: areas are off by the first power of it, where
+/// heights are by the second.
+constexpr double flat_share = 1.0 / 64;
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
 /// How far before the way or beyond it a change may be by rounding, as a share.
 constexpr double way_slack = 1e-9;
@@ -178,8 +181,7 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   const std::optional<MovingRuling> exact =
       between.leaves_pole() ? std::optional(between.interpolated(s)) : between(s);
   if (!exact) return false;
-  const Ruling middle = exact->at.ruling();
-  if (leaves_elements(middle)) return false;
+  const Ruling middle = inside(exact->at.ruling());
   if (between.lies_flat() && !is_interpolated(between)) return false;
   if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
   const double depth = search_.depth(middle);
@@ -193,17 +195,18 @@ bool ArcSolver::is_smooth(const Ruling& to) {
 bool ArcSolver::is_interpolated(const RulingsBetween& between) const {
   return std::all_of(beside_ends.begin(), beside_ends.end(), [&](double s) {
     const std::optional<MovingRuling> exact = between(s);
-    return exact && gap(exact->at.ruling(), between.interpolated(s).at.ruling()) <= geometry_.tie();
+    return !exact || gap(exact->at.ruling(), between.interpolated(s).at.ruling()) <=
+                         std::max(geometry_.tie(), flat_share * search_.map().resolution);
   });
 }
 
-/// A contact lies beyond the border of its element, by more than rounding.
-bool ArcSolver::leaves_elements(const Ruling& r) const {
+/// With contacts that have left their elements on their borders.
+Ruling ArcSolver::inside(Ruling r) const {
   for (std::size_t i = 0; i < 2; ++i) {
-    const dvec3 inside = geometry_.point(clamped(r.contact[i]));
-    if (glm::distance(r.point[i], inside) > geometry_.tie()) return true;
+    r.contact[i] = clamped(r.contact[i]);
+    r.point[i] = geometry_.point(r.contact[i]);
   }
-  return false;
+  return r;
 }
 
 void ArcSolver::divide(const Ruling& to, int depth) {
@@ -331,7 +334,7 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   Change found{s.ruling(), s.ruling(), 0};
   found.way = share_of_way(last(), to, found.before);
   if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
-  const double farthest = (1 + way_slack) * gap(last(), to) + geometry_.tie();
+  const double farthest = (1 + way_slack) * gap(last(), to) + search_.map().resolution;
   if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
   // A pole is on all patches about it.
   const std::optional<Contact> next = pole_side(geometry_, s.contact[i])

@@ -38,7 +38,7 @@ class ArcSolver {
   void go_on(const Ruling& to, int depth);
   bool stays(const Ruling& to);
   bool is_smooth(const Ruling& to);
-  bool leaves_elements(const Ruling& r) const;
+  Ruling inside(Ruling r) const;
   bool is_interpolated(const RulingsBetween& between) const;
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);
