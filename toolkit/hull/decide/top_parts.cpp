@@ -1,6 +1,7 @@
 #include "taut/hull/decide/top_parts.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "taut/bounds/contact_exits.h"
@@ -12,7 +13,7 @@
 namespace taut {
 namespace {
 
-/// Parts of a model that are split for one plane. Of those that are found all pairs are compared.
+/// Parts of a model that are split for one plane.
 constexpr int looked_at_parts = 4000;
 /// Of those that are found heights differ by no more than this share of the depth.
 constexpr double height_share = 0.25;
@@ -62,6 +63,30 @@ std::vector<Contact> forms(const ContactGeometry& geometry, const Contact& c) {
 }
 
 Interval between(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// A chain of boxes, each no farther from the next than so much, leads from the first to the
+/// second.
+bool first_two_hang_together(const std::vector<Box>& boxes, double distance) {
+  std::vector<int> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto box = [&](int k) -> const Box& { return boxes[std::size_t(k)]; };
+  Box all;
+  for (const Box& b : boxes) all.include(b.lower);
+  const dvec3 size = all.upper - all.lower;
+  const int along = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return box(a).lower[along] < box(b).lower[along]; });
+  DisjointSets chains(boxes.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Box& own = box(order[i]);
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Box& other = box(order[j]);
+      if (other.lower[along] > own.upper[along] + distance) break;
+      if (glm::length(box_gaps(own, other)) <= distance) chains.unite(order[i], order[j]);
+    }
+  }
+  return chains.find(0) == chains.find(1);
+}
 
 }  // namespace
 
@@ -194,13 +219,7 @@ bool TopParts::hang_together(const dvec3& d, const Contact& a, const Contact& b,
   if (hang_together_in_one_element(d, a, b, height - (1 + height_share) * depth)) return true;
   std::vector<Box> found = {{x, x}, {y, y}};
   if (!find(body, d, height, depth, found)) return false;
-  DisjointSets pieces(found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (glm::length(box_gaps(found[i], found[j])) <= depth) pieces.unite(int(i), int(j));
-    }
-  }
-  return pieces.find(0) == pieces.find(1);
+  return first_two_hang_together(found, depth);
 }
 
 }  // namespace taut

@@ -48,12 +48,22 @@ class FreeEndSearch {
       const double length = share * length_of(r);
       if (length < shortest_merging) break;
       const std::optional<Ruling> next = with_length(r, length);
-      if (next && search_.depth(*next) <= search_.map().resolution) return next;
+      if (next && follows(r, *next) && search_.depth(*next) <= search_.map().resolution) {
+        return next;
+      }
     }
     return std::nullopt;
   }
 
  private:
+  /// Not beyond an end in which another arc begins: halfway between the two the length is between
+  /// theirs.
+  bool follows(const Ruling& from, const Ruling& to) const {
+    if (!same_elements(from, to)) return true;
+    const auto middle = ruling_between(search_.system(), from, to, 0.5);
+    return middle && length_of(*middle) > length_of(to);
+  }
+
   /// Of contacts that have run over into other elements on the way, with those.
   std::optional<Ruling> with_length(const Ruling& r, double length) const {
     CommonSupport s(geometry_, r);
