@@ -59,5 +59,43 @@ TEST(TouchingPlane, OfContactsInLine) {
   EXPECT_NEAR(plane.n.x, 0, 1e-12);
 }
 
+/// A surface that hardly bends beside a straight side of its own: z = -v^2 / 500 - u^2 v over
+/// [-1, 1] x [0, 1], and a point below.
+Shape flat_beside_its_side() {
+  NurbsSurface surface{2, 2, {0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}, {}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      // Control values of u^2 and of v^2.
+      const double uu = i == 1 ? -1 : 1;
+      const double vv = j == 2 ? 1 : 0;
+      surface.points.emplace_back(i - 1, 0.5 * j, -vv / 500 - uu * 0.5 * j, 1);
+    }
+  }
+  return {{surface}, {}, {{0, 0, -1}}};
+}
+
+/// The surface leaves the segment between its corners in the middle. Heights tell where to the root
+/// of rounding, and rulings beside are known to the resolution: all of them may be where the
+/// contact has left the segment.
+TEST(TouchingPlane, WhereASurfaceLeavesASegment) {
+  Placed placed(flat_beside_its_side());
+  const Contact left = placed.contact({-1, -1, 1});
+  const Contact right = placed.contact({1, -1, 1});
+  for (const double turn : {1e-5, 1e-4}) {
+    const dvec3 n = unit({0, turn, 1});
+    const std::vector<Contact> contacts = {left, placed.contact(n), right};
+    ASSERT_EQ(contacts[1].kind, SourceKind::face) << turn;
+    TouchingPlane plane = touching_plane(placed.geometry, placed.query, n, contacts);
+    if (plane.in_line) {
+      const std::vector<dvec3> beside = {n, unit({0, 0.5 * turn, 1})};
+      plane = turned_to_part(placed.geometry, placed.query, plane, contacts, beside, 1e-8);
+    }
+    EXPECT_LE(glm::distance(plane.n, dvec3(0, 0, 1)), 1e-12) << turn;
+    EXPECT_LE(plane.off(), 1e-12) << turn;
+    const dvec3 middle = 0.5 * (placed.geometry.point(left) + placed.geometry.point(right));
+    EXPECT_LE(glm::distance(plane.contacts[1].x, middle), 1e-12) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace taut

@@ -88,6 +88,9 @@ class PlaneSearch {
   TouchingPlane found_;
 };
 
+/// How far surfaces that curve as much as the scene is large rise so much over.
+double risen_over(double depth) { return std::sqrt(depth); }
+
 /// Turns a plane about the line that its contacts lie in.
 class LineTurn {
  public:
@@ -133,18 +136,19 @@ class LineTurn {
     found.n = turned(together);
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       const Contact parted_one = climb(geometry_, contacts_[k], turned(apart)).contact;
-      found.contacts[k].contact = on_border(parted_one, found.n, depth);
+      found.contacts[k].contact = on_border(parted_one, found.n, risen_over(depth), depth);
     }
     take_heights(found);
     return found;
   }
   /// The same, where the contact that leaves the line tells the plane: it is tangent to the way on
   /// which it leaves. Along a straight border that is where this plane turns least.
-  std::optional<TouchingPlane> tangent(TouchingPlane plane, std::size_t k, double depth) const {
+  std::optional<TouchingPlane> tangent(TouchingPlane plane, std::size_t k, double distance,
+                                       double depth) const {
     Contact& c = plane.contacts[k].contact;
-    const Contact start = c = on_border(c, plane.n, depth);
+    const Contact start = c = on_border(c, plane.n, distance, depth);
     const std::optional<dvec3> n = settle(c);
-    if (!n || glm::distance(geometry_.point(c), geometry_.point(start)) > std::sqrt(depth)) {
+    if (!n || glm::distance(geometry_.point(c), geometry_.point(start)) > distance) {
       return std::nullopt;
     }
     plane.n = *n;
@@ -152,10 +156,10 @@ class LineTurn {
     return plane;
   }
 
-  /// The contact on a border of its element, if that is no lower by more than the depth, and no
-  /// farther than surfaces that curve as much as the scene is large rise so much over.
-  Contact on_border(const Contact& c, const dvec3& n, double depth) const {
-    const Contact there = moved_to_border(geometry_, c, std::sqrt(depth));
+  /// The contact on a border of its element that is no farther, if that is no lower by more than
+  /// the depth.
+  Contact on_border(const Contact& c, const dvec3& n, double distance, double depth) const {
+    const Contact there = moved_to_border(geometry_, c, distance);
     return glm::dot(geometry_.point(c) - geometry_.point(there), n) <= depth ? there : c;
   }
 
@@ -342,10 +346,14 @@ TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& quer
     std::optional<double>& own = turn.parts(angle) ? apart : together;
     if (!own || std::abs(angle) < std::abs(*own)) own = angle;
   }
+  // Next to the node rulings are known to the resolution: they may all be on the side on which a
+  // contact has left the line.
+  if (!together && !turn.parts(0)) together = 0;
   if (!together || !apart) return plane;
   TouchingPlane found = turn.found(*together, *apart, depth);
   find_above(query, found);
-  if (std::optional<TouchingPlane> exact = turn.tangent(found, turn.first_to_part(*apart), depth)) {
+  if (std::optional<TouchingPlane> exact =
+          turn.tangent(found, turn.first_to_part(*apart), risen_over(depth), depth)) {
     find_above(query, *exact);
     if (exact->off() <= std::max(found.off(), geometry.tie())) return *exact;
   }
@@ -354,14 +362,24 @@ TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& quer
 
 namespace {
 
-/// A plane that contacts so nearly in line tell to the root of rounding only: what the one that
-/// leaves the line tells of it instead, where that plane touches as well.
+/// How far a contact may be from a border that is as high as it is, to within a tie: c s^2 / 2 at a
+/// distance of s, of the least curvature c that is told.
+double level_width(const ContactGeometry& geometry) {
+  return std::sqrt(2 * geometry.tie() / least_curvature);
+}
+
+/// A plane of three contacts so nearly in line that heights do not tell them apart from the line is
+/// known to the root of rounding only: what the one that leaves the line tells of it instead, where
+/// that plane touches as well.
 TouchingPlane told_in_line(const ContactGeometry& geometry, SupportQuery& query,
                            const TouchingPlane& plane, const std::vector<Contact>& contacts) {
+  const bool is_node = contacts.size() == CommonSupport::capacity && !plane.in_line;
+  if (!is_node || plane.off() > geometry.tie()) return plane;
   const LineTurn turn(geometry, plane, contacts);
-  if (!are_in_line(plane.contacts, line_width * turn.length())) return plane;
-  std::optional<TouchingPlane> exact = turn.tangent(
-      plane, turn.first_to_part(), turn.length() * turn.length() * line_width * line_width);
+  const double width = level_width(geometry);
+  if (!are_in_line(plane.contacts, width)) return plane;
+  std::optional<TouchingPlane> exact =
+      turn.tangent(plane, turn.first_to_part(), width, geometry.tie());
   if (!exact) return plane;
   find_above(query, *exact);
   return exact->off() <= geometry.tie() ? *exact : plane;
@@ -377,7 +395,7 @@ TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& quer
   }
   TouchingPlane plane = PlaneSearch(geometry, n, contacts).run();
   find_above(query, plane);
-  return plane;
+  return told_in_line(geometry, query, plane, contacts);
 }
 
 }  // namespace taut
