@@ -103,16 +103,10 @@ class FreeEndSearch {
 
 }  // namespace
 
-void drop_close(const ContactGeometry& geometry, const std::optional<Ruling>& end_ruling,
-                std::vector<Ruling>& known, int end) {
-  if (end_ruling && !lies_at_pole(geometry, *end_ruling)) return;
-  while (known.size() > 1) {
-    const Ruling& last = end == 0 ? known.front() : known.back();
-    const Ruling& next = end == 0 ? known[1] : known[known.size() - 2];
-    const bool tells = end_ruling ? !is_close(last, *end_ruling)
-                                  : length_of(last) >= merging_distance(geometry) ||
-                                        length_of(next) <= length_of(last);
-    if (tells) return;
+void drop_close_to_pole(const ContactGeometry& geometry, const Ruling& end_ruling,
+                        std::vector<Ruling>& known, int end) {
+  if (!lies_at_pole(geometry, end_ruling)) return;
+  while (known.size() > 1 && is_close(end == 0 ? known.front() : known.back(), end_ruling)) {
     known.erase(end == 0 ? known.begin() : known.end() - 1);
   }
 }

@@ -8,11 +8,10 @@
 
 namespace taut {
 
-/// Leaves out known rulings so close to an end of their arc (0 or 1) that rounding moves their
-/// contacts by more than they tell: to the ruling in which it begins or ends where that is at a
-/// pole; where there is none, of contacts that are about to merge. One is left at least.
-void drop_close(const ContactGeometry& geometry, const std::optional<Ruling>& end_ruling,
-                std::vector<Ruling>& known, int end);
+/// Leaves out known rulings so close to the one in which their arc begins (0) or ends (1), if that
+/// is at a pole, that rounding moves their contacts by more than they tell. One is left at least.
+void drop_close_to_pole(const ContactGeometry& geometry, const Ruling& end_ruling,
+                        std::vector<Ruling>& known, int end);
 
 /// Leads an arc on from its last ruling to the free end in which its contacts merge: by rulings of
 /// less and less length, also where the map's resolution ends before. Where the end is not told, in

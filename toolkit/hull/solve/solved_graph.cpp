@@ -251,7 +251,7 @@ class GraphSolver {
       const Ruling& next = end == 0 ? known.front() : known.back();
       const std::optional<Ruling> r = plug(int(k), end, next);
       merges[std::size_t(end)] = !r;
-      drop_close(geometry_, r, known, end);
+      if (r) drop_close_to_pole(geometry_, *r, known, end);
       if (r) known.insert(end == 0 ? known.begin() : known.end(), *r);
     }
     if (arc.closed) known.push_back(known.front());
