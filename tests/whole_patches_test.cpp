@@ -49,5 +49,37 @@ TEST(WholePatches, OfTwoThatCoincideAreOfOne) {
   EXPECT_EQ(*found.begin() < 8, *found.rbegin() < 8);
 }
 
+/// A square of degree 2 in the plane z = 0, but for its middle, and a point below.
+Shape square(double sag) {
+  NurbsSurface surface{2, 2, {0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}, {}};
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) surface.points.emplace_back(i, j, i == 0 && j == 0 ? -sag : 0, 1);
+  }
+  return {{surface}, {}, {{0, 0, -1}}};
+}
+
+/// What is in the plane of a facet, to within the depth, is part of that.
+TEST(WholePatches, AreNotThoseInFacets) {
+  for (const double sag : {0.0, 1e-8, 1e-3}) {
+    const Scene scene = make_scene(square(sag));
+    const ContactGeometry geometry(scene);
+    SupportQuery query(scene);
+    FacetNode top;
+    top.n = dvec3(0, 0, 1);
+    for (const dvec3& n : {dvec3(1, 1, 1), dvec3(-1, 1, 1), dvec3(-1, -1, 1), dvec3(1, -1, 1)}) {
+      top.contacts.push_back(geometry.canonical(query(unit(n)).contact));
+      top.points.push_back(geometry.point(top.contacts.back()));
+    }
+    SeparatingGraph graph;
+    graph.nodes.push_back(top);
+    std::vector<TrimRegion> regions;
+    std::vector<Unresolved> unresolved;
+    const double depth = scene.frame().length_to_frame(2e-8);
+    add_whole_patches(geometry, query, graph, depth, regions, unresolved);
+    EXPECT_TRUE(regions.empty()) << sag;
+    EXPECT_TRUE(unresolved.empty()) << sag;
+  }
+}
+
 }  // namespace
 }  // namespace taut

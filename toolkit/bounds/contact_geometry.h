@@ -126,6 +126,8 @@ class ContactGeometry {
   const Patch& patch(const Contact& c) const;
   /// @pre kind edge
   const EdgePiece& piece(const Contact& c) const;
+  /// The contact's element in the scene's frame.
+  PlacedElement placed(const Contact& c) const;
   /// The piece in the scene's frame. @pre kind edge
   BezierCurve curve(const Contact& c) const;
 
@@ -144,7 +146,6 @@ class ContactGeometry {
   };
   const PartElements& elements(const Contact& c) const;
   void start_evaluation() const;
-  PlacedElement placed(const Contact& c) const;
   void find_straight(const Part& part, double same, PartElements& own) const;
   void find_repeated_elements(double same);
   void place_points(const std::vector<PlacedElement>& all);

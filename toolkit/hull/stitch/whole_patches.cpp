@@ -64,8 +64,22 @@ class WholePatches {
   bool supports(const Sided& s) const {
     if (geometry_.is_ruled(s.middle)) return false;
     const dvec3 n = normal(s.middle, s.sign);
+    if (is_in_facet(s, n)) return false;
     const double h = glm::dot(geometry_.point(s.middle), n);
     return n != dvec3(0.0) && is_supporting(geometry_, query_, n, h, s.middle, depth_);
+  }
+
+  /// The patch lies in the plane of a facet to within the depth, so that it is part of that: on the
+  /// side that n tells.
+  bool is_in_facet(const Sided& s, const dvec3& n) const {
+    return std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const FacetNode& node) {
+      if (node.is_crossing() || glm::dot(node.n, n) <= 0) return false;
+      const double least = glm::dot(node.points.front(), node.n) - geometry_.tie() - depth_;
+      if (glm::dot(geometry_.point(s.middle), node.n) < least) return false;
+      const std::vector<dvec4> points = geometry_.placed(s.middle).points;
+      return std::all_of(points.begin(), points.end(),
+                         [&](const dvec4& p) { return glm::dot(euclidean(p), node.n) >= least; });
+    });
   }
 
   /// False if it is there already.
