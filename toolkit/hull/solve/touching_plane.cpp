@@ -373,14 +373,14 @@ double level_width(const ContactGeometry& geometry) {
 /// that plane touches as well.
 TouchingPlane told_in_line(const ContactGeometry& geometry, SupportQuery& query,
                            const TouchingPlane& plane, const std::vector<Contact>& contacts) {
-  const bool is_node = contacts.size() == CommonSupport::capacity && !plane.in_line;
-  if (!is_node || plane.off() > geometry.tie()) return plane;
+  if (contacts.size() != CommonSupport::capacity || plane.off() > geometry.tie()) return plane;
   const LineTurn turn(geometry, plane, contacts);
   const double width = level_width(geometry);
   if (!are_in_line(plane.contacts, width)) return plane;
   std::optional<TouchingPlane> exact =
       turn.tangent(plane, turn.first_to_part(), width, geometry.tie());
-  if (!exact) return plane;
+  if (!exact || !are_in_line(exact->contacts, geometry.tie())) return plane;
+  exact->in_line = false;
   find_above(query, *exact);
   return exact->off() <= geometry.tie() ? *exact : plane;
 }
