@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "exact_checks.h"
+#include "freeform.h"
 #include "judge/families.h"
 #include "models.h"
 #include "taut/hull/precise_hull.h"
@@ -28,6 +30,53 @@ TEST(SolvedHull, OfCopiesWithOtherParametersLacksNothing) {
   ASSERT_TRUE(hull.boundary);
   EXPECT_TRUE(hull.boundary->unresolved.empty());
   EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{1, 0, 0}));
+}
+
+/// All of it is exact, and what is measured is as accurate as that is stated.
+void expect_exact_measures(const Shape& shape, const char* name) {
+  SCOPED_TRACE(name);
+  const Scene scene = make_scene(shape);
+  const Hull hull = solved_hull_of(scene);
+  ASSERT_TRUE(hull.boundary);
+  for (const HullFace& face : hull.boundary->faces) EXPECT_EQ(face.tolerant, 0);
+  const BoundaryFacts facts = boundary_facts(scene, hull, 300);
+  EXPECT_TRUE(facts.sound()) << facts;
+  EXPECT_LE(measures_of(scene, hull).accuracy, 1e-9);
+}
+
+/// An arc ends along a join where its contacts are so near that what is between them is less than
+/// the resolution deep; another one just beyond the end of a curve, which lets go of it.
+TEST(SolvedHull, ArcsGoOnToTheirFreeEnds) {
+  expect_exact_measures(blob(394), "blob");
+  Random random(5);
+  Shape curve;
+  for (int k = 0; k <= 28; ++k) {
+    const int degree = pick(random, 3, 7);
+    curve = {{}, {as_nurbs(random_curve(random, degree, 1))}, {}};
+  }
+  expect_exact_measures(curve, "curve");
+  expect_exact_measures(mapped(curve, skew_rotation()), "curve, turned");
+}
+
+/// A contact passes a vertex between two rulings with the same elements.
+TEST(SolvedHull, RulingsLieInTheirElements) {
+  Random random(4);
+  Shape shape;
+  for (int k = 0; k < 2; ++k) {
+    shape.surfaces.push_back(as_nurbs(random_patch(random, 2, 3, 3)));
+    shape.curves.push_back(as_nurbs(random_curve(random, 3, 1)));
+    shape.points.push_back(random_point(random));
+  }
+  expect_exact_measures(shape, "patches, curves and points");
+}
+
+/// Parameters about poles are rounding however the parts are ordered.
+TEST(SolvedHull, RulingsAtPolesAreMeasured) {
+  Shape box = filleted_box(1, 2, 3, 0.2);
+  expect_exact_measures(box, "filleted box");
+  std::reverse(box.surfaces.begin(), box.surfaces.end());
+  expect_exact_measures(box, "in the other order");
+  expect_exact_measures(with_exchanged_parameters(box), "with exchanged parameters");
 }
 
 /// What no exact boundary is found of as yet.

@@ -30,10 +30,11 @@ class FreeEndSearch {
   explicit FreeEndSearch(const RulingSearch& search)
       : search_(search), geometry_(search.geometry()) {}
 
-  /// Adds what is left of the arc, if its end is near and told.
+  bool is_near(const Ruling& r) const { return length_of(r) <= merging_distance(geometry_); }
+
+  /// Adds what is left of the arc, if its end is told.
   bool ends(std::vector<ArcPiece>& pieces) const {
     const CommonSupport last(geometry_, pieces.back().rulings.back());
-    if (glm::length(last.d()) > merging_distance(geometry_)) return false;
     CurvePoint point(search_.system(), search_.query(), last);
     if (!point.settle()) return false;
     std::optional<MergedEnd> merged = merged_end(point);
@@ -113,9 +114,12 @@ void drop_close_to_pole(const ContactGeometry& geometry, const Ruling& end_rulin
 
 void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces) {
   const FreeEndSearch ends(search);
-  while (!ends.ends(pieces)) {
-    const std::optional<Ruling> next = ends.shorter(pieces.back().rulings.back());
-    ArcSolver solver(search, pieces.back().rulings.back());
+  for (;;) {
+    const Ruling last = pieces.back().rulings.back();
+    if (ends.is_near(last) && ends.ends(pieces)) return;
+    const std::optional<Ruling> next = ends.shorter(last);
+    if (!next && !ends.is_near(last) && ends.ends(pieces)) return;
+    ArcSolver solver(search, last);
     if (next) {
       solver.go_on(*next);
     } else {

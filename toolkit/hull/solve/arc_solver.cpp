@@ -33,10 +33,7 @@ constexpr int places_on_the_way = 8;
 /// Steps of Newton's method to where a segment passes a side.
 constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
-/// an end and the first exact ruling that the interpolation is made of (RulingsBetween); and how
-/// far they may be apart, in units of the resolution: areas are off by the first power of it, where
-/// heights are by the second.
-constexpr double flat_share = 1.0 / 64;
+/// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
 /// How far before the way or beyond it a change may be by rounding, as a share.
 constexpr double way_slack = 1e-9;
@@ -195,8 +192,8 @@ bool ArcSolver::is_smooth(const Ruling& to) {
 bool ArcSolver::is_interpolated(const RulingsBetween& between) const {
   return std::all_of(beside_ends.begin(), beside_ends.end(), [&](double s) {
     const std::optional<MovingRuling> exact = between(s);
-    return !exact || gap(exact->at.ruling(), between.interpolated(s).at.ruling()) <=
-                         std::max(geometry_.tie(), flat_share * search_.map().resolution);
+    return !exact ||
+           gap(exact->at.ruling(), between.interpolated(s).at.ruling()) <= geometry_.tie();
   });
 }
 

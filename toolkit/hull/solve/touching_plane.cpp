@@ -145,8 +145,11 @@ class LineTurn {
   /// which it leaves. Along a straight border that is where this plane turns least.
   std::optional<TouchingPlane> tangent(TouchingPlane plane, std::size_t k, double distance,
                                        double depth) const {
+    for (ClimbedContact& own : plane.contacts) {
+      own.contact = on_border(own.contact, plane.n, distance, depth);
+    }
     Contact& c = plane.contacts[k].contact;
-    const Contact start = c = on_border(c, plane.n, distance, depth);
+    const Contact start = c;
     const std::optional<dvec3> n = settle(c);
     if (!n || glm::distance(geometry_.point(c), geometry_.point(start)) > distance) {
       return std::nullopt;
