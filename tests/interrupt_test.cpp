@@ -19,7 +19,10 @@
 #include "taut/bounds/scene.h"
 #include "taut/core/error.h"
 #include "taut/hull/convex_hull.h"
+#include "taut/hull/decide/pieces.h"
+#include "taut/hull/decide/top_parts.h"
 #include "taut/hull/measure/boundary_measures.h"
+#include "taut/hull/mesh/contact_faces.h"
 #include "taut/io/document/boundary_document.h"
 #include "taut/io/document/write_document.h"
 #include "taut/subdivision/add_cage.h"
@@ -178,6 +181,29 @@ TEST_P(InterruptHull, OfACage) {
 INSTANTIATE_TEST_SUITE_P(Steps, InterruptHull,
                          testing::Values("cull", "decide", "trace", "stitch", "sample", "mesh"),
                          [](const auto& step) { return std::string(step.param); });
+
+/// What takes long on large models and evaluates nothing.
+TEST(Interrupt, AskedForBefore) {
+  const Scene scene = make_scene(teapot());
+  const Hull hull = convex_hull(scene, {.relative = 1e-2, .progress = {}});
+  const PolygonMesh mesh = polygons(hull.mesh);
+  std::stop_source source;
+  const ContactGeometry geometry(scene, source.get_token());
+  const SupportQuery query(scene, source.get_token());
+  EXPECT_NO_THROW(geometry.check_stop());
+  EXPECT_NO_THROW(query.check_stop());
+  source.request_stop();
+  EXPECT_THROW(geometry.check_stop(), Cancelled);
+  EXPECT_THROW(query.check_stop(), Cancelled);
+  EXPECT_THROW(ContactGeometry(scene, source.get_token()), Cancelled);
+  EXPECT_THROW(MapPieces(geometry, 1e-8), Cancelled);
+  EXPECT_THROW(TopParts{geometry}, Cancelled);
+  EXPECT_THROW(ContactFaces(geometry, *hull.boundary), Cancelled);
+  Progress progress;
+  progress.stop = source.get_token();
+  EXPECT_THROW(Scene(scene.model(), {1, progress}), Cancelled);
+  EXPECT_THROW(make_hull_mesh(mesh.points, mesh.polygons, progress), Cancelled);
+}
 
 /// The teapot's hull, whose boundary is complete.
 struct Teapot {

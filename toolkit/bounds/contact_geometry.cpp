@@ -144,6 +144,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, Stop stop, double same)
     own.ruled_sides.resize(part.pieces().size());
     own.ends.resize(part.vertices().size());
     for (std::size_t i = 0; i < part.patches().size(); ++i) {
+      check_stop();
       const Patch& patch = part.patches()[i];
       const BezierPatch& b = patch.bezier;
       own.patches.push_back({b.degree_u, b.degree_v, moved(b.points, center, scale)});
@@ -156,6 +157,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, Stop stop, double same)
       }
     }
     for (std::size_t i = 0; i < part.pieces().size(); ++i) {
+      check_stop();
       const EdgePiece& piece = part.pieces()[i];
       own.pieces.push_back({moved(piece.bezier.points, center, scale)});
       for (int end = 0; end < 2; ++end) {
@@ -196,6 +198,7 @@ void ContactGeometry::find_straight(const Part& part, double same, PartElements&
   std::vector<bool> segments;
   segments.reserve(own.pieces.size());
   for (const BezierCurve& piece : own.pieces) {
+    check_stop();
     segments.push_back(is_on_segment(piece, euclidean(piece.points.front()),
                                      euclidean(piece.points.back()),
                                      std::max({coordinate_rounding, rounding_, same})));
@@ -220,7 +223,10 @@ void ContactGeometry::find_repeated_elements(double same) {
   for (const int i : scene_.distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     const auto add = [&](SourceKind kind, std::size_t count) {
-      for (int k = 0; k < int(count); ++k) all.push_back(placed({i, kind, k, 0, 0}));
+      for (int k = 0; k < int(count); ++k) {
+        check_stop();
+        all.push_back(placed({i, kind, k, 0, 0}));
+      }
     };
     add(SourceKind::face, part.patches().size());
     add(SourceKind::edge, part.pieces().size());
@@ -247,6 +253,7 @@ void ContactGeometry::place_points(const std::vector<PlacedElement>& all) {
   std::stable_sort(points.begin(), points.end(),
                    [](const Lone& a, const Lone& b) { return a.x.x < b.x.x; });
   for (const PlacedElement& e : all) {
+    check_stop();
     const Contact c{e.instance, e.kind, e.element, 0, 0};
     if (e.kind != SourceKind::edge || is_repeated(c)) continue;
     Box box;

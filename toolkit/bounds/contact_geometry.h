@@ -64,6 +64,8 @@ class ContactGeometry {
   const Part& part(const Contact& c) const;
   /// Jets asked for so far, by all threads: what work on contacts costs.
   long evaluations() const { return evaluations_; }
+  /// What works long on contacts and evaluates none asks now and then. @throws Cancelled
+  void check_stop() const { stop_.check(); }
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little @throws Cancelled, as the
   /// next two do

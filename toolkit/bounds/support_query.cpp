@@ -49,6 +49,7 @@ class SupportQuery::Search {
         directions_(scene.instances.size()) {}
 
   Support run(const dvec3& n, const Contact& hint);
+  void check_stop() const { stop_.check(); }
 
   long queries = 0;
   long newton_iterations = 0;
@@ -554,6 +555,8 @@ SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;
 Support SupportQuery::operator()(const dvec3& n, const Contact& hint) {
   return search_->run(n, hint);
 }
+
+void SupportQuery::check_stop() const { search_->check_stop(); }
 
 long SupportQuery::queries() const { return search_->queries; }
 long SupportQuery::newton_iterations() const { return search_->newton_iterations; }

@@ -49,6 +49,9 @@ class SupportQuery {
   /// @pre |n| = 1 within rounding @throws Cancelled
   Support operator()(const dvec3& n, const Contact& hint = {});
 
+  /// What works long on the same and asks for no support asks now and then. @throws Cancelled
+  void check_stop() const;
+
   /// Since construction.
   long queries() const;
   long newton_iterations() const;

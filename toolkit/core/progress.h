@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string_view>
 
@@ -29,6 +30,10 @@ struct Progress {
   }
   /// @throws Cancelled if stopping was asked for, LimitMet if a limit is met
   void check() const { stop.check(); }
+  /// The same at a few of the steps, by number, of what takes nanoseconds each.
+  void check_rarely(std::size_t step) const {
+    if (step % 4096 == 0) check();
+  }
 };
 
 }  // namespace taut

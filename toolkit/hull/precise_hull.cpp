@@ -107,7 +107,8 @@ Hull traced_hull(const Scene& scene, const ContactGeometry& geometry, const Cull
     for (const Sample& s : uncovered) {
       boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
     }
-    return unless_failed(std::move(hull), nullptr, limit);
+    throw_if_failed(hull, nullptr, limit);
+    return hull;
   }
 }
 
@@ -184,7 +185,9 @@ Hull precise_hull(const Scene& scene, const HullOptions& asked) {
     return hull;
   };
   try {
-    return with_statistics(exact_hull(scene, options, statistics));
+    Hull hull = exact_hull(scene, options, statistics);
+    hull.statistics += statistics;
+    return hull;
   } catch (const HullNotConverged& failure) {
     throw HullNotConverged(failure.what(), with_statistics(*failure.best));
   } catch (const HullLimitExceeded& met) {

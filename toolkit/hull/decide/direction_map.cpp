@@ -174,6 +174,7 @@ class MapMaker {
     bool any = false;
     const CellTree tree(map_.cells);
     for (const auto& [k, node] : nodes_) {
+      options_.stop.check();
       for (int number = 0; number < 4; ++number) {
         CellTree::CellSide side;
         if (!tree.side(k, number, side)) continue;

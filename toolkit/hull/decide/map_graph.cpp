@@ -38,6 +38,7 @@ class Weaving {
  public:
   Weaving(const DirectionMap& map, SupportQuery& query)
       : map_(map),
+        query_(query),
         tree_(map.cells),
         contacts_(map, query),
         clusters_(map.cells.size()),
@@ -65,6 +66,7 @@ class Weaving {
   void find_sides() {
     std::vector<CellTree::CellSide> sides;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
+      query_.check_stop();
       for (int number = 0; number < 4; ++number) {
         CellTree::CellSide found;
         if (tree_.side(k, number, found)) sides.push_back(found);
@@ -79,6 +81,7 @@ class Weaving {
   void tell_in_line(const std::vector<CellTree::CellSide>& sides) {
     std::set<int> differ;
     for (const CellTree::CellSide& s : sides) {
+      query_.check_stop();
       for (const auto& [own, other] : {std::pair(s.finer, s.other), std::pair(s.other, s.finer)}) {
         if (!contacts_.has_line(own) || contacts_.has_line(other)) continue;
         if (!contacts_.is_closed(other) || !has_points_between(own)) continue;
@@ -176,6 +179,7 @@ class Weaving {
       if (cell(k).has_plane() && is_of_node(k)) others.push_back(k);
     }
     for (const int facet : facets) {
+      query_.check_stop();
       for (const int other : others) {
         if (cell(facet).shares_plane(cell(other), map_.resolution)) clusters_.unite(facet, other);
       }
@@ -414,6 +418,7 @@ class Weaving {
   }
 
   const DirectionMap& map_;
+  const SupportQuery& query_;
   CellTree tree_;
   CellContacts contacts_;
   DisjointSets clusters_;

@@ -47,6 +47,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
       first_[std::size_t(i)][std::size_t(kind)] = int(index_.size());
       index_.resize(index_.size() + counts[std::size_t(kind)], -1);
       for (int k = 0; k < int(counts[std::size_t(kind)]); ++k) {
+        geometry.check_stop();
         const Contact c{i, kind, k, 0, 0};
         if (geometry.is_repeated(c) || joins_.passes(c)) continue;
         const std::size_t before = elements_.size();
@@ -153,6 +154,7 @@ void MapPieces::find_beside() {
 
 void MapPieces::find_beyond() {
   for (MapElement& element : elements_) {
+    geometry_.check_stop();
     const Contact& c = element.contact;
     for (const Side side : all_sides) {
       if (c.kind != SourceKind::face) break;
@@ -223,6 +225,7 @@ std::vector<dvec3> MapPieces::control_points() const {
   std::vector<dvec3> result;
   for (const int i : content.distinct_instances) {
     for (const SceneElement& e : content.part_of(i).elements) {
+      geometry_.check_stop();
       for (const dvec4& p : placed_net(content, i, e)) result.push_back(euclidean(p));
     }
   }

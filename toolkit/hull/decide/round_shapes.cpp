@@ -202,6 +202,7 @@ std::vector<std::vector<int>> closed_blocks(const MapPieces& pieces) {
     if (to >= 0) sets.unite(from, to);
   };
   for (int k = 0; k < int(count); ++k) {
+    geometry.check_stop();
     const MapElement& element = pieces.element(k);
     const Contact& c = element.contact;
     for (const Side side : all_sides) {
@@ -244,6 +245,7 @@ std::vector<RoundShape> round_shapes(const MapPieces& pieces, double distance) {
     const SourceKind kind = pieces.element(block.front()).contact.kind;
     std::vector<dvec3> points;
     for (const int element : block) {
+      pieces.geometry().check_stop();
       const std::vector<dvec3> own = samples(pieces, element);
       points.insert(points.end(), own.begin(), own.end());
     }
@@ -251,6 +253,7 @@ std::vector<RoundShape> round_shapes(const MapPieces& pieces, double distance) {
     if (!shape) continue;
     shape->elements = std::move(block);
     for (const int element : shape->elements) {
+      pieces.geometry().check_stop();
       const RoundShape::Distances off =
           shape->distances(net_of(pieces, element).shape, points_of(pieces, element));
       shape->inside = std::max(shape->inside, off.inwards + rounding);

@@ -94,6 +94,7 @@ TopParts::TopParts(const ContactGeometry& geometry) : geometry_(geometry) {
   const SceneContent& content = geometry.scene().content();
   for (const int i : content.distinct_instances) {
     for (const SceneElement& e : content.part_of(i).elements) {
+      geometry.check_stop();
       const Contact own = {i, e.kind, e.index, 0, 0};
       if (e.kind == SourceKind::edge ? geometry.is_straight(own) : geometry.is_ruled(own)) continue;
       index_.emplace(place(own), int(parts_.size()));
@@ -140,6 +141,7 @@ void TopParts::find_bodies() {
   DisjointSets sets(parts_.size());
   std::map<std::array<int, 2>, int> at_vertices;
   for (const auto& [own, part] : index_) {
+    geometry_.check_stop();
     const auto unite = [&, &first = part](const Place& other) {
       const auto found = index_.find(other);
       if (found != index_.end()) sets.unite(first, found->second);

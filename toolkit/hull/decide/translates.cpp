@@ -202,12 +202,14 @@ std::vector<bool> covered(const MapPieces& pieces, const Group& group, double bu
   const std::size_t count = group.places.size();
   std::vector<bool> counts(count, true);
   for (std::size_t k = count; k-- > 0;) {
+    pieces.geometry().check_stop();
     counts[k] = !mean_near(group.places, counts, k, budget);
   }
   // One after the other may have gone too far.
   std::vector<bool> result(count);
   for (std::size_t k = 0; k < count; ++k) {
     if (counts[k]) continue;
+    pieces.geometry().check_stop();
     const std::optional<Mean> mean = mean_near(group.places, counts, k, budget);
     result[k] = mean && distance(pieces, group, k, *mean) <= budget;
   }
@@ -258,6 +260,7 @@ class Search {
     }
     for (int k = 0; k < int(result_.size()); ++k) {
       if (counts_round[std::size_t(k)]) continue;
+      pieces_.geometry().check_stop();
       const MapElement& element = pieces_.element(k);
       const NetShape net = element.root->exact.shape;
       add({int(element.contact.kind), net.p, net.q}, {{k}, shape_of(element)});
@@ -299,6 +302,7 @@ class Search {
     const std::vector<bool> goes = covered(pieces_, group, budget_);
     const bool stands = std::count(goes.begin(), goes.end(), true) > 0;
     for (std::size_t k = 0; k < goes.size(); ++k) {
+      pieces_.geometry().check_stop();
       const Likeness own{
           goes[k],
           stands && !goes[k],
@@ -318,6 +322,7 @@ class Search {
       return rounds_[std::size_t(a)].greatest_radius() > rounds_[std::size_t(b)].greatest_radius();
     });
     for (const int number : order) {
+      pieces_.geometry().check_stop();
       const RoundShape& round = rounds_[std::size_t(number)];
       if (is_covered(round)) continue;
       for (int k = 0; k < int(result_.size()); ++k) {
@@ -352,6 +357,7 @@ class Search {
     std::vector<bool> carries(result_.size(), false);
     for (std::size_t i = 0; i < left.size(); ++i) {
       for (std::size_t j = i + 1; j < left.size(); ++j) {
+        pieces_.geometry().check_stop();
         const std::array<const RoundShape*, 2> two = {left[i], left[j]};
         if (two[0]->kind != two[1]->kind || is_covered(*two[0])) continue;
         for (int k = 0; k < int(result_.size()) && !is_covered(*two[1]); ++k) {

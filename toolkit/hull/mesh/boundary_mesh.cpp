@@ -115,6 +115,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   polytope.statistics.support_queries += query.queries();
   polytope.statistics.newton_iterations += query.newton_iterations();
   for (std::size_t k = start.faces.size(); k < polytope.samples.size(); ++k) {
+    options.progress.check();
     Sample& sample = polytope.samples[k];
     sample.contact = geometry.canonical(sample.contact);
     start.faces.push_back(faces.touched(sample.contact));
@@ -137,7 +138,8 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   Hull hull = polytope_hull(scene, options, polytope, {labels, int(boundary->faces.size())});
   hull.boundary = std::move(boundary);
   hull.statistics.seconds_mesh = time.seconds();
-  return unless_failed(std::move(hull), failure, limit);
+  throw_if_failed(hull, failure, limit);
+  return hull;
 }
 
 }  // namespace taut

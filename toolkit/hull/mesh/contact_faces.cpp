@@ -158,6 +158,7 @@ void ContactFaces::add_to_outline(const PatchRegion& region, const TrimStretch& 
 void ContactFaces::add_regions() {
   for (int f = 0; f < int(boundary_.faces.size()); ++f) {
     for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
+      geometry_.check_stop();
       Region own = {region.instance, region.patch, f, {}};
       for (const std::vector<TrimStretch>& loop : region.loops) {
         own.outline.emplace_back();

@@ -9,7 +9,8 @@ namespace taut {
 namespace {
 
 /// Sides of the polygons are numbered through: per side, that along which the neighbour lies.
-std::vector<int> opposite_sides(const std::vector<std::vector<int>>& polygons) {
+std::vector<int> opposite_sides(const std::vector<std::vector<int>>& polygons,
+                                const Progress& progress) {
   struct Side {
     int low, high, number;
     bool rises;
@@ -22,7 +23,9 @@ std::vector<int> opposite_sides(const std::vector<std::vector<int>>& polygons) {
       sides.push_back({std::min(from, to), std::max(from, to), int(sides.size()), from < to});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::size_t compared = 0;
+  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+    progress.check_rarely(++compared);
     return std::tie(a.low, a.high, a.rises) < std::tie(b.low, b.high, b.rises);
   });
   std::vector<int> opposite(sides.size());
@@ -51,7 +54,7 @@ HullMesh make_hull_mesh(const std::vector<dvec3>& vertices,
   for (const dvec3& x : vertices) mesh.add_vertex({x.x, x.y, x.z});
   // OpenMesh's add_face() looks for every edge among all of its corner's: quadratic about the tip
   // of a cone.
-  const std::vector<int> opposite = opposite_sides(polygons);
+  const std::vector<int> opposite = opposite_sides(polygons, progress);
   std::vector<OpenMesh::HalfedgeHandle> side;
   side.reserve(opposite.size());
   for (const std::vector<int>& polygon : polygons) {

@@ -1,11 +1,27 @@
 #include "taut/hull/sample/facetted_boundary.h"
 
 #include <algorithm>
-#include <map>
+#include <cassert>
+#include <tuple>
 #include <utility>
 
 namespace taut {
 namespace {
+
+/// A side of a polygon, with the polygon to its left; `falls`: from the higher to the lower end.
+struct PolygonSide {
+  int low, high;
+  bool falls;
+  int left;
+};
+
+void sort(std::vector<PolygonSide>& sides, const Progress& progress) {
+  std::size_t compared = 0;
+  std::sort(sides.begin(), sides.end(), [&](const PolygonSide& a, const PolygonSide& b) {
+    progress.check_rarely(++compared);
+    return std::tie(a.low, a.high, a.falls) < std::tie(b.low, b.high, b.falls);
+  });
+}
 
 /// A normal of a polygon's plane, by Newell's method. @pre it has an area
 dvec3 normal_of(const std::vector<dvec3>& points) {
@@ -25,14 +41,15 @@ HullBoundary facetted_boundary(const Scene& scene, SupportQuery& query,
   const auto point = [&](int p) {
     return boundary.frame.to_frame(polytope.hull.point(p) / boundary.frame.scale);
   };
-  std::map<std::pair<int, int>, int> left_of;  // by the ends of an edge
+  std::vector<PolygonSide> sides;
   for (const std::vector<int>& loop : polytope.hull.merged_polygons(progress).loops) {
     progress.check();
     HullFace facet;
     for (std::size_t k = 0; k < loop.size(); ++k) {
       facet.contacts.push_back(polytope.samples[std::size_t(loop[k])].contact);
       facet.points.push_back(point(loop[k]));
-      left_of[{loop[k], loop[(k + 1) % loop.size()]}] = int(boundary.faces.size());
+      const auto [low, high] = std::minmax(loop[k], loop[(k + 1) % loop.size()]);
+      sides.push_back({low, high, loop[k] == high, int(boundary.faces.size())});
     }
     facet.n = normal_of(facet.points);
     const Support top = query(facet.n, facet.contacts[0]);
@@ -45,11 +62,15 @@ HullBoundary facetted_boundary(const Scene& scene, SupportQuery& query,
     facet.tolerant = std::max(0.0, top.h_bound - lowest);
     boundary.faces.push_back(std::move(facet));
   }
-  for (const auto& [ends, left] : left_of) {
-    if (ends.second < ends.first) continue;
+  sort(sides, progress);
+  for (std::size_t k = 0; k + 1 < sides.size(); k += 2) {
+    progress.check();
+    const PolygonSide& rising = sides[k];
+    assert(rising.low == sides[k + 1].low && rising.high == sides[k + 1].high && !rising.falls &&
+           sides[k + 1].falls);
     HullCurve curve;
-    curve.faces = {left, left_of.at({ends.second, ends.first})};
-    curve.points = {point(ends.first), point(ends.second)};
+    curve.faces = {rising.left, sides[k + 1].left};
+    curve.points = {point(rising.low), point(rising.high)};
     boundary.curves.push_back(std::move(curve));
   }
   return boundary;

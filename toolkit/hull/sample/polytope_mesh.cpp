@@ -189,7 +189,7 @@ class GuessedLabels {
 
 /// Numbers the hull faces that are not known, from `count` on: connected mesh faces of one kind,
 /// patches of one source also; every facet is one of its own. Marks the edges between them.
-void number_hull_faces(HullMesh& mesh, int count) {
+void number_hull_faces(HullMesh& mesh, int count, const Progress& progress) {
   const auto joined = [&](auto a, auto b) {
     const auto& x = mesh.data(a);
     const auto& y = mesh.data(b);
@@ -198,10 +198,12 @@ void number_hull_faces(HullMesh& mesh, int count) {
   };
   std::vector<OpenMesh::FaceHandle> stack;
   for (const auto start : mesh.faces()) {
+    progress.check();
     if (mesh.data(start).hull_face >= 0) continue;
     mesh.data(start).hull_face = count;
     stack.assign(1, start);
     while (!stack.empty()) {
+      progress.check();
       const auto f = stack.back();
       stack.pop_back();
       for (const auto g : mesh.ff_range(f)) {
@@ -213,6 +215,7 @@ void number_hull_faces(HullMesh& mesh, int count) {
     ++count;
   }
   for (const auto e : mesh.edges()) {
+    progress.check();
     const auto f = mesh.face_handle(mesh.halfedge_handle(e, 0));
     const auto g = mesh.face_handle(mesh.halfedge_handle(e, 1));
     mesh.data(e).feature = mesh.data(f).hull_face != mesh.data(g).hull_face;
@@ -241,7 +244,7 @@ HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
     data.source = label->source;
     data.hull_face = label->hull_face;
   }
-  number_hull_faces(mesh, known.count);
+  number_hull_faces(mesh, known.count, progress);
   return mesh;
 }
 
@@ -277,13 +280,13 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   hull.resolution = resolution_for(options, scene.model(), scene.diagonal());
   hull.statistics = polytope.statistics;
   hull.statistics.seconds_mesh = time.seconds();
-  return unless_failed(std::move(hull), polytope.failure, polytope.limit);
+  throw_if_failed(hull, polytope.failure, polytope.limit);
+  return hull;
 }
 
-Hull unless_failed(Hull hull, const char* failure, const std::optional<std::string>& limit) {
+void throw_if_failed(Hull& hull, const char* failure, const std::optional<std::string>& limit) {
   if (limit) throw HullLimitExceeded(*limit, std::move(hull));
   if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
-  return hull;
 }
 
 }  // namespace taut

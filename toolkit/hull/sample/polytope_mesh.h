@@ -47,7 +47,7 @@ struct KnownLabels {
 Hull polytope_hull(const Scene& scene, const HullOptions& options, const SampledPolytope& polytope,
                    const KnownLabels& known = {});
 
-/// The hull itself. @throws HullNotConverged with it for a failure, HullLimitExceeded for a limit
-Hull unless_failed(Hull hull, const char* failure, const std::optional<std::string>& limit);
+/// @throws HullNotConverged with the hull for a failure, HullLimitExceeded for a limit
+void throw_if_failed(Hull& hull, const char* failure, const std::optional<std::string>& limit);
 
 }  // namespace taut

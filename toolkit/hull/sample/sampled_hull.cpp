@@ -56,7 +56,8 @@ Hull facetted_hull(const Scene& scene, const HullOptions& asked) {
     hull.mesh.data(f).hull_face = f.idx();
   }
   for (const auto e : hull.mesh.edges()) hull.mesh.data(e).feature = true;
-  return unless_failed(std::move(hull), failure, limit);
+  throw_if_failed(hull, failure, limit);
+  return hull;
 }
 
 }  // namespace taut

@@ -134,6 +134,7 @@ bool Sampler::take_slivers_seriously() {
   slivers_count_ = true;
   bool changes = false;
   for (std::size_t f = 0; f < planes_.size(); ++f) {
+    options_.progress.check_rarely(f);
     if (!hull_.facets()[f].alive || planes_[f].n == facing(int(f)).n) continue;
     planes_[f].known = false;
     changes = true;
@@ -153,6 +154,7 @@ void Sampler::find_planes() {
   planes_.resize(hull_.facets().size());
   std::vector<int> wanted;
   for (std::size_t f = 0; f < planes_.size(); ++f) {
+    options_.progress.check_rarely(f);
     if (!hull_.facets()[f].alive) continue;
     if (!planes_[f].known || has_lost_facet(planes_[f])) wanted.push_back(int(f));
   }
@@ -193,7 +195,9 @@ void Sampler::find_planes() {
 void Sampler::bound_vertices() {
   const std::size_t count = hull_.points().size();
   std::vector<int> first(count + 1, 0);
-  for (const PointHull::Facet& facet : hull_.facets()) {
+  for (std::size_t f = 0; f < hull_.facets().size(); ++f) {
+    options_.progress.check_rarely(f);
+    const PointHull::Facet& facet = hull_.facets()[f];
     if (!facet.alive) continue;
     for (const int v : facet.vertex) ++first[std::size_t(v) + 1];
   }
@@ -203,6 +207,7 @@ void Sampler::bound_vertices() {
   vertex_gaps_.assign(count, 0);
   vertex_depths_.assign(count, 1);
   for (std::size_t f = 0; f < planes_.size(); ++f) {
+    options_.progress.check_rarely(f);
     if (!hull_.facets()[f].alive) continue;
     for (const int v : hull_.facets()[f].vertex) {
       normals[std::size_t(next[std::size_t(v)]++)] = planes_[f].n;
@@ -212,6 +217,7 @@ void Sampler::bound_vertices() {
   }
   bound_ = 0;
   for (std::size_t v = 0; v < count; ++v) {
+    options_.progress.check_rarely(v);
     const std::span<const dvec3> own(normals.data() + first[v], normals.data() + first[v + 1]);
     if (own.empty()) continue;  // no vertex of the boundary any more
     vertex_depths_[v] = cone_depth(own);
@@ -281,6 +287,7 @@ bool Sampler::refine() {
   };
   std::vector<Candidate> candidates;
   for (std::size_t f = 0; f < planes_.size(); ++f) {
+    options_.progress.check_rarely(f);
     const PointHull::Facet& facet = hull_.facets()[f];
     if (!facet.alive) continue;
     double largest = 0;
@@ -292,7 +299,9 @@ bool Sampler::refine() {
     }
     if (wanted) candidates.push_back({largest, int(f), planes_[f].n});
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+  std::size_t compared = 0;
+  std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    options_.progress.check_rarely(++compared);
     return a.gap != b.gap ? a.gap > b.gap : a.facet < b.facet;
   });
   bool inserted = false;

@@ -99,6 +99,7 @@ void Stitcher::make_patches() {
   const int count = int(stretches_.regions().size());
   DisjointSets sets(stretches_.regions().size());
   for (int k = 0; k < stretches_.count(); ++k) {
+    geometry_.check_stop();
     if (stretches_.twin(k) < 0) continue;
     const int a = stretches_.region_of(k);
     const int b = stretches_.region_of(stretches_.twin(k));
@@ -278,6 +279,7 @@ void Stitcher::add_chains(HullCurveKind kind, const std::vector<CurveElement>& e
 void Stitcher::make_joins() {
   std::vector<CurveElement> elements;
   for (int k = 0; k < stretches_.count(); ++k) {
+    geometry_.check_stop();
     const int twin = stretches_.twin(k);
     if (twin < 0) continue;
     const int source = stretches_.source_of(stretches_.region_of(k));
@@ -445,6 +447,7 @@ void Stitcher::make_loops() {
     return std::pair(curve, c.faces[0] == face_at(stretch) ? 1 : -1);
   };
   for (int start = 0; start < int(done.size()); ++start) {
+    geometry_.check_stop();
     if (done[std::size_t(start)] || curve_of(start) < 0) continue;
     auto [outline, closes] = outline_from(start);
     for (const int stretch : outline) done[std::size_t(stretch)] = true;

@@ -19,6 +19,7 @@ TrimStretches::TrimStretches(const ContactGeometry& geometry, const SeparatingGr
     : geometry_(geometry), regions_(std::move(regions)) {
   const EdgeIncidence incidence(geometry, graph, regions_);
   for (TrimRegion& r : regions_) {
+    geometry.check_stop();
     for (auto& loop : r.loops) loop = split(incidence, r, loop);
   }
   number_all();
@@ -98,6 +99,7 @@ std::vector<TrimStretch> TrimStretches::split(const EdgeIncidence& incidence,
 
 void TrimStretches::number_all() {
   for (int r = 0; r < int(regions_.size()); ++r) {
+    geometry_.check_stop();
     const auto& loops = regions_[std::size_t(r)].loops;
     for (std::size_t l = 0; l < loops.size(); ++l) {
       for (std::size_t k = 0; k < loops[l].size(); ++k) {
@@ -115,6 +117,7 @@ void TrimStretches::number_all() {
 void TrimStretches::match_joins(std::vector<Unresolved>& unresolved) {
   std::map<std::tuple<int, int, int>, std::vector<int>> on;  // by instance, patch and side
   for (int k = 0; k < count(); ++k) {
+    geometry_.check_stop();
     const TrimStretch& s = (*this)[k];
     const TrimRegion& r = region_at(k);
     const bool on_border = s.arc < 0;
@@ -123,6 +126,7 @@ void TrimStretches::match_joins(std::vector<Unresolved>& unresolved) {
     }
   }
   for (const auto& [key, own] : on) {
+    geometry_.check_stop();
     for (const int k : own) {
       if (twin(k) >= 0) continue;
       const TrimStretch& s = (*this)[k];
