@@ -302,12 +302,13 @@ void find_seams(const Part& part, ScenePart& result) {
   });
 }
 
-ScenePart make_part(const Part& part, double scale, int threads) {
+ScenePart make_part(const Part& part, double scale, const SceneOptions& options) {
   Candidates found = candidates(part);
   ScenePart result;
   result.center = part.control_box().empty() ? dvec3(0.0) : part.control_box().center();
   std::vector<std::optional<SceneElement>> built(found.elements.size());
-  parallel_for(built.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for(built.size(), 8, options.threads, [&](std::size_t begin, std::size_t end) {
+    options.progress.check();
     for (std::size_t k = begin; k < end; ++k) {
       for (dvec4& p : found.patches[k].points) p = moved(p, result.center, scale);
       const auto [kind, index] = found.elements[k];
@@ -324,6 +325,7 @@ ScenePart make_part(const Part& part, double scale, int threads) {
   result.element_of_piece.assign(part.pieces().size(), -1);
   StartCells starts;
   for (std::size_t k = 0; k < built.size(); ++k) {
+    options.progress.check();
     const auto [kind, index] = found.elements[k];
     auto& table = kind == SourceKind::face ? result.element_of_patch : result.element_of_piece;
     table[std::size_t(index)] = int(k);
@@ -492,7 +494,7 @@ Scene::Scene(Model model, const SceneOptions& options)
       repeated.repeats = true;
       continue;
     }
-    c.parts.push_back(make_part(part, c.frame.scale, options.threads));
+    c.parts.push_back(make_part(part, c.frame.scale, options));
     for (const SceneElement& e : c.parts.back().elements) {
       c.rounding = std::max(c.rounding, value_rounding(e));
     }

@@ -275,22 +275,21 @@ void Refinement::emit(std::size_t cell, bool may_touch) {
 
 /// The corners of regular cells are points of the surface.
 void Refinement::take_regular() {
-  std::vector<dvec3> known;
   for (Surroundings& s : surroundings_) {
     s.emplace_back();
     if (s.size() > levels_around) s.erase(s.begin());
   }
   for (std::size_t c = 0; c < patches_.size(); ++c) {
     if (patches_[c].kind != CellPatch::Kind::regular) continue;
+    options_.progress.check();
     const std::vector<dvec3> points = corners(patches_[c]);
-    known.insert(known.end(), points.begin(), points.end());
+    touch_.add(points);
     const int region = level_.cells()[c].region;
     if (region >= 0) {
       auto& own = surroundings_[to_size(region)].back();
       own.insert(own.end(), points.begin(), points.end());
     }
   }
-  touch_.add(known);
 }
 
 void Refinement::count_irregular() {
@@ -305,6 +304,7 @@ void Refinement::sort_out() {
   for (std::size_t c = 0; c < patches_.size(); ++c) {
     const CellPatch& patch = patches_[c];
     if (patch.kind == CellPatch::Kind::regular) continue;
+    options_.progress.check();
     if (patch.kind == CellPatch::Kind::cap) {
       std::vector<dvec3> points = level_.enclosure({&c, 1});
       points.insert(points.end(), patch.points.begin(), patch.points.end());

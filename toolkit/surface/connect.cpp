@@ -72,7 +72,7 @@ class Connector {
         points_(4 * patches.size() + 2 * pieces.size()) {}
 
   void run() {
-    joins_ = match_sides(patches_, sides_, box_, tolerance_);
+    joins_ = match_sides(patches_, sides_, box_, tolerance_, progress_);
     smooth_.reserve(joins_.size());
     for (const Join& join : joins_) {
       progress_.check();

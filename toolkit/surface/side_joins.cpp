@@ -77,11 +77,12 @@ std::vector<SideCurve> side_curves(const std::vector<Patch>& patches, double tol
 }
 
 std::vector<Join> match_sides(const std::vector<Patch>& patches,
-                              const std::vector<SideCurve>& sides, const Box& box,
-                              double tolerance) {
+                              const std::vector<SideCurve>& sides, const Box& box, double tolerance,
+                              const Progress& progress) {
   std::vector<Join> joins;
   PointGrid places(box, 2 * tolerance);
   for (int side = 0; side < to_int(sides.size()); ++side) {
+    progress.check();
     const SideCurve& s = sides[to_size(side)];
     if (s.collapsed || patches[to_size(side / 4)].repeats >= 0) continue;
     const dvec3 place = place_of(s.curve);

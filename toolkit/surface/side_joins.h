@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "taut/core/progress.h"
 #include "taut/surface/model.h"
 
 namespace taut {
@@ -33,10 +34,10 @@ std::vector<SideCurve> side_curves(const std::vector<Patch>& patches, double tol
 ///
 /// Two sides meet if their curves agree, parameter by parameter in either direction, within the
 /// tolerance. Takes time linear in the number of sides, unless very many crowd in one place.
-/// @pre the box contains the patches
+/// @pre the box contains the patches @throws Cancelled
 std::vector<Join> match_sides(const std::vector<Patch>& patches,
-                              const std::vector<SideCurve>& sides, const Box& box,
-                              double tolerance);
+                              const std::vector<SideCurve>& sides, const Box& box, double tolerance,
+                              const Progress& progress);
 
 /// How far joined sides are apart at worst, and how large sides are that collapse.
 double largest_gap(const std::vector<SideCurve>& sides, const std::vector<Join>& joins);

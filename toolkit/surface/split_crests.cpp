@@ -154,7 +154,7 @@ std::vector<Cut> RowSplitter::find_crests() const {
 
 void RowSplitter::find_joins() {
   sides_ = side_curves(patches_, tolerance_);
-  joins_ = match_sides(patches_, sides_, box_, tolerance_);
+  joins_ = match_sides(patches_, sides_, box_, tolerance_, progress_);
   join_of_.assign(sides_.size(), -1);
   for (std::size_t j = 0; j < joins_.size(); ++j) {
     for (const Use& use : joins_[j]) join_of_[to_size(use.side)] = to_int(j);
