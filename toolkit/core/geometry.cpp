@@ -33,6 +33,14 @@ dvec3 unit(const dvec3& v) {
   return s / glm::length(s);
 }
 
+dvec3 polygon_normal(const std::vector<dvec3>& points) {
+  dvec3 sum(0.0);
+  for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+    sum += glm::cross(points[k] - points[0], points[k + 1] - points[0]);
+  }
+  return unit(sum);
+}
+
 std::array<dvec3, 2> tangent_frame(const dvec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);

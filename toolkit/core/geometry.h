@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <limits>
+#include <vector>
 
 namespace taut {
 
@@ -60,6 +61,10 @@ double diagonal(const Box& box);
 /// The vector scaled to length one, correct also where its square would over- or underflow.
 /// The zero vector stays zero.
 dvec3 unit(const dvec3& v);
+
+/// The unit normal of the mean plane of a polygon, from whose tip it is counter-clockwise (Newell's
+/// method); zero where it has no area.
+dvec3 polygon_normal(const std::vector<dvec3>& points);
 
 /// The vector, or its opposite where the vector points against `side`.
 inline dvec3 aligned(const dvec3& v, const dvec3& side) { return glm::dot(v, side) < 0 ? -v : v; }

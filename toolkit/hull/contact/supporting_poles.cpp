@@ -3,18 +3,6 @@
 #include "taut/bounds/poles.h"
 
 namespace taut {
-namespace {
-
-/// Normal of the polygon's mean plane (Newell's).
-dvec3 outline_normal(const std::vector<dvec3>& points) {
-  dvec3 sum(0.0);
-  for (std::size_t k = 1; k + 1 < points.size(); ++k) {
-    sum += glm::cross(points[k] - points[0], points[k + 1] - points[0]);
-  }
-  return unit(sum);
-}
-
-}  // namespace
 
 std::vector<SupportingPole> supporting_poles(const ContactGeometry& geometry, SupportQuery& query) {
   std::vector<SupportingPole> result;
@@ -55,7 +43,7 @@ std::optional<Landmark> facet_at_pole(const ContactGeometry& geometry, SupportQu
   std::optional<FacetContacts> f = facet(pole.n, pole.turn);
   if (!f || pole.turn < geometry.tie())
     return f ? std::optional(Landmark{pole.n, *f}) : std::nullopt;
-  dvec3 normal = outline_normal(f->points);
+  dvec3 normal = polygon_normal(f->points);
   if (glm::dot(normal, pole.n) < 0) normal = -normal;
   f = facet(normal, 0);
   return f ? std::optional(Landmark{normal, *f}) : std::nullopt;

@@ -70,12 +70,7 @@ class PolyhedralBoundary {
         facet.points.push_back(point(v));
         h = next_side(h);
       } while (h != start);
-      dvec3 normal(0.0);
-      for (std::size_t k = 1; k + 1 < facet.points.size(); ++k) {
-        normal +=
-            glm::cross(facet.points[k] - facet.points[0], facet.points[k + 1] - facet.points[0]);
-      }
-      facet.n = unit(normal);
+      facet.n = polygon_normal(facet.points);
       facet.offset = glm::dot(facet.points[0], facet.n);
       for (const dvec3& p : facet.points)
         facet.offset = std::max(facet.offset, glm::dot(p, facet.n));

@@ -23,15 +23,6 @@ void sort(std::vector<PolygonSide>& sides, const Progress& progress) {
   });
 }
 
-/// A normal of a polygon's plane, by Newell's method. @pre it has an area
-dvec3 normal_of(const std::vector<dvec3>& points) {
-  dvec3 sum(0.0);
-  for (std::size_t k = 1; k + 1 < points.size(); ++k) {
-    sum += glm::cross(points[k] - points[0], points[k + 1] - points[0]);
-  }
-  return unit(sum);
-}
-
 }  // namespace
 
 HullBoundary facetted_boundary(const Scene& scene, SupportQuery& query,
@@ -51,7 +42,7 @@ HullBoundary facetted_boundary(const Scene& scene, SupportQuery& query,
       const auto [low, high] = std::minmax(loop[k], loop[(k + 1) % loop.size()]);
       sides.push_back({low, high, loop[k] == high, int(boundary.faces.size())});
     }
-    facet.n = normal_of(facet.points);
+    facet.n = polygon_normal(facet.points);
     const Support top = query(facet.n, facet.contacts[0]);
     facet.offset = -infinity;
     double lowest = infinity;
