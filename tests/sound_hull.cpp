@@ -30,7 +30,7 @@ void add_report(const Hull& hull, Sound& sound) {
         measure(sound.scene, ContactGeometry(sound.scene), *hull.boundary);
     report.hull.measures = measures;
     report.hull.mean_width = measures.mean_width;
-    report.hull.measures_accuracy = measures.accuracy;
+    report.hull.measures_accuracy = measures.bounds.largest();
   } else {
     report.hull.measures = measure(polygons(hull.mesh));
   }

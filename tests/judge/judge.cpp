@@ -25,16 +25,28 @@ namespace {
 constexpr double verified_length = 1e-9;
 /// Relative differences of measures of rounded models from those of the models drawn.
 constexpr double rounded_measure = 1e-5;
+/// And of meshes that are the hull from its boundary, by the rounding of vertices.
+constexpr double mesh_measure = 1e-12;
 /// Levels to which all of a cage is refined, and how close bounds of its support are to be, in
 /// diagonals.
 constexpr int refined_levels = 3;
 constexpr double support_accuracy = 1e-9;
 
-/// The first measure that is not what is expected; `measured` receives those that were compared.
-std::string wrong_measure(const Scene& scene, const HullBoundary& boundary,
-                          const Expected& expected, std::string& measured) {
-  const BoundaryMeasures measures = measure(scene, ContactGeometry(scene), boundary);
+/// The first measure that is not what is expected, or less than the mesh's although that lies
+/// within the hull; `measured` receives those that were compared.
+std::string wrong_measure(const Scene& scene, const Hull& hull, const Expected& expected,
+                          std::string& measured) {
+  const BoundaryMeasures measures = measure(scene, ContactGeometry(scene), *hull.boundary);
+  const Measures mesh = measure(polygons(hull.mesh));
   std::string wrong;
+  const auto contain = [&](const char* what, double of_mesh, double found, double bound) {
+    const double lacks = of_mesh / found - 1;
+    if (measures.volume > 0 && wrong.empty() && !(lacks <= bound + mesh_measure)) {
+      wrong = off_by(what, lacks);
+    }
+  };
+  contain("volume below the mesh's", mesh.volume, measures.volume, measures.bounds.volume);
+  contain("area below the mesh's", mesh.area, measures.area, measures.bounds.area);
   const auto compare = [&](const char* letter, const char* what, double found, double right) {
     if (!std::isfinite(right)) return;
     measured += letter;
@@ -112,7 +124,7 @@ Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_o
   VerifyOptions options;
   options.random_directions = 500;
   verdict.verified = verify(document_of(scene, hull), scene, options).is_hull(verified_length);
-  const std::string wrong = wrong_measure(scene, boundary, subject.expected, verdict.measured);
+  const std::string wrong = wrong_measure(scene, hull, subject.expected, verdict.measured);
   if (verdict.wrong.empty()) verdict.wrong = wrong;
   return verdict;
 }

@@ -32,6 +32,7 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   statistics.seconds_trace += watch.lap();
   options.progress.update("stitch", 0);
   HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
+  boundary.gap = directions.resolution;
   find_tolerant_places(ContactSystem(geometry), query, boundary, directions.resolution);
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();

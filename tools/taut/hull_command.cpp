@@ -221,21 +221,6 @@ Report::ExactHull::Tolerant tolerant_faces(const HullBoundary& boundary) {
   return tolerant;
 }
 
-/// Adds the measures of a mesh whose faces are the boundary. The exact hull lies in what is no
-/// farther than the distance from it, and of that body Steiner's formulas tell the measures.
-void add_measures_of_mesh(const Hull& hull, Report::ExactHull& exact) {
-  constexpr double pi = std::numbers::pi;
-  const double d = hull.distance_bound;
-  const Measures measures = measure(polygons(hull.mesh));
-  const double width = mean_width(hull.mesh);
-  const double volume_bound = d * (measures.area + d * (2 * pi * width + d * 4 * pi / 3));
-  const double area_bound = d * (4 * pi * width + d * 4 * pi);
-  exact.measures = measures;
-  exact.mean_width = width;
-  exact.measures_accuracy =
-      std::max({volume_bound / measures.volume, area_bound / measures.area, 2 * d / width});
-}
-
 /// Adds the measures of a boundary. @throws LimitMet
 void add_measures(Input& input, const HullBoundary& boundary, Console& console,
                   Report::ExactHull& exact) {
@@ -244,8 +229,10 @@ void add_measures(Input& input, const HullBoundary& boundary, Console& console,
       measure(input.scene(), ContactGeometry(input.scene(), console.progress().stop), boundary);
   exact.measures = measures;
   exact.mean_width = measures.mean_width;
-  exact.measures_accuracy = measures.accuracy;
-  if (measures.accuracy <= worst_accuracy) return;
+  exact.measures_accuracy = measures.bounds.largest();
+  // What is known to the resolution only is so of what is whole, too.
+  const double of_places = measures.bounds.largest() - measures.accuracy;
+  if (measures.accuracy <= std::max(worst_accuracy, of_places)) return;
   console.warn("inexact-measures",
                "the measures of the exact hull are accurate to " + number(measures.accuracy, 2) +
                    " only: faces of it may be missing or not meet; the mesh is whole and within "
@@ -268,9 +255,6 @@ Report::ExactHull exact_hull(Input& input, Outcome& outcome, const std::string& 
     if (input.model().polyhedral()) {
       exact.measures = measure(polygons(hull.mesh));
       exact.mean_width = mean_width(hull.mesh);
-    } else if (boundary.arcs.empty() &&
-               boundary.count(FaceKind::facet) == int(boundary.faces.size())) {
-      add_measures_of_mesh(hull, exact);
     } else if (boundary.unresolved.empty()) {
       try {
         add_measures(input, boundary, console, exact);

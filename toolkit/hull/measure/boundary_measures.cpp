@@ -6,95 +6,19 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/measure/arc_joints.h"
+#include "taut/hull/measure/boundary_integrals.h"
+#include "taut/hull/measure/facet_integrals.h"
 #include "taut/hull/measure/green_regions.h"
 #include "taut/hull/measure/interior_point.h"
-#include "taut/hull/measure/quadrature.h"
+#include "taut/hull/measure/measure_bounds.h"
+#include "taut/hull/measure/ruling_ways.h"
 
 namespace taut {
 namespace {
 
-/// The integrals over the boundary, where x is relative to a point inside. By the divergence
-/// theorem, of the fields x, x_i x and x_i x_j x with divergences 3, 4 x_i and 5 x_i x_j:
-///   volume = int x . dA / 3,  moments = int x_i x . dA / 4,  int x_i x_j x . dA / 5.
-enum Quantity : std::size_t {
-  volume = 0,
-  area = 1,
-  curvature = 2,        ///< total mean curvature, int (k1 + k2) / 2 dA, creases included
-  moment = 3,           ///< int x dV
-  second = 6,           ///< int x_i x_j dV: xx, yy, zz, yz, zx, xy
-  surface_moment = 12,  ///< int x dA
-  vector_area = 15,     ///< int n dA
-  quantities = 18
-};
-using Quantities = std::array<double, quantities>;
-using Sums = Integrals<quantities>;
-
-/// Relative accuracy of every single rule: what contacts solved to 1e-13 can give.
-constexpr double rule_accuracy = 1e-13;
-/// Roundings of a second derivative, in the scene's frame, which curvature has whatever a patch's
-/// size.
-constexpr double curvature_rounding = 16 * rounding_unit;
-
 /// Nodes of the rules that do for patches that are small beside their radii of curvature.
 constexpr int few_nodes = 6;
-
-/// Adds w times the area element of size dA with unit or any normal, n dA = A.
-void add_element(Quantities& sum, const dvec3& x, const dvec3& A, double dA, double w) {
-  const double flux = w * glm::dot(x, A);
-  sum[volume] += flux / 3;
-  sum[area] += w * dA;
-  for (int i = 0; i < 3; ++i) {
-    const auto k = std::size_t(i);
-    sum[moment + k] += flux / 4 * x[i];
-    sum[second + k] += flux / 5 * x[i] * x[i];
-    sum[second + 3 + k] += flux / 5 * x[(i + 1) % 3] * x[(i + 2) % 3];
-    sum[surface_moment + k] += w * dA * x[i];
-    sum[vector_area + k] += w * A[i];
-  }
-}
-
-/// Tolerances relative to the largest component of each kind, but not below the rounding of what
-/// they are made of: lengths in the scene's frame are about one at most, derivatives are rounded as
-/// these are, and areas have those of the region's size as factors.
-Quantities tolerances(const Quantities& magnitude) {
-  Quantities result{};
-  const auto largest = [&](std::size_t from, std::size_t to) {
-    double m = 0;
-    for (std::size_t k = from; k < to; ++k) m = std::max(m, magnitude[k]);
-    return m;
-  };
-  const double areas = std::max(magnitude[area], largest(vector_area, quantities));
-  const double rounding = 8 * rounding_unit * std::max(areas, std::sqrt(areas));
-  const auto set = [&](std::size_t from, std::size_t to) {
-    const double m = rule_accuracy * largest(from, to) + rounding;
-    for (std::size_t k = from; k < to; ++k) result[k] = m;
-  };
-  set(volume, volume + 1);
-  set(curvature, curvature + 1);
-  set(moment, second);
-  set(second, surface_moment);
-  set(surface_moment, vector_area);
-  set(vector_area, quantities);
-  result[area] = result[vector_area];
-  result[curvature] += 8 * rounding_unit * magnitude[curvature] + curvature_rounding;
-  return result;
-}
-
-/// Integrands over a patch per du dv, about the origin; the outward normal is along sign * (Su x
-/// Sv).
-void add_patch(const ContactJet& j, const dvec3& origin, int sign, Quantities& sum) {
-  const dvec3 N = double(sign) * glm::cross(j.dx[0], j.dx[1]);
-  const double length = glm::length(N);
-  add_element(sum, j.x - origin, N, length, 1);
-  if (length == 0) return;
-  // H dA with H = (E n - 2 F m + G l) / (2 |N|^2), l = -Suu . N / |N| and so on: positive where the
-  // surface is convex (do Carmo 1976, section 3-3).
-  const double E = glm::dot(j.dx[0], j.dx[0]);
-  const double F = glm::dot(j.dx[0], j.dx[1]);
-  const double G = glm::dot(j.dx[1], j.dx[1]);
-  const double form = E * glm::dot(j.dyy, N) - 2 * F * glm::dot(j.dxy, N) + G * glm::dot(j.dxx, N);
-  sum[curvature] -= form / (2 * length * length);
-}
 
 /// The integrals over a whole boundary, in the scene's frame.
 class Summation {
@@ -107,7 +31,13 @@ class Summation {
         regions_(geometry, boundary) {
     find_scrolls();
     for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
-      for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) add_piece(a, p);
+      for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) {
+        const long double before = sums_.value[ruled];
+        const double depth = place_depth(boundary, boundary.arcs[a].pieces[p].tolerant);
+        if (!is_crease(boundary.arcs[a].pieces[p])) add_piece(a, p, depth);
+        layer_ += depth * std::abs(double(sums_.value[ruled] - before));
+      }
+      add_vertex_creases(boundary.arcs[a], sums_);
     }
     for (const GreenRegion& region : regions_.all()) {
       for (const std::vector<TrimStretch>& loop : region.region->loops) {
@@ -116,25 +46,42 @@ class Summation {
         }
       }
     }
+    // Patches state no depth. What spans the outline of a facet is as far from its plane again.
+    layer_ += boundary.gap * std::max(double(sums_.value[area] - sums_.value[ruled]), 0.0);
+    const double off_plane = is_polyhedron(boundary) ? 1 : 2;
     for (const HullFace& face : boundary.faces) {
-      if (face.kind == FaceKind::facet) add_facet(face);
+      if (face.kind != FaceKind::facet) continue;
+      const long double before = sums_.value[area];
+      add_facet(geometry, face, origin_, sums_);
+      const double own = double(sums_.value[area] - before);
+      layer_ += off_plane * place_depth(boundary, face.tolerant) * std::abs(own);
     }
+    if (is_polyhedron(boundary)) add_creases(boundary, sums_);
+    sums_.error[curvature] += open_joints(boundary);
   }
 
   const dvec3& origin() const { return origin_; }
+  /// See MeasuredLengths.
+  double layer() const { return layer_; }
   const Sums& sums() const { return sums_; }
 
  private:
   void find_scrolls();
-  void add_piece(std::size_t arc, std::size_t piece);
+  /// What lies along rulings between two.
+  struct Stretch {
+    bool scroll = false;
+    double depth = 0;  ///< as place_depth() has it
+    const std::vector<ArcTrace>* traces = nullptr;
+  };
+
+  void add_piece(std::size_t arc, std::size_t piece, double depth);
+  void add_between(const Stretch& at, const Ruling& from, const Ruling& to);
+  void add_exact(const Stretch& at, const RulingsBetween& between);
+  void add_ruling(const Stretch& at, const MovingRuling& m, double weight, Quantities& sample);
   bool bounds_normals(const GreenRegion& region, const TrimStretch& stretch) const;
   void add_border(const GreenRegion& region, const TrimStretch& stretch);
-  void add_facet(const HullFace& face);
-  void add_polygon(const HullFace& face);
-  void add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side);
 
   void add_scroll(const MovingRuling& m, Quantities& sum) const;
-  double crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const;
   void add_to_line(const GreenRegion& region, const dvec2& p, double at, Quantities& sample) const;
   bool is_plain(const GreenRegion& region, const TrimStretch& stretch) const;
   void add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate, double weight,
@@ -147,6 +94,7 @@ class Summation {
   GreenRegions regions_;
   std::vector<std::vector<bool>> in_scroll_;  // per arc and piece
   Sums sums_;
+  double layer_ = 0;
 };
 
 void Summation::find_scrolls() {
@@ -213,76 +161,83 @@ void Summation::add_line(const GreenRegion& region, const dvec2& p, const dvec2&
 void Summation::add_scroll(const MovingRuling& m, Quantities& sum) const {
   const dvec3 a = m.at.jet[0].x - origin_;
   const dvec3 along = -m.at.d();
-  const double size0 = glm::dot(m.at.n, glm::cross(m.dx[0], along));
-  const double size1 = glm::dot(m.at.n, glm::cross(m.dx[1], along));
   // Nodes (1 -+ sqrt(3/5)) / 2 with 5/18, 1/2 with 8/18.
   const double offset = std::sqrt(0.15);
   for (int k = -1; k <= 1; ++k) {
     const double r = 0.5 + k * offset;
-    const double size = (1 - r) * size0 + r * size1;
-    add_element(sum, a + r * along, size * m.at.n, size, (k == 0 ? 8 : 5) / 18.0);
+    const dvec3 A = glm::cross((1 - r) * m.dx[0] + r * m.dx[1], along);
+    const double size = glm::dot(m.at.n, A);
+    const double w = (k == 0 ? 8 : 5) / 18.0;
+    add_element(sum, a + r * along, A, size, w);
+    sum[ruled] += w * size;
   }
   sum[curvature] += 0.5 * glm::dot(m.dn, glm::cross(m.at.n, m.at.d()));
 }
 
-/// Half the angle of n about an edge's tangent, from the direction away from the interior point:
-/// between -pi/4 and pi/4, since (x - origin) . n > 0.
-double Summation::crease(const dvec3& x, const dvec3& tangent, const dvec3& n) const {
-  const double length = glm::length(tangent);
-  if (length == 0) return 0;
-  const dvec3 T = tangent / length;
-  const dvec3 across = glm::cross(T, x - origin_);  // T x m, as long as m
-  const double phi = std::atan2(glm::dot(n, across), glm::dot(n, glm::cross(across, T)));
-  return 0.5 * length * phi;
-}
-
-/// Along a piece of an arc: its scroll, the regions it bounds, and the creases of contacts on
-/// edges.
-///
 /// Of the normals (t, phi) of an edge, the crease's integral of angle times length is that of
 /// -+ phi |x'| dt along the arcs that bound them, in the direction of the arcs: along one, dt has
 /// the sign of x' . (n x d), d = x_0 - x_1, so that t grows where d points towards growing phi
 /// (T x n); contact 0 supports on the side of +d, and contact 1 on that of -d.
-void Summation::add_piece(std::size_t arc, std::size_t piece) {
+void Summation::add_ruling(const Stretch& at, const MovingRuling& m, double weight,
+                           Quantities& sample) {
+  if (at.scroll) add_scroll(m, sample);
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (int k = 0; k < 3; ++k) sample[way + 3 * i + std::size_t(k)] += m.dx[i][k];
+    if (m.at.contact[i].kind != SourceKind::edge) continue;
+    const double half = crease(m.at.jet[i].x - origin_, m.at.jet[i].dx[0], m.at.n);
+    sample[curvature] += (i == 0 ? -1 : 1) * half * m.dp[i].x;
+  }
+  for (const ArcTrace& trace : *at.traces) {
+    const auto i = std::size_t(trace.contact);
+    const Contact& c = m.at.contact[i];
+    add_line(regions_.all()[std::size_t(trace.region)], {c.u, c.v}, trace.direction * m.dp[i],
+             weight, sample);
+  }
+}
+
+/// Along a piece of an arc: its scroll, the regions it bounds, and the creases of contacts on
+/// edges.
+void Summation::add_piece(std::size_t arc, std::size_t piece, double depth) {
   const std::vector<Ruling>& rulings = boundary_.arcs[arc].pieces[piece].rulings;
-  if (rulings.empty()) return;
-  const std::array<Contact, 2>& contact = rulings[0].contact;
-  const auto is = [&](std::size_t i, SourceKind kind) { return contact[i].kind == kind; };
-  if (is(0, SourceKind::vertex) && is(1, SourceKind::vertex)) {
-    // A crease along the segment itself; n turns along a great circle.
-    const double length = glm::length(rulings[0].point[0] - rulings[0].point[1]);
-    for (std::size_t k = 1; k < rulings.size(); ++k) {
-      const dvec3& n0 = rulings[k - 1].n;
-      const dvec3& n1 = rulings[k].n;
-      const double angle = std::atan2(glm::length(glm::cross(n0, n1)), glm::dot(n0, n1));
-      sums_.value[curvature] += 0.5 * length * angle;
-    }
-    return;
-  }
-  const bool scroll = in_scroll_[arc][piece];
-  const std::vector<ArcTrace>& traces = regions_.traces(arc, piece);
+  const Stretch stretch{in_scroll_[arc][piece], depth, &regions_.traces(arc, piece)};
   for (std::size_t k = 1; k < rulings.size(); ++k) {
-    const RulingsBetween between(system_, rulings[k - 1], rulings[k]);
-    if (between.empty()) continue;
-    const auto f = [&](double s, double weight, Quantities& sample) {
-      // Where no ruling is found there is none that is exact; the accuracy tells what it costs.
-      const auto exact = between.is_smoother() ? std::nullopt : between(s);
-      const MovingRuling m = exact ? *exact : between.interpolated(s);
-      if (scroll) add_scroll(m, sample);
-      for (std::size_t i = 0; i < 2; ++i) {
-        if (!is(i, SourceKind::edge)) continue;
-        const double half = crease(m.at.jet[i].x, m.at.jet[i].dx[0], m.at.n);
-        sample[curvature] += (i == 0 ? -1 : 1) * half * m.dp[i].x;
-      }
-      for (const ArcTrace& trace : traces) {
-        const auto i = std::size_t(trace.contact);
-        const Contact& c = m.at.contact[i];
-        add_line(regions_.all()[std::size_t(trace.region)], {c.u, c.v}, trace.direction * m.dp[i],
-                 weight, sample);
-      }
-    };
-    integrate<6>(f, tolerances, 0, 1, sums_);
+    add_between(stretch, rulings[k - 1], rulings[k]);
   }
+}
+
+/// Where exact rulings do not lead from the one to the other, none of it counts, and the ways that
+/// do are sought.
+void Summation::add_between(const Stretch& at, const Ruling& from, const Ruling& to) {
+  const Sums before = sums_;
+  const RulingsBetween between(system_, from, to);
+  if (between.empty()) return;
+  add_exact(at, between);
+  std::array<dvec3, 2> moved;
+  for (std::size_t k = 0; k < 6; ++k) {
+    moved[k / 3][int(k % 3)] = double(sums_.value[way + k] - before.value[way + k]);
+  }
+  if (between.is_smoother() || leads(moved, from, to)) return;
+  sums_ = before;
+  for (const RulingWay& part : ruling_ways(system_, from, to, at.depth)) {
+    if (part.exact) {
+      add_exact(at, RulingsBetween(system_, part.from, part.to));
+    } else {
+      const auto straight = [&](double r, double weight, Quantities& sample) {
+        add_ruling(at, part.straight(geometry_, r), weight, sample);
+      };
+      integrate<6>(straight, tolerances, 0, 1, sums_);
+      sums_.error[curvature] += part.uncertainty();
+    }
+  }
+}
+
+void Summation::add_exact(const Stretch& at, const RulingsBetween& between) {
+  const auto f = [&](double s, double weight, Quantities& sample) {
+    // Where no ruling is found there is none that is exact; the accuracy tells what it costs.
+    const auto exact = between.is_smoother() ? std::nullopt : between(s);
+    add_ruling(at, exact ? *exact : between.interpolated(s), weight, sample);
+  };
+  integrate<6>(f, tolerances, 0, 1, sums_);
 }
 
 /// Whether the stretch runs along an edge, or along a seam at which another face ends: contacts
@@ -313,7 +268,7 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
     if (!edge) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
-    const double half = crease(j.x, sense * j.dx[of_v ? 1 : 0], unit(N));
+    const double half = crease(j.x - origin_, sense * j.dx[of_v ? 1 : 0], unit(N));
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;
   };
@@ -324,83 +279,14 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
   }
 }
 
-/// The polygon of the facet's contacts and what lies between its sides and the curved ones.
-void Summation::add_facet(const HullFace& face) {
-  add_polygon(face);
-  for (std::size_t k = 0; k < face.sides.size(); ++k) {
-    if (face.sides[k].piece >= 0) add_side(face, face.points[k], face.sides[k]);
-  }
-}
+using Vector = glm::vec<3, long double>;
+using SumValues = std::array<long double, quantities>;
 
-/// The segment between a curved side and its chord, as the triangles between neighbouring rays from
-/// where the side begins: begin + r (x - begin) has the area element r (x - begin) x dx/dt dr dt.
-/// Two nodes in r are exact for its third degree. Of the side's normals the facet's own is the
-/// lower end, as add_border() has it.
-void Summation::add_side(const HullFace& face, const dvec3& begin, const EdgeStretch& side) {
-  const dvec3 tip = begin - origin_;
-  const double sense = side.to < side.from ? -1 : 1;
-  const double offset = std::sqrt(1.0 / 12);
-  const auto f = [&](double t, double, Quantities& sample) {
-    const ContactJet j = geometry_.jet(side.at(t));
-    const dvec3 ray = j.x - begin;
-    const dvec3 element = glm::cross(ray, j.dx[0]);
-    for (const double r : {0.5 - offset, 0.5 + offset}) {
-      const dvec3 A = r * element;
-      add_element(sample, tip + r * ray, A, glm::dot(A, face.n), 0.5);
-    }
-    sample[curvature] -= sense * crease(j.x, sense * j.dx[0], face.n);
-  };
-  integrate<16>(f, tolerances, side.from, side.to, sums_);
-}
+Vector vector_at(const SumValues& sum, std::size_t k) { return {sum[k], sum[k + 1], sum[k + 2]}; }
 
-/// A plane polygon, by the tetrahedra over a fan of triangles with the interior point as tip: the
-/// integral of x_i x_j over one is det / 120 ((sum of x)_i (sum of x)_j + sum of x_i x_j).
-void Summation::add_polygon(const HullFace& face) {
-  using Vector = glm::vec<3, long double>;
-  const auto at = [&](std::size_t k) {
-    return Vector(face.points[k % face.points.size()]) - Vector(origin_);
-  };
-  Vector total(0);
-  for (std::size_t k = 0; k < face.points.size(); ++k) {
-    total += 0.5L * glm::cross(at(k) - at(0), at(k + 1) - at(0));
-  }
-  const long double size = glm::length(total);
-  if (!(size > 0)) return;
-  const Vector n = total / size;
-  auto& sum = sums_.value;
-  sum[area] += size;
-  for (int i = 0; i < 3; ++i) sum[vector_area + std::size_t(i)] += total[i];
-  for (std::size_t k = 1; k + 1 < face.points.size(); ++k) {
-    const Vector a = at(0), b = at(k), c = at(k + 1);
-    const Vector corners = a + b + c;
-    const long double det = glm::dot(a, glm::cross(b, c));
-    const long double twice = glm::dot(n, glm::cross(b - a, c - a));
-    const auto product = [&](int i, int j) {
-      return det / 120 * (corners[i] * corners[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
-    };
-    sum[volume] += det / 6;
-    for (int i = 0; i < 3; ++i) {
-      const auto q = std::size_t(i);
-      sum[moment + q] += det / 24 * corners[i];
-      sum[second + q] += product(i, i);
-      sum[second + 3 + q] += product((i + 1) % 3, (i + 2) % 3);
-      sum[surface_moment + q] += twice / 6 * corners[i];
-    }
-  }
-}
-
-}  // namespace
-
-BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
-                         const HullBoundary& boundary) {
-  using Vector = glm::vec<3, long double>;
-  const Summation summation(geometry, boundary);
-  const auto& sum = summation.sums().value;
-  const auto& error = summation.sums().error;
-  const auto vector_at = [&](std::size_t k) { return Vector(sum[k], sum[k + 1], sum[k + 2]); };
-
+/// From integrals in the frame, about a point there.
+BoundaryMeasures measures_of(const SceneFrame& frame, const dvec3& origin, const SumValues& sum) {
   BoundaryMeasures result;
-  const SceneFrame& frame = scene.frame();
   const double unit_length = 1 / frame.scale;
   result.volume = double(sum[volume]) * unit_length * unit_length * unit_length;
   result.area = double(sum[area]) * unit_length * unit_length;
@@ -408,26 +294,65 @@ BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
   result.mean_width = double(sum[curvature] / (2 * std::numbers::pi_v<long double>)) * unit_length;
   Vector center(0);
   if (sum[volume] > 0) {
-    center = vector_at(moment) / sum[volume];
+    center = vector_at(sum, moment) / sum[volume];
     // About the centroid, by the parallel axis theorem.
-    const dvec3 s(vector_at(second) - sum[volume] * center * center);
-    const dvec3 p(vector_at(second + 3) - sum[volume] * Vector(center.y * center.z,
-                                                               center.z * center.x,
-                                                               center.x * center.y));
+    const dvec3 s(vector_at(sum, second) - sum[volume] * center * center);
+    const dvec3 p(vector_at(sum, second + 3) - sum[volume] * Vector(center.y * center.z,
+                                                                    center.z * center.x,
+                                                                    center.x * center.y));
     result.inertia = std::pow(unit_length, 5) * dmat3(s.y + s.z, -p.z, -p.y,  //
                                                       -p.z, s.z + s.x, -p.x,  //
                                                       -p.y, -p.x, s.x + s.y);
   } else if (sum[area] > 0) {
-    center = vector_at(surface_moment) / sum[area];
+    center = vector_at(sum, surface_moment) / sum[area];
   }
-  result.centroid = frame.to_model(summation.origin() + dvec3(center));
+  result.centroid = frame.to_model(origin + dvec3(center));
+  return result;
+}
 
+MeasuredLengths lengths_of(const Scene& scene, const SumValues& sum, double layer,
+                           const BoundaryMeasures& measures) {
+  const SceneFrame& frame = scene.frame();
+  const Box& box = scene.box();
+  // The farthest corner of the box.
+  const dvec3 reach =
+      glm::max(glm::abs(box.lower - measures.centroid), glm::abs(box.upper - measures.centroid));
+  const dmat3& I = measures.inertia;
+  MeasuredLengths lengths;
+  lengths.volume = double(sum[volume]);
+  lengths.area = double(sum[area]);
+  lengths.mean_width = frame.length_to_frame(measures.mean_width);
+  lengths.layer = layer;
+  lengths.radius = frame.length_to_frame(glm::length(reach));
+  lengths.diagonal = frame.length_to_frame(scene.diagonal());
+  lengths.inertia = std::pow(frame.scale, 5) * std::max({I[0][0], I[1][1], I[2][2]});
+  return lengths;
+}
+
+}  // namespace
+
+BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
+                         const HullBoundary& boundary) {
+  const Summation summation(geometry, boundary);
+  const auto& sum = summation.sums().value;
+  const auto& error = summation.sums().error;
+  BoundaryMeasures result = measures_of(scene.frame(), summation.origin(), sum);
   const auto relative = [&](std::size_t k) { return sum[k] > 0 ? error[k] / double(sum[k]) : 0.0; };
   result.accuracy = std::max({relative(volume), relative(area), relative(curvature)});
   if (sum[area] > 0) {
-    const double open = double(glm::length(vector_at(vector_area)) / sum[area]);
+    const double open = double(glm::length(vector_at(sum, vector_area)) / sum[area]);
     result.accuracy = std::max(result.accuracy, open);
   }
+  const double accuracy = result.accuracy;
+  result.bounds = {accuracy, accuracy, accuracy, accuracy, accuracy};
+  if (!(sum[volume] > 0)) return result;
+  const MeasureBounds of_places =
+      measure_bounds(boundary, lengths_of(scene, sum, summation.layer(), result));
+  result.bounds.volume += of_places.volume;
+  result.bounds.area += of_places.area;
+  result.bounds.mean_width += of_places.mean_width;
+  result.bounds.centroid += of_places.centroid;
+  result.bounds.inertia += of_places.inertia;
   return result;
 }
 

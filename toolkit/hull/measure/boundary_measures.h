@@ -6,6 +6,21 @@
 
 namespace taut {
 
+/// By how much measures of a boundary may differ from those of the true hull, at most.
+struct MeasureBounds {
+  /// Relative to what they bound.
+  double volume = 0;
+  double area = 0;
+  double mean_width = 0;
+  /// Relative to the diagonal of the scene's box.
+  double centroid = 0;
+  /// Of each entry, relative to the largest one on the diagonal.
+  double inertia = 0;
+
+  /// The largest of all.
+  double largest() const;
+};
+
 /// Measures of a convex hull, integrated over the exact faces of its boundary, in model units.
 struct BoundaryMeasures : Measures {
   /// Mean over all directions n of h(n) + h(-n): of a sphere its diameter.
@@ -14,13 +29,19 @@ struct BoundaryMeasures : Measures {
   /// quadratures' estimated errors relative to the three, and of |integral of n dA| over the area,
   /// which is zero for a closed surface and tells of faces that are missing or do not meet.
   double accuracy = 0;
+  /// The accuracy, and what places that are below supporting planes (HullFace::tolerant) and what
+  /// the true hull may have beyond the faces (HullBoundary::gap) make of it.
+  MeasureBounds bounds;
 };
 
 /// Measures of the hull with this boundary.
 ///
 /// Patches by Green's theorem in their parameters, scrolls along their rulings, facets as polygons;
 /// creases, needed for the mean width, from the normals that bound them: from separating curves
-/// with a contact on an edge or two at vertices, and from patches' borders on edges.
+/// with a contact on an edge or two at vertices, and from patches' borders on edges. Of a
+/// polyhedron, which has no separating curves, from its curves. Where neighbouring rulings are not
+/// joined by exact ones, as next to planes that are known to the resolution, those between are
+/// interpolated.
 ///
 /// Of a complete boundary whose rulings are exact to rounding, errors are about 1e-13, however far
 /// apart the rulings are; where a piece ends in a free end, below 1e-10 if the whole piece has but

@@ -163,6 +163,9 @@ struct HullBoundary {
   std::vector<HullFace> faces;
   std::vector<HullCurve> curves;
   std::vector<Unresolved> unresolved;
+  /// How far the support function of the true hull may exceed that of the faces' points, at most,
+  /// in the scene's frame: the resolution, or of a mesh its distance. 0: by no more than rounding.
+  double gap = 0;
   /// What was found until the search was given up as too costly; `unresolved` says so.
   bool exhausted = false;
 

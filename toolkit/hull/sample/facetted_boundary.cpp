@@ -29,6 +29,7 @@ HullBoundary facetted_boundary(const Scene& scene, SupportQuery& query,
                                const SampledPolytope& polytope, const Progress& progress) {
   HullBoundary boundary;
   boundary.frame = scene.frame();
+  boundary.gap = boundary.frame.length_to_frame(polytope.distance_bound);
   const auto point = [&](int p) {
     return boundary.frame.to_frame(polytope.hull.point(p) / boundary.frame.scale);
   };

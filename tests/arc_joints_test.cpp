@@ -1,0 +1,80 @@
+#include "taut/hull/measure/arc_joints.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace taut {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Ruling ruling(const dvec3& n, const dvec3& a, const dvec3& b, SourceKind kind) {
+  Ruling r{n, {}, {a, b}};
+  for (Contact& c : r.contact) c = {0, kind, 0, 0, 0};
+  return r;
+}
+
+ArcPiece piece(const dvec3& from, const dvec3& to, const dvec3& a, const dvec3& b,
+               SourceKind kind = SourceKind::vertex) {
+  return {{ruling(from, a, b, kind), ruling(to, a, b, kind)}};
+}
+
+const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+
+double curvature_of(const SeparatingArc& arc) {
+  Sums sums;
+  add_vertex_creases(arc, sums);
+  return double(sums.value[curvature]);
+}
+
+TEST(ArcJoints, ACreaseIsHalfOfLengthTimesAngle) {
+  const SeparatingArc arc{{piece(x, y, dvec3(0.0), 3.0 * z)}};
+  EXPECT_NEAR(curvature_of(arc), 0.5 * 3 * pi / 2, 1e-15);
+  EXPECT_FALSE(is_crease(piece(x, y, z, -z, SourceKind::edge)));
+  EXPECT_FALSE(is_crease({}));
+  EXPECT_EQ(curvature_of({{piece(x, y, z, -z, SourceKind::edge)}}), 0);
+}
+
+/// Which of the vertices support is rounding; between pieces n may be left out.
+TEST(ArcJoints, VerticesInLineAreOneCrease) {
+  const dvec3 n = unit(x + y), m = unit(2.0 * x + y);
+  const SeparatingArc arc{{piece(x, m, dvec3(0.0), 3.0 * z), piece(m, n, dvec3(0.0), 2.0 * z),
+                           piece(unit(x + 2.0 * y), y, z, 3.0 * z)}};
+  EXPECT_NEAR(curvature_of(arc), 0.5 * 3 * pi / 2, 1e-15);
+  HullBoundary boundary;
+  boundary.arcs = {arc};
+  EXPECT_EQ(open_joints(boundary), 0);
+}
+
+TEST(ArcJoints, WhatIsLeftOutIsTold) {
+  const dvec3 n = unit(x + y);
+  const auto joined = [&](const dvec3& after, const dvec3& end) {
+    SeparatingArc arc{{piece(x, n, dvec3(0.0), z, SourceKind::edge),
+                       piece(after, y, dvec3(0.0), end, SourceKind::edge)}};
+    HullBoundary boundary;
+    boundary.arcs = {arc};
+    return boundary;
+  };
+  EXPECT_EQ(open_joints(joined(n, z)), 0);
+  // The turn to the next n, and the step of a contact.
+  EXPECT_NEAR(open_joints(joined(y, z)), 0.5 * pi / 4, 1e-15);
+  HullBoundary stepped = joined(n, 1.25 * z);
+  EXPECT_NEAR(open_joints(stepped), 0.5 * pi * 0.25, 1e-15);
+  stepped.gap = 0.25;
+  EXPECT_EQ(open_joints(stepped), 0);
+
+  HullBoundary closed = joined(n, z);
+  closed.arcs[0].closed = true;
+  EXPECT_NEAR(open_joints(closed), 0.5 * pi / 2, 1e-15);
+
+  HullBoundary ends = joined(n, z);
+  ends.faces.resize(2);
+  ends.faces[0].n = x;
+  ends.faces[1].n = n;
+  ends.arcs[0].facet = {0, 1};
+  EXPECT_NEAR(open_joints(ends), 0.5 * pi / 4, 1e-15);
+}
+
+}  // namespace
+}  // namespace taut

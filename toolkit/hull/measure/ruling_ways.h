@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "taut/hull/contact/rulings_between.h"
+
+namespace taut {
+
+/// A part of the way from one ruling of a piece to the next, on which its contacts come from where
+/// they are at its beginning to where they are at its end.
+///
+/// Exact rulings lead from one to the other where the piece is smooth. Next to the plane of a node
+/// they may not: where an edge lies in that plane but for rounding its contact runs to and fro, or
+/// beyond the edge's ends, while n turns by an angle of the rounding's size. Nor may they where
+/// contacts leave their patches by as little. There the way is the straight one in n and the
+/// contacts' parameters.
+struct RulingWay {
+  Ruling from, to;
+  /// By exact rulings (RulingsBetween); else straight.
+  bool exact = true;
+
+  /// The ruling of the straight way at r in [0, 1].
+  MovingRuling straight(const ContactGeometry& geometry, double r) const;
+  /// Of a straight way, how far its contacts may be from where they are to be; together.
+  double deviation = 0;
+
+  /// By how much total mean curvature may differ from that along the way to be: of an edge's crease
+  /// the two have strips of its normals between them, no larger than what n turns by times the
+  /// deviation, and half of angle times length counts.
+  double uncertainty() const;
+};
+
+/// Whether a way on which the points move by `moved` leads from the one ruling to the other. By
+/// what is tolerated, 1e-10 in the scene's frame, creases change total mean curvature by no more,
+/// as their angles count by half and are below pi / 2.
+bool leads(const std::array<dvec3, 2>& moved, const Ruling& from, const Ruling& to);
+
+/// Ways from a ruling to the next: halves of halves of the exact one, as far as they lead on, and
+/// straight ones of which what n turns by times the deviation, which bounds the height by which
+/// they miss, is within the tolerance, or that are 1/256 of it or between which no exact ruling is
+/// found. These ones deviate by as much as they move at most, as if they went neither back nor
+/// beyond.
+std::vector<RulingWay> ruling_ways(const ContactSystem& system, const Ruling& from,
+                                   const Ruling& to, double tolerance);
+
+}  // namespace taut
