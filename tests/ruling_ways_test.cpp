@@ -79,10 +79,14 @@ TEST(RulingWays, LeadPastPoles) {
 TEST(RulingWays, LeadFromTheOneToTheOther) {
   const Ruling from{{0, 0, 1}, {}, {dvec3(0.0), dvec3(1, 0, 0)}};
   const Ruling to{{0, 0.6, 0.8}, {}, {dvec3(0.0), dvec3(1, 2, 0)}};
-  EXPECT_TRUE(leads({dvec3(0.0), dvec3(0, 2, 0)}, from, to));
-  EXPECT_FALSE(leads({dvec3(0.0), dvec3(0, 2, 1e-9)}, from, to));
-  EXPECT_FALSE(leads({dvec3(0, 1e-9, 0), dvec3(0, 2, 0)}, from, to));
-  EXPECT_FALSE(leads({dvec3(0.0), dvec3(0, std::nan(""), 0)}, from, to));
+  const auto missed = [&](const dvec3& first, const dvec3& second) {
+    return missed_way({first, second}, from, to);
+  };
+  EXPECT_EQ(missed(dvec3(0.0), dvec3(0, 2, 0)), 0);
+  EXPECT_NEAR(missed(dvec3(0, 3, 4), dvec3(0, 2, 1)), 6, 1e-15);
+  EXPECT_EQ(missed(dvec3(0.0), dvec3(0, std::nan(""), 0)), infinity);
+  EXPECT_TRUE(leads(missed(dvec3(0.0), dvec3(0, 2, 1e-11))));
+  EXPECT_FALSE(leads(missed(dvec3(0, 1e-9, 0), dvec3(0, 2, 0))));
   RulingWay way{from, to, false, 0.25};
   EXPECT_NEAR(way.uncertainty(), 0.5 * 0.25 * std::sqrt(0.4), 1e-15);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/hull/contact/contact_system.h"
+
 namespace taut {
 namespace {
 
@@ -17,7 +19,7 @@ double open_joint(const Ruling& before, const Ruling& after, double gap) {
   double open = 0.5 * length(after) * turn(before.n, after.n);
   for (std::size_t i = 0; i < 2; ++i) {
     const double step = glm::distance(before.point[i], after.point[i]);
-    if (step > gap) open += 0.5 * std::numbers::pi * step;
+    if (step > std::max(gap, same_contact)) open += 0.5 * std::numbers::pi * step;
   }
   return open;
 }

@@ -76,6 +76,7 @@ class Summation {
 
   void add_piece(std::size_t arc, std::size_t piece, double depth);
   void add_between(const Stretch& at, const Ruling& from, const Ruling& to);
+  void add_ways(const Stretch& at, const std::vector<RulingWay>& ways);
   void add_exact(const Stretch& at, const RulingsBetween& between);
   void add_ruling(const Stretch& at, const MovingRuling& m, double weight, Quantities& sample);
   bool bounds_normals(const GreenRegion& region, const TrimStretch& stretch) const;
@@ -205,29 +206,38 @@ void Summation::add_piece(std::size_t arc, std::size_t piece, double depth) {
   }
 }
 
-/// Where exact rulings do not lead from the one to the other, none of it counts, and the ways that
-/// do are sought.
+/// Where exact rulings do not lead from the one to the other, the ways that do are sought; what is
+/// better known counts.
 void Summation::add_between(const Stretch& at, const Ruling& from, const Ruling& to) {
   const Sums before = sums_;
   const RulingsBetween between(system_, from, to);
   if (between.empty()) return;
   add_exact(at, between);
+  if (between.is_smoother()) return;
   std::array<dvec3, 2> moved;
   for (std::size_t k = 0; k < 6; ++k) {
     moved[k / 3][int(k % 3)] = double(sums_.value[way + k] - before.value[way + k]);
   }
-  if (between.is_smoother() || leads(moved, from, to)) return;
+  const double missed = missed_way(moved, from, to);
+  if (leads(missed)) return;
+  sums_.error[curvature] += missed_curvature(missed);
+  const Sums exact = sums_;
   sums_ = before;
-  for (const RulingWay& part : ruling_ways(system_, from, to, at.depth)) {
+  add_ways(at, ruling_ways(system_, from, to, at.depth));
+  if (exact.error[curvature] < sums_.error[curvature]) sums_ = exact;
+}
+
+void Summation::add_ways(const Stretch& at, const std::vector<RulingWay>& ways) {
+  for (const RulingWay& part : ways) {
     if (part.exact) {
       add_exact(at, RulingsBetween(system_, part.from, part.to));
-    } else {
-      const auto straight = [&](double r, double weight, Quantities& sample) {
-        add_ruling(at, part.straight(geometry_, r), weight, sample);
-      };
-      integrate<6>(straight, tolerances, 0, 1, sums_);
-      sums_.error[curvature] += part.uncertainty();
+      continue;
     }
+    const auto straight = [&](double r, double weight, Quantities& sample) {
+      add_ruling(at, part.straight(geometry_, r), weight, sample);
+    };
+    integrate<6>(straight, tolerances, 0, 1, sums_);
+    sums_.error[curvature] += part.uncertainty();
   }
 }
 

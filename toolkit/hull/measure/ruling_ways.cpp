@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "taut/hull/measure/quadrature.h"
@@ -12,7 +13,7 @@ namespace {
 /// Parts of a way that still do not lead on when they have been halved so often are straight.
 constexpr int halvings = 8;
 /// See leads().
-constexpr double missed_way = 1e-10;
+constexpr double least_way = 1e-10;
 
 /// The contacts lie in their elements, but for what is rounding of merging ones.
 bool lies_inside(const CommonSupport& s) {
@@ -72,7 +73,7 @@ class Ways {
       if (!m || !lies_inside(m->at)) return false;
       for (std::size_t i = 0; i < 2; ++i) moved[i] += rule.weight[k] * m->dx[i];
     }
-    return leads(moved, from, to);
+    return leads(missed_way(moved, from, to));
   }
 
   const ContactSystem& system_;
@@ -103,11 +104,15 @@ MovingRuling RulingWay::straight(const ContactGeometry& geometry, double r) cons
 
 double RulingWay::uncertainty() const { return 0.5 * deviation * glm::distance(from.n, to.n); }
 
-bool leads(const std::array<dvec3, 2>& moved, const Ruling& from, const Ruling& to) {
-  // Also where something is not a number.
-  return glm::distance(moved[0], to.point[0] - from.point[0]) <= missed_way &&
-         glm::distance(moved[1], to.point[1] - from.point[1]) <= missed_way;
+double missed_way(const std::array<dvec3, 2>& moved, const Ruling& from, const Ruling& to) {
+  const double missed = glm::distance(moved[0], to.point[0] - from.point[0]) +
+                        glm::distance(moved[1], to.point[1] - from.point[1]);
+  return missed < infinity ? missed : infinity;
 }
+
+double missed_curvature(double missed) { return std::numbers::pi / 4 * missed; }
+
+bool leads(double missed) { return missed <= least_way; }
 
 std::vector<RulingWay> ruling_ways(const ContactSystem& system, const Ruling& from,
                                    const Ruling& to, double tolerance) {

@@ -31,10 +31,14 @@ struct RulingWay {
   double uncertainty() const;
 };
 
-/// Whether a way on which the points move by `moved` leads from the one ruling to the other. By
-/// what is tolerated, 1e-10 in the scene's frame, creases change total mean curvature by no more,
-/// as their angles count by half and are below pi / 2.
-bool leads(const std::array<dvec3, 2>& moved, const Ruling& from, const Ruling& to);
+/// By how much a way on which the points move by `moved` does not lead from the one ruling to the
+/// other, both points together; infinite where that is no number.
+double missed_way(const std::array<dvec3, 2>& moved, const Ruling& from, const Ruling& to);
+/// Total mean curvature that misses so much at creases, whose angles, below pi / 2, count by half.
+double missed_curvature(double missed);
+/// Whether a way that misses so much leads on: by less, 1e-10 in the scene's frame, curvature is no
+/// farther off than measures of exact boundaries may be.
+bool leads(double missed);
 
 /// Ways from a ruling to the next: halves of halves of the exact one, as far as they lead on, and
 /// straight ones of which what n turns by times the deviation, which bounds the height by which
