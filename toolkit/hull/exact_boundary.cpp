@@ -1,5 +1,6 @@
 #include "taut/hull/exact_boundary.h"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -18,8 +19,34 @@ namespace {
 constexpr long map_candidates = 600'000;
 constexpr long map_candidates_a_patch = 200;
 
+/// Finer maps that are asked, as shares of the resolution.
+constexpr std::array finer_maps = {1. / 2, 1. / 4, 1. / 16, 1. / 64};
+
 /// Spots that could not be resolved beyond which it does not help to know more.
 constexpr std::size_t few_open_spots = 16;
+
+long undecided(const DirectionMap& map) {
+  return map.statistics.of_kind[std::size_t(MapCellKind::undecided)];
+}
+
+/// The map of the scene's directions at a resolution in its frame.
+DirectionMap map_of(const ContactGeometry& geometry, double resolution, const HullOptions& options,
+                    HullStatistics& statistics) {
+  const Stopwatch watch;
+  options.progress.update("decide", 0);
+  DirectionMapOptions own;
+  own.resolution = resolution;
+  own.candidate_limit = map_candidates + map_candidates_a_patch * geometry.scene().patch_count();
+  own.threads = options.threads;
+  own.stop = options.progress.stop;
+  DirectionMap map = direction_map(geometry, own);
+  statistics.map_cells += map.statistics.cells;
+  statistics.map_candidates += map.statistics.candidates;
+  statistics.map_undecided += undecided(map);
+  statistics.support_queries += map.statistics.queries;
+  statistics.seconds_map += watch.seconds();
+  return map;
+}
 
 /// Solved from the map, and stitched.
 HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions,
@@ -37,6 +64,27 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();
+  return boundary;
+}
+
+/// It is closed, and nothing is below the supporting planes by more than the resolution.
+bool is_within(const HullBoundary& boundary, double resolution) {
+  return boundary.unresolved.empty() && deepest_tolerant(boundary) <= resolution;
+}
+
+/// From the map or, where that has for one what a boundary cannot be made of as one, from finer
+/// ones, if these are decided.
+HullBoundary solved_within(const ContactGeometry& geometry, const DirectionMap& directions,
+                           const HullOptions& options, HullStatistics& statistics) {
+  const double rho = directions.resolution;
+  HullBoundary boundary = solved(geometry, directions, options, statistics);
+  for (const double share : finer_maps) {
+    if (is_within(boundary, rho) || boundary.unresolved.size() > few_open_spots) break;
+    const DirectionMap finer = map_of(geometry, share * rho, options, statistics);
+    if (undecided(finer) > 0) continue;
+    HullBoundary other = solved(geometry, finer, options, statistics);
+    if (is_within(other, rho)) return other;
+  }
   return boundary;
 }
 
@@ -102,35 +150,21 @@ double same_elements_of(const Scene& scene, const HullOptions& options) {
 
 DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
                            HullStatistics& statistics) {
-  const Stopwatch watch;
-  options.progress.update("decide", 0);
   const Scene& scene = geometry.scene();
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
-  DirectionMapOptions own;
-  own.resolution = scene.frame().length_to_frame(resolution.rho);
-  own.candidate_limit = map_candidates + map_candidates_a_patch * scene.patch_count();
-  own.threads = options.threads;
-  own.stop = options.progress.stop;
-  DirectionMap map = direction_map(geometry, own);
-  statistics.map_cells += map.statistics.cells;
-  statistics.map_candidates += map.statistics.candidates;
-  statistics.map_undecided += map.statistics.of_kind[std::size_t(MapCellKind::undecided)];
-  statistics.support_queries += map.statistics.queries;
-  statistics.seconds_map += watch.seconds();
-  return map;
+  return map_of(geometry, scene.frame().length_to_frame(resolution.rho), options, statistics);
 }
 
 HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
                             const DirectionMap& directions, const HullOptions& options,
                             HullStatistics& statistics, const std::vector<Sample>& more) {
   if (options.curves == CurveMethod::solving) {
-    return solved(geometry, directions, options, statistics);
+    return solved_within(geometry, directions, options, statistics);
   }
   if (directions.cells.empty()) return traced(geometry, culling, {}, options, statistics, more);
   // What the map decides need not be searched.
-  const auto undecided = directions.statistics.of_kind[std::size_t(MapCellKind::undecided)];
   HullBoundary best =
-      traced(geometry, culling, {.cells = undecided > 0}, options, statistics, more);
+      traced(geometry, culling, {.cells = undecided(directions) > 0}, options, statistics, more);
   MapDifferences differences = compared(geometry, directions, best, options, statistics);
   for (const CurveSearch& search : {CurveSearch{}, CurveSearch{.map = &directions}}) {
     if (differences.spots.empty() || best.exhausted || best.unresolved.size() > few_open_spots) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "taut/core/integers.h"
 #include "taut/hull/result/hull_sources.h"
@@ -20,8 +21,8 @@ constexpr double near_face = 1e-7;
 /// twice.
 constexpr double long_ruling = 1e-2;
 
-/// Which of a scroll's rulings are looked at where no face is told, and near its ends: it may lie
-/// on two faces, one after the other; and where on a ruling it is looked whether it lies on a face.
+/// Which of a scroll's long rulings are looked at where no face is told: it may lie on two faces,
+/// one after the other; and where on a ruling it is looked whether it lies on a face.
 constexpr std::array<double, 5> quarters = {0.1, 0.25, 0.5, 0.75, 0.9};
 constexpr std::array<double, 5> along_ruling = {0, 0.25, 0.5, 0.75, 1};
 
@@ -143,12 +144,16 @@ bool LabelCheck::on_face(const DocumentGeometry& geometry, int source,
 }
 
 bool LabelCheck::runs_along(int source, const Face& scroll) const {
-  if (scroll.rulings.empty()) return false;
+  std::vector<HullDocument::Ruling> rulings;
+  std::copy_if(scroll.rulings.begin(), scroll.rulings.end(), std::back_inserter(rulings),
+               [&](const HullDocument::Ruling& r) {
+                 return glm::distance(r.a.p, r.b.p) > long_ruling * hull_.diagonal;
+               });
+  if (rulings.empty()) return false;
   return std::all_of(quarters.begin(), quarters.end(), [&](double s) {
-    const auto last = double(scroll.rulings.size() - 1);
-    const HullDocument::Ruling& r = scroll.rulings[static_cast<std::size_t>(s * last)];
-    return glm::distance(r.a.p, r.b.p) > long_ruling * hull_.diagonal &&
-           on_face(ruled_geometry_, source, r, geometry_.noise() * hull_.diagonal);
+    const auto last = double(rulings.size() - 1);
+    return on_face(ruled_geometry_, source, rulings[static_cast<std::size_t>(s * last)],
+                   geometry_.noise() * hull_.diagonal);
   });
 }
 

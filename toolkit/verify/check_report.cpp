@@ -9,9 +9,6 @@
 namespace taut {
 namespace {
 
-/// Measures that a report says are known no better than this are compared as if they were.
-constexpr double least_accuracy = 1e-7;
-
 /// Lengths in the report are those of the document but for how they were computed.
 constexpr double length_accuracy = 1e-12;
 
@@ -93,7 +90,6 @@ void ReportCheck::compare_bounds(const HullDocument& hull) {
 void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasures& measures,
                                    double accuracy) {
   const Json* exact = find(&report_, "hull");
-  accuracy += std::min(number(find(exact, "measures_accuracy")).value_or(0), least_accuracy);
   // Two facets within their bounds enclose volumes that differ by what is between them, and strips
   // between their outlines.
   compare("volume", exact, measures.volume,

@@ -7,36 +7,8 @@
 namespace taut {
 namespace {
 
-/// How far outlines, as polygons through rulings, may run from the curves, in parameters.
-constexpr double outline_slack = 0.05;
-
 bool lies_on(const dvec2& uv, Side side) {
   return (along_v(side) ? uv.x : uv.y) == (at_upper_end(side) ? 1 : 0);
-}
-
-double distance_to_segment(const dvec2& x, const dvec2& a, const dvec2& b) {
-  const dvec2 edge = b - a;
-  const double square = glm::dot(edge, edge);
-  const double t = square > 0 ? std::clamp(glm::dot(x - a, edge) / square, 0.0, 1.0) : 0;
-  return glm::distance(x, a + t * edge);
-}
-
-/// Distance from the outline, negative outside: where an odd number of sides crosses the ray
-/// towards growing v, it is inside.
-double depth(const std::vector<std::vector<dvec2>>& outline, const dvec2& x) {
-  bool inside = false;
-  double distance = std::numeric_limits<double>::infinity();
-  for (const std::vector<dvec2>& loop : outline) {
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const dvec2& a = loop[k];
-      const dvec2& b = loop[(k + 1) % loop.size()];
-      distance = std::min(distance, distance_to_segment(x, a, b));
-      if ((a.x > x.x) == (b.x > x.x)) continue;
-      const double v = a.y + (x.x - a.x) / (b.x - a.x) * (b.y - a.y);
-      if (v > x.y) inside = !inside;
-    }
-  }
-  return inside ? distance : -distance;
 }
 
 }  // namespace
@@ -139,31 +111,13 @@ void ContactFaces::add_border(const PatchRegion& region, int face, const TrimStr
   }
 }
 
-void ContactFaces::add_to_outline(const PatchRegion& region, const TrimStretch& stretch,
-                                  std::vector<dvec2>& outline) const {
-  if (stretch.arc < 0) {
-    outline.push_back(on_side(stretch.side, stretch.from));
-    outline.push_back(on_side(stretch.side, stretch.to));
-    return;
-  }
-  const SeparatingArc& arc = boundary_.arcs[std::size_t(stretch.arc)];
-  const std::vector<Ruling>& rulings = arc.pieces[std::size_t(stretch.piece)].rulings;
-  for (std::size_t k = 0; k < rulings.size(); ++k) {
-    const Ruling& r = rulings[stretch.reversed ? rulings.size() - 1 - k : k];
-    const Contact& c = r.contact[std::size_t(stretch.contact)];
-    if (c.kind == SourceKind::face && c.element == region.patch) outline.emplace_back(c.u, c.v);
-  }
-}
-
 void ContactFaces::add_regions() {
   for (int f = 0; f < int(boundary_.faces.size()); ++f) {
     for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
       geometry_.check_stop();
-      Region own = {region.instance, region.patch, f, {}};
+      regions_.push_back({region.instance, region.patch, f, outline_of(boundary_, region)});
       for (const std::vector<TrimStretch>& loop : region.loops) {
-        own.outline.emplace_back();
         for (const TrimStretch& stretch : loop) {
-          add_to_outline(region, stretch, own.outline.back());
           if (stretch.arc < 0) {
             add_border(region, f, stretch);
           } else {
@@ -172,7 +126,6 @@ void ContactFaces::add_regions() {
           }
         }
       }
-      regions_.push_back(std::move(own));
     }
   }
 }
@@ -195,7 +148,7 @@ void ContactFaces::touch_regions(int instance, int patch, const dvec2& uv, bool 
   for (; region != regions_.end() && before(*region) == place; ++region) {
     const auto next = region + 1;
     const bool alone = best < 0 && (next == regions_.end() || before(*next) != place);
-    const double d = alone && !inside_only ? 0 : depth(region->outline, uv);
+    const double d = alone && !inside_only ? 0 : depth_in(region->outline, uv);
     if (!(d > deepest)) continue;
     deepest = d;
     best = region->face;
@@ -260,7 +213,7 @@ double ContactFaces::deepest(int instance, int patch, const dvec2& uv) const {
   double result = -std::numeric_limits<double>::infinity();
   for (; region != regions_.end() && std::pair(region->instance, region->patch) == place;
        ++region) {
-    result = std::max(result, depth(region->outline, uv));
+    result = std::max(result, depth_in(region->outline, uv));
   }
   return result;
 }

@@ -5,6 +5,7 @@
 
 #include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
+#include "taut/hull/result/region_outline.h"
 
 namespace taut {
 
@@ -50,7 +51,7 @@ class ContactFaces {
   struct Region {
     int instance, patch;
     int face;
-    std::vector<std::vector<dvec2>> outline;  // in (u, v), as polygons
+    RegionOutline outline;
   };
   /// A face along part of an edge's or seam's piece.
   struct Stretch {
@@ -69,8 +70,6 @@ class ContactFaces {
   void add_border(const PatchRegion& region, int face, const TrimStretch& stretch);
   void add_corner(const Contact& contact, const TouchedFace& face);
   void add_stretch(const EdgeStretch& stretch, int face);
-  void add_to_outline(const PatchRegion& region, const TrimStretch& stretch,
-                      std::vector<dvec2>& outline) const;
   void touch_regions(int instance, int patch, const dvec2& uv, bool inside_only,
                      TouchedFaces& faces) const;
   void touch_stretches(int instance, int piece, double t, TouchedFaces& faces) const;

@@ -137,7 +137,7 @@ struct HullFace {
   /// its sides meet, counter-clockwise from outside, with their points.
   dvec3 n = dvec3(0.0);
   double offset = 0;
-  /// scroll, facet: as ArcPiece::tolerant, of its places with the normals there.
+  /// As ArcPiece::tolerant, of its places with the normals there.
   double tolerant = 0;
   std::vector<Contact> contacts;
   std::vector<dvec3> points;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/result/region_outline.h"
 
 namespace taut {
 namespace {
@@ -11,6 +12,8 @@ namespace {
 /// Parts of a facet's curved side, and of the way between two rulings, at whose ends it is looked.
 constexpr int side_places = 8;
 constexpr int ruling_places = 8;
+/// Places of a region at which it is looked, along each of the patch's parameters.
+constexpr int region_places = 3;
 
 class TolerantPlaces {
  public:
@@ -51,6 +54,22 @@ class TolerantPlaces {
     return deepest <= geometry_.tie() ? 0 : deepest;
   }
 
+  /// Places as near to the outline as that may be off are left to its arcs.
+  double of(const HullBoundary& boundary, const PatchRegion& region) {
+    const RegionOutline outline = outline_of(boundary, region);
+    double deepest = 0;
+    for (int k = 0; k < region_places * region_places; ++k) {
+      const dvec2 uv = (dvec2(k % region_places, k / region_places) + 0.5) / double(region_places);
+      if (depth_in(outline, uv) < outline_slack) continue;
+      const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+      const ContactJet j = geometry_.jet(c);
+      const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
+      if (n == dvec3(0.0)) continue;
+      deepest = std::max(deepest, query_(n, c).h - glm::dot(j.x, n));
+    }
+    return deepest <= geometry_.tie() ? 0 : deepest;
+  }
+
  private:
   double depth(const Ruling& r) {
     const double h = query_(r.n, r.contact[0]).h;
@@ -73,6 +92,9 @@ void find_tolerant_places(const ContactSystem& system, SupportQuery& query, Hull
   }
   for (HullFace& face : boundary.faces) {
     if (face.kind == FaceKind::facet && !face.contacts.empty()) face.tolerant = places.of(face);
+    for (const PatchRegion& region : face.regions) {
+      face.tolerant = std::max(face.tolerant, places.of(boundary, region));
+    }
     if (face.kind != FaceKind::scroll) continue;
     const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
     for (int k = 0; k < face.scroll.count; ++k) {

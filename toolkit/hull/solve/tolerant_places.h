@@ -6,11 +6,11 @@
 
 namespace taut {
 
-/// Finds out how far arcs, scrolls and facets of a boundary are below the supporting planes with
-/// their normals (ArcPiece::tolerant, HullFace::tolerant), by support queries: at the rulings that
-/// are stored, and where these are farther than rounding makes them between them, too; at the
-/// corners and curved sides of facets. Where no rulings are found between two, they are known to
-/// the resolution, in the scene's frame. @throws Cancelled
+/// Finds out how far arcs and faces of a boundary are below the supporting planes with their
+/// normals (ArcPiece::tolerant, HullFace::tolerant), by support queries: at the rulings that are
+/// stored, and where these are farther than rounding makes them between them, too; at the corners
+/// and curved sides of facets; at a grid of places in patches. Where no rulings are found between
+/// two, they are known to the resolution, in the scene's frame. @throws Cancelled
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution);
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "taut/bounds/poles.h"
+#include "taut/hull/contact/rulings_between.h"
 #include "taut/surface/rulings.h"
 
 namespace taut {
@@ -84,10 +85,20 @@ int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t e
   return -1;
 }
 
-int source_along(const ContactGeometry& geometry, const ArcPiece& piece) {
-  const Ruling& r = piece.rulings[piece.rulings.size() / 2];
-  const int source = source_along(geometry, r, 0);
-  return source >= 0 ? source : source_along(geometry, r, 1);
+/// Inside of the piece, also where that has no more than the rulings at its ends.
+Ruling middle_ruling(const ContactSystem& system, const ArcPiece& piece) {
+  const std::size_t middle = piece.rulings.size() / 2;
+  const Ruling& r = piece.rulings[middle];
+  if (piece.rulings.size() != 2) return r;
+  const RulingsBetween between(system, piece.rulings.front(), piece.rulings.back());
+  const std::optional<MovingRuling> m = between(between.at_share(0.5));
+  return m ? m->at.ruling() : r;
+}
+
+int source_along(const ContactSystem& system, const ArcPiece& piece) {
+  const Ruling r = middle_ruling(system, piece);
+  const int source = source_along(system.geometry(), r, 0);
+  return source >= 0 ? source : source_along(system.geometry(), r, 1);
 }
 
 /// It is one ruling for all that labels tell.
@@ -103,6 +114,7 @@ bool is_short(const ArcPiece& piece) {
 
 void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) {
   label_facets(geometry, boundary);
+  const ContactSystem system(geometry);
   for (HullFace& face : boundary.faces) {
     if (face.kind != FaceKind::scroll) continue;
     const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
@@ -110,7 +122,7 @@ void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) 
     for (int k = 0; k < face.scroll.count; ++k) {
       const ArcPiece& piece = pieces[std::size_t(face.scroll.first + k) % pieces.size()];
       if (is_short(piece)) continue;
-      const int source = source_along(geometry, piece);
+      const int source = source_along(system, piece);
       own = !own || source == *own ? source : -1;
     }
     face.source = own.value_or(-1);

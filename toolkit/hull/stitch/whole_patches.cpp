@@ -90,7 +90,7 @@ class WholePatches {
     const double uv = glm::dot(j.dxy, n);
     const double det = glm::dot(j.dxx, n) * glm::dot(j.dyy, n) - uv * uv;
     const double size = glm::length(j.dx[0]) * glm::length(j.dx[1]);
-    if (!(det > flat_curvature * size * size)) {
+    if (std::abs(det) <= flat_curvature * size * size) {
       unresolved_.push_back({n, "a flat or developable face lies on the hull"});
     }
     regions_.push_back({s.middle.instance, s.middle.element, s.sign, {whole_border(s.sign)}});
