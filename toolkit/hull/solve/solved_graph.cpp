@@ -238,6 +238,17 @@ class GraphSolver {
     return r;
   }
 
+  /// Where other contacts of a node are higher, what cells tell beside it is none of the arc's.
+  void drop_beyond_node(std::vector<Ruling>& known, int end) {
+    const auto is_beyond = [&](const Ruling& r) {
+      const double height = std::min(glm::dot(r.point[0], r.n), glm::dot(r.point[1], r.n));
+      return query_(r.n, r.contact[0]).h - height > map_.resolution;
+    };
+    while (known.size() > 1 && is_beyond(end == 0 ? known.front() : known.back())) {
+      known.erase(end == 0 ? known.begin() : known.end() - 1);
+    }
+  }
+
   void solve(std::size_t k) {
     progress_.check();
     const MapGraph::Arc& told = known_.graph.arcs[k];
@@ -248,6 +259,7 @@ class GraphSolver {
     for (const int end : {0, 1}) {
       if (arc.closed) break;
       arc.facet[std::size_t(end)] = number_[std::size_t(told.node[std::size_t(end)])];
+      if (arc.facet[std::size_t(end)] >= 0) drop_beyond_node(known, end);
       const Ruling& next = end == 0 ? known.front() : known.back();
       const std::optional<Ruling> r = plug(int(k), end, next);
       merges[std::size_t(end)] = !r;
