@@ -88,7 +88,8 @@ TEST(RulingWays, LeadFromTheOneToTheOther) {
   EXPECT_TRUE(leads(missed(dvec3(0.0), dvec3(0, 2, 1e-11))));
   EXPECT_FALSE(leads(missed(dvec3(0, 1e-9, 0), dvec3(0, 2, 0))));
   RulingWay way{from, to, false, 0.25};
-  EXPECT_NEAR(way.uncertainty(), 0.5 * 0.25 * std::sqrt(0.4), 1e-15);
+  const double turn = std::sqrt(0.4);
+  EXPECT_NEAR(way.uncertainty(), 0.5 * turn * (0.25 + turn * 2 / 8), 1e-15);
 }
 
 /// Contacts of a straight way lie on their elements.

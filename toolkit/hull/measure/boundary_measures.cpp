@@ -17,6 +17,10 @@
 namespace taut {
 namespace {
 
+/// By how much the sums that are accurate for measures may miss the way of a contact itself, in the
+/// scene's frame: 1e-8 beside free ends of blobs.
+constexpr double quadrature_way = 1e-6;
+
 /// Nodes of the rules that do for patches that are small beside their radii of curvature.
 constexpr int few_nodes = 6;
 
@@ -215,8 +219,15 @@ void Summation::add_between(const Stretch& at, const Ruling& from, const Ruling&
   add_exact(at, between);
   if (between.is_smoother()) return;
   std::array<dvec3, 2> moved;
-  for (std::size_t k = 0; k < 6; ++k) {
-    moved[k / 3][int(k % 3)] = double(sums_.value[way + k] - before.value[way + k]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const dvec3 whole = to.point[i] - from.point[i];
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t q = way + 3 * i + std::size_t(k);
+      moved[i][k] = double(sums_.value[q] - before.value[q]);
+    }
+    // Along edges angles count by the way. Of others the measures are known better than the way.
+    const bool is_known = from.contact[i].kind != SourceKind::edge;
+    if (is_known && glm::distance(moved[i], whole) <= quadrature_way) moved[i] = whole;
   }
   const double missed = missed_way(moved, from, to);
   if (leads(missed)) return;

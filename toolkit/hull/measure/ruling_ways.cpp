@@ -102,7 +102,13 @@ MovingRuling RulingWay::straight(const ContactGeometry& geometry, double r) cons
   return m;
 }
 
-double RulingWay::uncertainty() const { return 0.5 * deviation * glm::distance(from.n, to.n); }
+double RulingWay::uncertainty() const {
+  const double turn = glm::distance(from.n, to.n);
+  const double way =
+      glm::distance(from.point[0], to.point[0]) + glm::distance(from.point[1], to.point[1]);
+  // What turns by so much on a way bulges by an eighth of both over the straight one.
+  return 0.5 * turn * (deviation + turn * way / 8);
+}
 
 double missed_way(const std::array<dvec3, 2>& moved, const Ruling& from, const Ruling& to) {
   const double missed = glm::distance(moved[0], to.point[0] - from.point[0]) +
