@@ -392,13 +392,21 @@ TouchingPlane told_in_line(const ContactGeometry& geometry, SupportQuery& query,
 
 TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& query, dvec3 n,
                              const std::vector<Contact>& contacts) {
-  if (std::optional<TouchingPlane> solved = solved_plane(geometry, n, contacts)) {
-    find_above(query, *solved);
-    if (solved->off() <= geometry.tie()) return told_in_line(geometry, query, *solved, contacts);
+  const auto supporting = [&](const dvec3& start, const std::vector<Contact>& from) {
+    std::optional<TouchingPlane> solved = solved_plane(geometry, start, from);
+    if (solved) find_above(query, *solved);
+    return solved && solved->off() <= geometry.tie() ? solved : std::nullopt;
+  };
+  std::optional<TouchingPlane> plane = supporting(n, contacts);
+  if (!plane) {
+    plane = PlaneSearch(geometry, n, contacts).run();
+    find_above(query, *plane);
+    // Climbs are less exact than what Newton's method makes of them.
+    std::vector<Contact> reached;
+    for (const ClimbedContact& c : plane->contacts) reached.push_back(c.contact);
+    if (const auto solved = supporting(plane->n, reached)) plane = solved;
   }
-  TouchingPlane plane = PlaneSearch(geometry, n, contacts).run();
-  find_above(query, plane);
-  return told_in_line(geometry, query, plane, contacts);
+  return told_in_line(geometry, query, *plane, contacts);
 }
 
 }  // namespace taut
