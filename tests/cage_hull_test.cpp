@@ -13,6 +13,7 @@
 
 #include "cages.h"
 #include "models.h"
+#include "sound_hull.h"
 #include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/model_support.h"
 #include "taut/bounds/scene.h"
@@ -47,8 +48,7 @@ void expect_verified(const Model& model, const Hull& hull, const std::string& na
   EXPECT_EQ(found.euler, 2) << name;
   EXPECT_TRUE(found.closed) << name;
   EXPECT_TRUE(found.is_hull(tolerance))
-      << name << ": off sources " << found.off_source << ", tangency " << found.tangency
-      << ", flatness " << found.flatness;
+      << name << ": " << text_of(found);
 }
 
 /// Permutations of coordinates with an even number of changed signs; for the cube any number.

@@ -42,7 +42,7 @@ class GraphSolver {
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
     for (SeparatingArc& arc : graph_.arcs) {
-      tell_vertices(geometry_, arc.pieces, map_.contact_extent());
+      tell_vertices(geometry_, arc.pieces);
       drop_empty_pieces(geometry_, arc.pieces);
     }
     graph_.newton_iterations = system_.iterations();

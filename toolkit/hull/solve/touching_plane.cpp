@@ -404,7 +404,9 @@ TouchingPlane touching_plane(const ContactGeometry& geometry, SupportQuery& quer
     // Climbs are less exact than what Newton's method makes of them.
     std::vector<Contact> reached;
     for (const ClimbedContact& c : plane->contacts) reached.push_back(c.contact);
-    if (const auto solved = supporting(plane->n, reached)) plane = solved;
+    if (plane->off() <= geometry.tie()) {
+      if (const auto solved = supporting(plane->n, reached)) plane = solved;
+    }
   }
   return told_in_line(geometry, query, *plane, contacts);
 }

@@ -207,8 +207,7 @@ bool same_elements(const Ruling& a, const Ruling& b) {
   return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
 }
 
-void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
-                   double distance) {
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   std::vector<ArcPiece> told;
   for (ArcPiece& piece : pieces) {
     for (const std::size_t i : {0u, 1u}) {
@@ -217,8 +216,7 @@ void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& piece
       const bool stays =
           piece.rulings.back().point[i] == end &&
           std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
-            return glm::distance(r.point[i], end) <= distance &&
-                   glm::dot(r.point[i] - end, r.n) <= geometry.tie();
+            return glm::dot(r.point[i] - end, r.n) <= geometry.tie();
           });
       if (!stays || first.contact[i].kind != SourceKind::edge) continue;
       const Contact vertex = geometry.first(geometry.canonical(first.contact[i]));

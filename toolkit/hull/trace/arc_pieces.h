@@ -16,9 +16,10 @@ inline constexpr double longest_empty_piece = 1e-7;
 /// Contacts with which the others begin and end are in their normal form (turned_to).
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
 
-/// Contacts that stay at an end of an edge along a piece, or so near to it that it is as high to
-/// within tie(), are told as ones of its vertex; pieces that go on into each other then are one.
-void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces, double distance);
+/// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
+/// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge
+/// leaves it along the ruling. Pieces that go on into each other then are one.
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
 
 /// Reverses the direction, and with it the order of contacts.
 void reverse(std::vector<ArcPiece>& pieces);
