@@ -426,4 +426,23 @@ Shape half_torus(double R, double r) {
   return {{assembled(patches, 4)}, {}, {}};
 }
 
+Shape dented_sheet(double down) {
+  constexpr int count = 17;
+  NurbsSurface surface{3, 3, {0, 0, 0}, {0, 0, 0}, {}};
+  for (int k = 0; k <= count - 3; ++k) {
+    surface.knots_u.push_back(k);
+    surface.knots_v.push_back(k);
+  }
+  surface.knots_u.insert(surface.knots_u.end(), 3, count - 3.0);
+  surface.knots_v.insert(surface.knots_v.end(), 3, count - 3.0);
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      const dvec2 p(2.0 * i / (count - 1) - 1, 2.0 * j / (count - 1) - 1);
+      const double z = -0.25 * glm::dot(p, p) - (i == count / 2 && j == count / 2 ? down : 0);
+      surface.points.push_back(homogeneous({p.x, p.y, z}));
+    }
+  }
+  return {{surface}, {}, {}};
+}
+
 }  // namespace taut_test

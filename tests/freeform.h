@@ -19,6 +19,10 @@ Shape tied_curve(double start);
 /// y = (2 a / b) x^2.
 Shape godron(double a, double b, double c);
 
+/// A sheet over [-1, 1] x [-1, 1], curved as a sphere of radius two, a control point in the middle
+/// of which is moved down.
+Shape dented_sheet(double down);
+
 /// @name The same surfaces and curves, written differently; of one source each as before
 /// @{
 /// Each Bezier patch in four, split at the parameters u and v of its unit square, and each Bezier

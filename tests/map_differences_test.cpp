@@ -54,30 +54,9 @@ TEST(MapDifferences, NoneFromTruths) {
   }
 }
 
-/// A sheet over [-1, 1] x [-1, 1], curved as a sphere of radius two, a control point in the middle
-/// of which is moved down.
-Shape sheet(double down) {
-  constexpr int count = 17;
-  NurbsSurface surface{3, 3, {0, 0, 0}, {0, 0, 0}, {}};
-  for (int k = 0; k <= count - 3; ++k) {
-    surface.knots_u.push_back(k);
-    surface.knots_v.push_back(k);
-  }
-  surface.knots_u.insert(surface.knots_u.end(), 3, count - 3.0);
-  surface.knots_v.insert(surface.knots_v.end(), 3, count - 3.0);
-  for (int i = 0; i < count; ++i) {
-    for (int j = 0; j < count; ++j) {
-      const dvec2 p(2.0 * i / (count - 1) - 1, 2.0 * j / (count - 1) - 1);
-      const double z = -0.25 * glm::dot(p, p) - (i == count / 2 && j == count / 2 ? down : 0);
-      surface.points.push_back(homogeneous({p.x, p.y, z}));
-    }
-  }
-  return {{surface}, {}, {}};
-}
-
 TEST(MapDifferences, TellAMissingDent) {
   const double down = 0.02;
-  const Shape dented = mapped(sheet(down), skew_rotation());
+  const Shape dented = mapped(dented_sheet(down), skew_rotation());
   const dvec3 up = skew_rotation() * dvec3(0, 0, 1);
   const Scene scene = make_scene(dented);
   const ContactGeometry geometry(scene);
@@ -89,8 +68,8 @@ TEST(MapDifferences, TellAMissingDent) {
   const double share = depth / 4 / scene.frame().length_to_frame(scene.diagonal());
   Compared own(dented, share);
   EXPECT_TRUE(own.spots().empty());
-  EXPECT_EQ(Compared(mapped(sheet(0), skew_rotation()), share).spots().size(), 0U);
-  own.boundary = Compared(mapped(sheet(0), skew_rotation()), share).boundary;
+  EXPECT_EQ(Compared(mapped(dented_sheet(0), skew_rotation()), share).spots().size(), 0U);
+  own.boundary = Compared(mapped(dented_sheet(0), skew_rotation()), share).boundary;
   const std::vector<Unresolved> spots = own.spots();
   ASSERT_FALSE(spots.empty());
   for (const Unresolved& spot : spots) EXPECT_GT(glm::dot(spot.n, up), 0.99);

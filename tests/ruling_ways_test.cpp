@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "judge/families.h"
@@ -14,18 +13,6 @@ namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
-
-Scene scene_of(const std::string& name, Variant variant) {
-  for (const FamilyGroup& group : family_groups()) {
-    for (const Family& family : group.families) {
-      if (family.name != name) continue;
-      taut_test::Random random(1);
-      const Natural drawn = family.make(random);
-      return make_scene(placed(drawn, variant, random).shape);
-    }
-  }
-  throw std::logic_error("no such family");
-}
 
 Hull solved(const Scene& scene) {
   HullOptions options;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "exact_checks.h"
 #include "freeform.h"
 #include "judge/families.h"
 #include "models.h"
 #include "taut/hull/precise_hull.h"
+#include "taut/hull/result/region_outline.h"
 
 namespace taut {
 namespace {
@@ -79,22 +81,60 @@ TEST(SolvedHull, RulingsAtPolesAreMeasured) {
   expect_exact_measures(with_exchanged_parameters(box), "with exchanged parameters");
 }
 
-/// What no exact boundary is found of as yet.
-Shape unsolved() {
-  for (const FamilyGroup& group : family_groups()) {
-    for (const Family& family : group.families) {
-      if (std::string(family.name) != "cut_by_edges") continue;
-      Random random(1);
-      const Natural natural = family.make(random);
-      return placed(natural, Variant::float32, random).shape;
+/// Also where all of the rim is within the resolution of one plane.
+TEST(SolvedHull, DentsAreNoPartOfPatches) {
+  const Shape dented = mapped(dented_sheet(0.02), skew_rotation());
+  const dvec3 up = skew_rotation() * dvec3(0, 0, 1);
+  const Scene scene = make_scene(dented);
+  const ContactGeometry geometry(scene);
+  SupportQuery query(scene);
+  const dvec3 middle = geometry.point({0, SourceKind::face, 7 * 14 + 7, 0, 0});
+  const double depth = glm::dot(query(up).point - middle, up);
+  HullOptions options;
+  options.relative = 1e-2;
+  options.curves = CurveMethod::solving;
+  for (const double share : {4.0, 16.0, 64.0}) {
+    SCOPED_TRACE(share);
+    options.resolution = depth / share / scene.frame().length_to_frame(scene.diagonal());
+    const Hull hull = precise_hull(scene, options);
+    EXPECT_TRUE(hull.boundary->unresolved.empty());
+    EXPECT_LE(deepest_tolerant(*hull.boundary), depth / share);
+    EXPECT_GT(hull.boundary->count(FaceKind::scroll), 0);
+    for (const HullFace& face : hull.boundary->faces) {
+      for (const PatchRegion& region : face.regions) {
+        const int row = region.patch / 14;
+        const int column = region.patch % 14;
+        if (row < 6 || row > 7 || column < 6 || column > 7) continue;
+        const dvec2 corner(row == 6 ? 1 : 0, column == 6 ? 1 : 0);
+        EXPECT_LT(depth_in(outline_of(*hull.boundary, region), corner), 0) << region.patch;
+      }
     }
   }
-  return {};
+}
+
+/// What one map has as one contact, so that no boundary is closed, finer ones tell apart.
+TEST(SolvedHull, IsWithinTheResolutionByFinerMaps) {
+  for (const auto& [name, variant] :
+       {std::pair{"thread", Variant::float32}, {"overlapping_balls", Variant::decimals}}) {
+    SCOPED_TRACE(name);
+    const Scene scene = scene_of(name, variant);
+    const Hull hull = solved_hull_of(scene);
+    EXPECT_TRUE(hull.boundary->unresolved.empty());
+    EXPECT_LE(hull.boundary->frame.length_to_model(deepest_tolerant(*hull.boundary)),
+              hull.resolution.rho);
+  }
+}
+
+/// Planes of three contacts that climbs have found.
+TEST(SolvedHull, NodesAreTangent) {
+  const Scene scene(posed_teapots(5, 5), {.threads = 1, .progress = {}});
+  const BoundaryFacts facts = boundary_facts(scene, solved_hull_of(scene), 300);
+  EXPECT_TRUE(facts.sound()) << facts;
 }
 
 /// It is told, and there is a closed boundary with its depth all the same.
 TEST(SolvedHull, IsClosedWhereItIsNotExact) {
-  const Scene scene = make_scene(unsolved());
+  const Scene scene = scene_of("cut_by_edges", Variant::float32);
   try {
     solved_hull_of(scene);
     FAIL() << "it is exact by now: take another";

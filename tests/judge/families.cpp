@@ -1,6 +1,7 @@
 #include "families.h"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace taut_test {
 
@@ -47,6 +48,18 @@ const std::vector<FamilyGroup>& family_groups() {
       {"cages", cages()},
   };
   return all;
+}
+
+taut::Scene scene_of(const std::string& family, Variant variant) {
+  for (const FamilyGroup& group : family_groups()) {
+    for (const Family& own : group.families) {
+      if (own.name != family) continue;
+      Random random(1);
+      const Natural drawn = own.make(random);
+      return make_scene(placed(drawn, variant, random).shape);
+    }
+  }
+  throw std::logic_error("no such family");
 }
 
 }  // namespace taut_test
