@@ -47,8 +47,7 @@ void expect_verified(const Model& model, const Hull& hull, const std::string& na
   const HullVerification found = verify(hull_document(scene, *hull.boundary), scene, options);
   EXPECT_EQ(found.euler, 2) << name;
   EXPECT_TRUE(found.closed) << name;
-  EXPECT_TRUE(found.is_hull(tolerance))
-      << name << ": " << text_of(found);
+  EXPECT_TRUE(found.is_hull(tolerance)) << name << ": " << text_of(found);
 }
 
 /// Permutations of coordinates with an even number of changed signs; for the cube any number.
