@@ -42,7 +42,9 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 /// without any is closed. Same result for any number of threads.
 ///
 /// With CurveMethod::solving the curves come from the map alone, and arcs, scrolls and facets that
-/// do not support as exactly say by how much they do not (ArcPiece::tolerant, HullFace::tolerant).
+/// do not support as exactly say by how much they do not (ArcPiece::tolerant, HullFace::tolerant);
+/// patches, by a grid of places. Where no closed boundary to within the resolution is found so,
+/// maps at finer ones are asked, down to a 64th.
 /// @pre the culling and the map are of the geometry's scene, which spans space (tolerances.h says
 /// what is flat)
 /// @throws Cancelled
