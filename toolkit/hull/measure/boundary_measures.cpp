@@ -50,8 +50,12 @@ class Summation {
         }
       }
     }
-    // Patches state no depth. What spans the outline of a facet is as far from its plane again.
-    layer_ += boundary.gap * std::max(double(sums_.value[area] - sums_.value[ruled]), 0.0);
+    double patch_depth = boundary.gap;
+    for (const HullFace& face : boundary.faces) {
+      if (face.kind == FaceKind::patch) patch_depth = std::max(patch_depth, face.tolerant);
+    }
+    layer_ += patch_depth * std::max(double(sums_.value[area] - sums_.value[ruled]), 0.0);
+    // What spans the outline of a facet is as far from its plane again.
     const double off_plane = is_polyhedron(boundary) ? 1 : 2;
     for (const HullFace& face : boundary.faces) {
       if (face.kind != FaceKind::facet) continue;
