@@ -20,11 +20,12 @@ using namespace taut;  // NOLINT: what is tested
 /// Mean widths of wrong hulls are off by a thousandth and more.
 constexpr double wrong_width = 1e-6;
 
-/// What verify() says of the hull that Taut computes, whether its faces are right, and whether its
-/// report is as accurate as it says.
+/// What verify() says of the hull that Taut computes, whether its faces are right but for what they
+/// state to be below the supporting planes, and whether its report is as accurate as it says.
 struct Outcome {
   bool right_faces = false;
   bool right_report = false;
+  bool exact = false;  ///< no place is below
   HullVerification found;
 };
 
@@ -39,8 +40,10 @@ Outcome outcome(const Plate& plate, const dmat3& rotation) {
   const double volume_error = std::abs(own.volume / truth.volume - 1);
   const double width_error = std::abs(own.mean_width / truth.mean_width - 1);
   Outcome o;
-  o.right_faces =
-      boundary.unresolved.empty() && volume_error <= 1e-11 && width_error <= wrong_width;
+  o.right_faces = boundary.unresolved.empty() &&
+                  volume_error <= 1e-11 + own.bounds.volume - own.accuracy &&
+                  width_error <= wrong_width;
+  o.exact = deepest_tolerant(boundary) == 0;
   o.right_report = width_error <= own.accuracy + measure_accuracy;
   o.found = verified(sound.hull, sound.scene);
   return o;
@@ -70,7 +73,9 @@ int expect_verified_if_right(unsigned step) {
     EXPECT_EQ(o.found.is_hull(exact), o.right_faces && o.right_report)
         << seed << " " << text_of(o.found);
     if (!o.right_faces) continue;
-    EXPECT_LE(o.found.measures_error, 1e-12) << seed;
+    if (o.exact) {
+      EXPECT_LE(o.found.measures_error, 1e-12) << seed;
+    }
     if (!o.right_report) {
       EXPECT_EQ(failed(o.found), std::set<std::string>{"report"}) << seed;
     }

@@ -19,6 +19,8 @@
 #include "taut/hull/compare/map_differences.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
+#include "taut/hull/solve/solved_graph.h"
+#include "taut/hull/solve/tolerant_places.h"
 #include "taut/hull/stitch/stitch.h"
 #include "truths.h"
 
@@ -376,25 +378,20 @@ TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
   EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
 }
 
-/// Those of culling, of the map of directions, of tracing, of stitching and of the comparison.
+/// Those of the map of directions, of solving and of stitching.
 TEST(ExactBoundary, CountsAllQueries) {
   const Scene scene = make_scene(teapot());
-  const GaussMap map(scene, {.threads = 1, .progress = {}});
-  HullStatistics statistics;
-  exact_boundary(scene, map, options(), statistics);
-  HullStatistics culled;
-  const Culling culling = culling_of(scene, map, options(), culled);
-  const ContactGeometry geometry(scene);
-  SupportQuery query(scene);
   HullStatistics decided;
+  const ContactGeometry geometry(scene, {}, same_elements_of(scene, options()));
   const DirectionMap directions = directions_of(geometry, options(), decided);
   EXPECT_GT(decided.support_queries, 0);
-  const HullBoundary boundary = stitch(
-      geometry, query,
-      trace_separating_curves(geometry, query, culling.samples, culling.cells, {.cells = false}));
-  map_differences(geometry, query, directions, boundary);
-  EXPECT_EQ(statistics.support_queries,
-            culled.support_queries + decided.support_queries + query.queries());
+  HullStatistics statistics;
+  exact_boundary(geometry, {}, directions, options(), statistics);
+  SupportQuery query(scene);
+  SeparatingGraph graph = solved_graph(geometry, query, directions, {});
+  HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
+  find_tolerant_places(ContactSystem(geometry), query, boundary, directions.resolution);
+  EXPECT_EQ(statistics.support_queries, query.queries());
 }
 
 TEST(PreciseHull, Cancelled) {

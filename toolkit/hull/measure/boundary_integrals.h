@@ -32,8 +32,8 @@ void add_element(Quantities& sum, const dvec3& x, const dvec3& A, double dA, dou
 /// (Su x Sv).
 void add_patch(const ContactJet& j, const dvec3& origin, int sign, Quantities& sum);
 
-/// Half the angle of n about an edge's tangent, from the direction away from the point inside,
-/// times the tangent's length: between -pi/4 and pi/4 times that, since x . n > 0.
+/// Half the angle of n about an edge's tangent, from the direction away from the edge's origin
+/// (CreaseOrigins), times the tangent's length: between -pi/4 and pi/4 times that, since x . n > 0.
 double crease(const dvec3& x, const dvec3& tangent, const dvec3& n);
 
 /// Tolerances relative to the largest component of each kind, but not below the rounding of what

@@ -8,6 +8,7 @@
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/measure/arc_joints.h"
 #include "taut/hull/measure/boundary_integrals.h"
+#include "taut/hull/measure/crease_origins.h"
 #include "taut/hull/measure/facet_integrals.h"
 #include "taut/hull/measure/green_regions.h"
 #include "taut/hull/measure/interior_point.h"
@@ -32,6 +33,7 @@ class Summation {
         system_(geometry),
         boundary_(boundary),
         origin_(interior_point(geometry, boundary)),
+        creases_(geometry, boundary, origin_),
         regions_(geometry, boundary) {
     find_scrolls();
     for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
@@ -60,7 +62,7 @@ class Summation {
     for (const HullFace& face : boundary.faces) {
       if (face.kind != FaceKind::facet) continue;
       const long double before = sums_.value[area];
-      add_facet(geometry, face, origin_, sums_);
+      add_facet(geometry, face, origin_, creases_, sums_);
       const double own = double(sums_.value[area] - before);
       layer_ += off_plane * place_depth(boundary, face.tolerant) * std::abs(own);
     }
@@ -100,6 +102,7 @@ class Summation {
   ContactSystem system_;
   const HullBoundary& boundary_;
   dvec3 origin_;
+  CreaseOrigins creases_;
   GreenRegions regions_;
   std::vector<std::vector<bool>> in_scroll_;  // per arc and piece
   Sums sums_;
@@ -193,7 +196,8 @@ void Summation::add_ruling(const Stretch& at, const MovingRuling& m, double weig
   for (std::size_t i = 0; i < 2; ++i) {
     for (int k = 0; k < 3; ++k) sample[way + 3 * i + std::size_t(k)] += m.dx[i][k];
     if (m.at.contact[i].kind != SourceKind::edge) continue;
-    const double half = crease(m.at.jet[i].x - origin_, m.at.jet[i].dx[0], m.at.n);
+    const dvec3& origin = creases_.of(m.at.contact[i]);
+    const double half = crease(m.at.jet[i].x - origin, m.at.jet[i].dx[0], m.at.n);
     sample[curvature] += (i == 0 ? -1 : 1) * half * m.dp[i].x;
   }
   for (const ArcTrace& trace : *at.traces) {
@@ -293,7 +297,8 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
     if (!edge) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
-    const double half = crease(j.x - origin_, sense * j.dx[of_v ? 1 : 0], unit(N));
+    const dvec3 x = j.x - creases_.of(*region.region, stretch.side);
+    const double half = crease(x, sense * j.dx[of_v ? 1 : 0], unit(N));
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;
   };

@@ -11,7 +11,8 @@ namespace {
 /// Two nodes in r are exact for its third degree. Of the side's normals the facet's own is the
 /// lower end, as borders of patches have it.
 void add_side(const ContactGeometry& geometry, const HullFace& face, const dvec3& begin,
-              const EdgeStretch& side, const dvec3& origin, Sums& sums) {
+              const EdgeStretch& side, const dvec3& origin, const dvec3& crease_origin,
+              Sums& sums) {
   const dvec3 tip = begin - origin;
   const double sense = side.to < side.from ? -1 : 1;
   const double offset = std::sqrt(1.0 / 12);
@@ -23,7 +24,7 @@ void add_side(const ContactGeometry& geometry, const HullFace& face, const dvec3
       const dvec3 A = r * element;
       add_element(sample, tip + r * ray, A, glm::dot(A, face.n), 0.5);
     }
-    sample[curvature] -= sense * crease(j.x - origin, sense * j.dx[0], face.n);
+    sample[curvature] -= sense * crease(j.x - crease_origin, sense * j.dx[0], face.n);
   };
   integrate<16>(f, tolerances, side.from, side.to, sums);
 }
@@ -67,11 +68,12 @@ void add_polygon(const HullFace& face, const dvec3& origin, Sums& sums) {
 }  // namespace
 
 void add_facet(const ContactGeometry& geometry, const HullFace& face, const dvec3& origin,
-               Sums& sums) {
+               const CreaseOrigins& creases, Sums& sums) {
   add_polygon(face, origin, sums);
   for (std::size_t k = 0; k < face.sides.size(); ++k) {
     if (face.sides[k].piece >= 0) {
-      add_side(geometry, face, face.points[k], face.sides[k], origin, sums);
+      const EdgeStretch& side = face.sides[k];
+      add_side(geometry, face, face.points[k], side, origin, creases.of(side.at(0.5)), sums);
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "taut/hull/measure/boundary_integrals.h"
+#include "taut/hull/measure/crease_origins.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
@@ -8,7 +9,7 @@ namespace taut {
 /// Adds the integrals over a facet: the polygon of its contacts, and what lies between its sides
 /// and the curved ones, with these ones' share of the creases there. `origin` is a point inside.
 void add_facet(const ContactGeometry& geometry, const HullFace& face, const dvec3& origin,
-               Sums& sums);
+               const CreaseOrigins& creases, Sums& sums);
 
 /// All faces are polygons, and the curves the segments between two: what facetted_boundary() and
 /// polyhedral_boundary() make.

@@ -218,15 +218,27 @@ double ContactFaces::deepest(int instance, int patch, const dvec2& uv) const {
   return result;
 }
 
+/// The ends of stretches are only as exact as curves are. Curves that run along a side of a patch
+/// may be told as ones of the patch.
+bool ContactFaces::is_near_stretch(const Contact& c) const {
+  if (std::any_of(stretches_.begin(), stretches_.end(), [&](const Stretch& s) {
+        return s.instance == c.instance && s.piece == c.element && s.from - outline_slack <= c.u &&
+               c.u <= s.to + outline_slack;
+      })) {
+    return true;
+  }
+  const std::vector<ContactGeometry::PieceSide>& sides = geometry_.sides(geometry_.first(c));
+  return std::any_of(sides.begin(), sides.end(), [&](const ContactGeometry::PieceSide& s) {
+    const int instance = s.instance < 0 ? c.instance : s.instance;
+    const double t = s.reversed ? 1 - c.u : c.u;
+    return deepest(instance, s.patch, on_side(s.side, t)) >= -outline_slack;
+  });
+}
+
 bool ContactFaces::surely_uncovered(const Contact& contact) const {
   const Contact c = geometry_.canonical(contact);
   if (c.kind != SourceKind::face) {
-    if (!touched(c).empty()) return false;
-    // The ends of stretches are only as exact as curves are.
-    return std::none_of(stretches_.begin(), stretches_.end(), [&](const Stretch& s) {
-      return c.kind == SourceKind::edge && s.instance == c.instance && s.piece == c.element &&
-             s.from - outline_slack <= c.u && c.u <= s.to + outline_slack;
-    });
+    return touched(c).empty() && (c.kind != SourceKind::edge || !is_near_stretch(c));
   }
   const dvec2 uv(c.u, c.v);
   double depth = deepest(c.instance, c.element, uv);

@@ -74,6 +74,7 @@ class ContactFaces {
                      TouchedFaces& faces) const;
   void touch_stretches(int instance, int piece, double t, TouchedFaces& faces) const;
   TouchedFaces on_patch(const Contact& c) const;
+  bool is_near_stretch(const Contact& c) const;
   double deepest(int instance, int patch, const dvec2& uv) const;
 
   const ContactGeometry& geometry_;

@@ -25,7 +25,7 @@ constexpr int most_hops = 3;
 /// Ways that are not divided.
 constexpr double least_way = 1e-6;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
-constexpr double middle_share = 0.1;
+constexpr double middle_share = 0.05;
 /// Largest turn between neighbours, in radians.
 constexpr double largest_turn = 0.4;
 /// Parts of the way between rulings between which none is found, at whose ends it is looked at.
@@ -35,7 +35,8 @@ constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
 /// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
-/// How far before the way or beyond it a change may be by rounding, as a share.
+/// How far before the way or beyond it a change may be by rounding, as a share; beside the
+/// resolution.
 constexpr double way_slack = 1e-9;
 
 double gap(const Ruling& a, const Ruling& b) {
@@ -142,21 +143,24 @@ void ArcSolver::end_in_one_contact() {
 void ArcSolver::go_on(const Ruling& to, int depth) {
   if (depth == division_limit) return jump(to);
   if (!same_elements(last(), to)) {
-    if (stays(to) || step_over(to)) return go_on(to, depth + 1);
+    if (stays(to, geometry_.tie()) || step_over(to) || stays(to, search_.map().resolution)) {
+      return go_on(to, depth + 1);
+    }
     return divide(to, depth);
   }
   if (is_smooth(to)) return append(to);
   divide(to, depth);
 }
 
-/// A contact that is in one place, but told as one of another element, is so from here on.
-bool ArcSolver::stays(const Ruling& to) {
+/// A contact that is in one place, within a distance, but told as one of another element, is so
+/// from here on.
+bool ArcSolver::stays(const Ruling& to, double distance) {
   Ruling after = last();
   for (std::size_t i = 0; i < 2; ++i) {
     const bool in_face =
         after.contact[i].kind == SourceKind::face || to.contact[i].kind == SourceKind::face;
     if (in_face || same_element(after.contact[i], to.contact[i]) ||
-        glm::distance(after.point[i], to.point[i]) > search_.map().resolution) {
+        glm::distance(after.point[i], to.point[i]) > distance) {
       continue;
     }
     after.contact[i] = to.contact[i];
@@ -330,8 +334,10 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   s.evaluate(geometry_);
   Change found{s.ruling(), s.ruling(), 0};
   found.way = share_of_way(last(), to, found.before);
-  if (!(found.way >= -way_slack && found.way <= 1 + way_slack)) return std::nullopt;
-  const double farthest = (1 + way_slack) * gap(last(), to) + search_.map().resolution;
+  const double whole = gap(last(), to);
+  const double slack = way_slack + search_.map().resolution / whole;
+  if (!(found.way >= -slack && found.way <= 1 + slack)) return std::nullopt;
+  const double farthest = (1 + way_slack) * whole + search_.map().resolution;
   if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
   // A pole is on all patches about it.
   const std::optional<Contact> next = pole_side(geometry_, s.contact[i])

@@ -36,7 +36,7 @@ class ArcSolver {
   const Ruling& last() const { return pieces_.back().rulings.back(); }
   void append(const Ruling& r) { pieces_.back().rulings.push_back(r); }
   void go_on(const Ruling& to, int depth);
-  bool stays(const Ruling& to);
+  bool stays(const Ruling& to, double distance);
   bool is_smooth(const Ruling& to);
   Ruling inside(Ruling r) const;
   bool is_interpolated(const RulingsBetween& between) const;
