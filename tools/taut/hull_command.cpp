@@ -45,7 +45,7 @@ struct HullArguments {
   std::optional<double> relative;
   std::optional<double> tolerance;
   std::optional<double> resolution;
-  std::string curves = "tracing";
+  std::string curves = "solving";
   int max_vertices = HullOptions().max_vertices;
   std::optional<double> max_seconds;
   std::optional<std::size_t> max_memory;

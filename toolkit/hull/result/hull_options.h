@@ -23,7 +23,7 @@ struct HullOptions {
   /// What is nearer than this fraction of that diagonal may be taken for one; 0: nothing but what
   /// rounding to doubles does. None: the model tells (Resolution).
   std::optional<double> resolution = std::nullopt;
-  CurveMethod curves = CurveMethod::tracing;
+  CurveMethod curves = CurveMethod::solving;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;
   /// Vertices, some thirty to begin with apart, after which refinement gives up (HullNotConverged

@@ -1,6 +1,7 @@
 #include "taut/hull/solve/arc_ends.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "taut/bounds/contact_climb.h"
@@ -30,7 +31,14 @@ class FreeEndSearch {
   explicit FreeEndSearch(const RulingSearch& search)
       : search_(search), geometry_(search.geometry()) {}
 
-  bool is_near(const Ruling& r) const { return length_of(r) <= merging_distance(geometry_); }
+  /// Where one of them lies on an edge the system of two contacts is worse by the square of their
+  /// distance, not by its third power as merging_distance() has it.
+  bool is_near(const Ruling& r) const {
+    const bool of_faces = r.contact[0].kind == SourceKind::face &&
+                          r.contact[1].kind == SourceKind::face;
+    const double distance = merging_distance(geometry_);
+    return length_of(r) <= (of_faces ? distance : std::pow(distance, 1.5));
+  }
 
   /// Adds what is left of the arc, if its end is told.
   bool ends(std::vector<ArcPiece>& pieces) const {
