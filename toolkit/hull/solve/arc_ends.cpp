@@ -34,8 +34,8 @@ class FreeEndSearch {
   /// Where one of them lies on an edge the system of two contacts is worse by the square of their
   /// distance, not by its third power as merging_distance() has it.
   bool is_near(const Ruling& r) const {
-    const bool of_faces = r.contact[0].kind == SourceKind::face &&
-                          r.contact[1].kind == SourceKind::face;
+    const bool of_faces =
+        r.contact[0].kind == SourceKind::face && r.contact[1].kind == SourceKind::face;
     const double distance = merging_distance(geometry_);
     return length_of(r) <= (of_faces ? distance : std::pow(distance, 1.5));
   }
