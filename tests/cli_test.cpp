@@ -352,28 +352,26 @@ TEST_F(Cli, LimitsMetLaterExitWithSixAndTheBestHull) {
   const double taken = Json::parse(content(path("r.json")))["peak_bytes"];
   std::ostringstream limit;
   limit << "-o a.hull.json --relative 1e-7 --max-memory " << std::lround(taken) + (1L << 25);
-  for (const char* curves : {" --curves tracing", " --curves solving"}) {
-    const Result result = run(hull + limit.str() + curves);
-    EXPECT_EQ(result.exit_code, 6) << result.err;
-    EXPECT_TRUE(result.err.starts_with("taut: the limit of ")) << result.err;
-    EXPECT_NE(result.err.find("of memory was met; the hull written is within "), std::string::npos)
-        << result.err;
-    EXPECT_TRUE(fs::remove(path("a.hull.json")));
-    const Json report = Json::parse(content(path("r.json")));
-    EXPECT_EQ(report["warnings"][0]["code"], "limit-met");
-    EXPECT_EQ(report["hull"]["unresolved"], 0);
-    const double reached = report["mesh"]["distance_bound"];
-    EXPECT_GT(reached, report["mesh"]["tolerance"]);
-    std::ostringstream relative;
-    relative << 1.01 * reached / report["input"]["diagonal"].get<double>();
-    EXPECT_EQ(run("verify a.ply " + teapot_ + " --relative " + relative.str()).exit_code, 0);
-    // What is measured is a body within that distance.
-    const double accuracy = report["hull"]["measures_accuracy"];
-    const Json best = Json::parse(run("hull " + teapot_ + " --json").out)["hull"];
-    for (const char* measure : {"volume", "area", "mean_width"}) {
-      const double whole = best[measure];
-      EXPECT_NEAR(report["hull"][measure], whole, accuracy * whole) << measure;
-    }
+  const Result result = run(hull + limit.str());
+  EXPECT_EQ(result.exit_code, 6) << result.err;
+  EXPECT_TRUE(result.err.starts_with("taut: the limit of ")) << result.err;
+  EXPECT_NE(result.err.find("of memory was met; the hull written is within "), std::string::npos)
+      << result.err;
+  EXPECT_TRUE(fs::remove(path("a.hull.json")));
+  const Json report = Json::parse(content(path("r.json")));
+  EXPECT_EQ(report["warnings"][0]["code"], "limit-met");
+  EXPECT_EQ(report["hull"]["unresolved"], 0);
+  const double reached = report["mesh"]["distance_bound"];
+  EXPECT_GT(reached, report["mesh"]["tolerance"]);
+  std::ostringstream relative;
+  relative << 1.01 * reached / report["input"]["diagonal"].get<double>();
+  EXPECT_EQ(run("verify a.ply " + teapot_ + " --relative " + relative.str()).exit_code, 0);
+  // What is measured is a body within that distance.
+  const double accuracy = report["hull"]["measures_accuracy"];
+  const Json best = Json::parse(run("hull " + teapot_ + " --json").out)["hull"];
+  for (const char* measure : {"volume", "area", "mean_width"}) {
+    const double whole = best[measure];
+    EXPECT_NEAR(report["hull"][measure], whole, accuracy * whole) << measure;
   }
 }
 
@@ -458,8 +456,7 @@ std::string rounded_box() {
 /// In the summary, the report, the document and the project; and verify holds faces to it.
 TEST_F(Cli, TolerantFacesAreTold) {
   const std::string box = plant("box.bpt", rounded_box());
-  const Result result =
-      run("hull " + box + " --curves solving -o b.hull.json -o b.mlp --report r.json");
+  const Result result = run("hull " + box + " -o b.hull.json -o b.mlp --report r.json");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find(" faces off by up to "), std::string::npos) << result.out;
   EXPECT_NE(content(path("b.mlp")).find("b-tolerant.ply"), std::string::npos);

@@ -12,7 +12,7 @@
 #include "surface_checks.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
-#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/solve/free_ends.h"
 
 namespace taut {
 namespace {

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "models.h"
-#include "traced_scene.h"
+#include "solved_scene.h"
 
 namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-struct EdgeScene : TracedScene {
-  using TracedScene::TracedScene;
+struct EdgeScene : SolvedScene {
+  using SolvedScene::SolvedScene;
 
   /// Neighbours on arcs name a contact on the edge that passes the stretch the way they say.
   void expect_names_contacts(const EdgeIncidence::Stretch& s) const {

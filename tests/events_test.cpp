@@ -24,17 +24,15 @@ struct Expected {
   double volume = unknown;
 };
 
-HullOptions options_of(CurveMethod curves) {
+HullOptions coarse_options() {
   HullOptions options;
   options.relative = 1e-2;
   options.threads = 1;
-  options.curves = curves;
   return options;
 }
 
-Hull expect_exact(const Scene& scene, const Expected& expected,
-                  CurveMethod curves = HullOptions().curves) {
-  Hull hull = precise_hull(scene, options_of(curves));
+Hull expect_exact(const Scene& scene, const Expected& expected) {
+  Hull hull = precise_hull(scene, coarse_options());
   if (hull.boundary == nullptr) {
     ADD_FAILURE() << "no boundary";
     return hull;
@@ -58,12 +56,9 @@ Hull expect_exact(const Scene& scene, const Expected& expected,
   return hull;
 }
 
-Hull expect_exact(const Shape& shape, const Expected& expected,
-                  CurveMethod curves = HullOptions().curves) {
-  return expect_exact(make_scene(shape), expected, curves);
+Hull expect_exact(const Shape& shape, const Expected& expected) {
+  return expect_exact(make_scene(shape), expected);
 }
-
-constexpr std::array both_methods = {CurveMethod::tracing, CurveMethod::solving};
 
 /// Of a closed surface without creases, of one source face: Euler's relation too.
 Hull expect_smooth(const Shape& shape, const Expected& expected) {
@@ -319,13 +314,11 @@ TEST(Events, CurvesInARow) {
 /// A sheet and a point in line with its last ruling: a lid, the flat side, and a facet of no area,
 /// where the sheet, the cone from the point and the edge of the flat side meet along one line.
 TEST(Events, PointInLineWithARuling) {
-  for (const CurveMethod curves : both_methods) {
-    for (const Arc& arc : arcs()) {
-      for (const double side : {1.0, -1.0}) {
-        const Shape shape = {{arc.sheet()}, {}, {{side, 0, 2}}};
-        const Expected expected = {{0, 2, 3}, unknown, 0, 4 * arc.area / 3};
-        expect_exact(mapped(shape, skew_rotation()), expected, curves);
-      }
+  for (const Arc& arc : arcs()) {
+    for (const double side : {1.0, -1.0}) {
+      const Shape shape = {{arc.sheet()}, {}, {{side, 0, 2}}};
+      const Expected expected = {{0, 2, 3}, unknown, 0, 4 * arc.area / 3};
+      expect_exact(mapped(shape, skew_rotation()), expected);
     }
   }
 }
@@ -393,12 +386,11 @@ Shape sheet_beside_an_edge(const dvec3& rise, double d, double e, int power) {
 
 /// The hull, with a facet in z = 0 whose corners are those of the edge y = 0 at these x. `thin`:
 /// of a row of patches at the edge.
-void expect_in_line(const Shape& sheet, const std::vector<double>& corners, CurveMethod curves,
-                    double thin = 1e-3) {
+void expect_in_line(const Shape& sheet, const std::vector<double>& corners, double thin = 1e-3) {
   for (const Shape& shape : {sheet, split(sheet, 0.55, 0.5), split(sheet, 0.3, thin)}) {
     for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
       const Scene scene = make_scene(mapped(shape, turn));
-      const Hull hull = precise_hull(scene, options_of(curves));
+      const Hull hull = precise_hull(scene, coarse_options());
       ASSERT_NE(hull.boundary, nullptr);
       expect_complete(*hull.boundary);
       const dvec3 normal = turn * dvec3(0, 0, 1);
@@ -427,9 +419,7 @@ void expect_in_line(const Shape& sheet, const std::vector<double>& corners, Curv
 TEST(Events, FaceTouchedInsideOfItsStraightEdge) {
   for (const int power : {2, 3}) {
     SCOPED_TRACE(power);
-    for (const CurveMethod curves : both_methods) {
-      expect_in_line(sheet_beside_an_edge({1, -0.2, 0.01}, 0, 1, power), {-1, 0.1, 1}, curves);
-    }
+    expect_in_line(sheet_beside_an_edge({1, -0.2, 0.01}, 0, 1, power), {-1, 0.1, 1});
   }
 }
 
@@ -455,8 +445,7 @@ TEST(Events, FaceTouchedAlongItsStraightEdge) {
       EXPECT_NEAR(low, std::sqrt(2) - 1, 1e-14);
     }
     // Along the edge the curvature falls with y^m: of thinner patches it is rounding.
-    expect_in_line(sheet_beside_an_edge(dvec3(0.0), 1, 1, power), {-1, -low, low, 1},
-                   CurveMethod::tracing, 0.4);
+    expect_in_line(sheet_beside_an_edge(dvec3(0.0), 1, 1, power), {-1, -low, low, 1}, 0.4);
   }
 }
 
@@ -473,10 +462,8 @@ TEST(Events, Ogive) {
 /// The outer half of the tube; half discs above and below; and the two ends' circles, which lie in
 /// one plane with the segments between them.
 TEST(Events, HalfTorus) {
-  for (const CurveMethod curves : both_methods) {
-    expect_exact(half_torus(1, 0.25), {{1, 0, 3}, 0, 0}, curves);
-    expect_exact(mapped(half_torus(1, 0.25), skew_rotation()), {{1, 0, 3}, 0, 0}, curves);
-  }
+  expect_exact(half_torus(1, 0.25), {{1, 0, 3}, 0, 0});
+  expect_exact(mapped(half_torus(1, 0.25), skew_rotation()), {{1, 0, 3}, 0, 0});
 }
 
 /// The floor touches four corners of the box and the sphere. Counter-clockwise around the sphere it

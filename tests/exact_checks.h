@@ -72,9 +72,8 @@ inline taut::Hull boundary_of(const taut::Scene& scene) {
   options.threads = 1;
   taut::Hull hull;
   hull.kind = taut::HullKind::solid;
-  const taut::GaussMap map(scene, {.threads = 1, .progress = {}});
-  hull.boundary = std::make_shared<const taut::HullBoundary>(
-      exact_boundary(scene, map, options, hull.statistics));
+  hull.boundary =
+      std::make_shared<const taut::HullBoundary>(exact_boundary(scene, options, hull.statistics));
   return hull;
 }
 

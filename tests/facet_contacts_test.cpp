@@ -10,8 +10,8 @@
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_planes.h"
 #include "taut/hull/contact/contact_system.h"
+#include "taut/hull/solve/level_pieces.h"
 
 namespace taut {
 namespace {
@@ -236,10 +236,7 @@ std::vector<CurvedFacet> curved_facets() {
 
 std::vector<Contact> pieces_of(const ContactGeometry& geometry, SupportQuery& query,
                                const dvec3& n) {
-  for (const ContactPlane& plane : contact_planes(geometry, query)) {
-    if (glm::distance(plane.n, n) < 1e-9) return plane.pieces;
-  }
-  return {};
+  return level_pieces(geometry, query, n, geometry.tie()).pieces;
 }
 
 /// The outline's points, finely, each side without its end.

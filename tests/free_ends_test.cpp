@@ -1,4 +1,4 @@
-#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/solve/free_ends.h"
 
 #include <gtest/gtest.h>
 
@@ -433,7 +433,7 @@ void expect_those_of_arcs(const Shape& shape) {
   HullStatistics statistics;
   HullOptions options;
   options.threads = 1;
-  const HullBoundary boundary = exact_boundary(own.scene, own.map, options, statistics);
+  const HullBoundary boundary = exact_boundary(own.scene, options, statistics);
   const std::vector<FreeEnd> ends = own.ends();
   const std::vector<TracedEnd> traced = traced_ends(boundary);
   if (boundary.unresolved.empty()) {

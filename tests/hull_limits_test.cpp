@@ -22,7 +22,6 @@ namespace {
 using namespace taut;  // NOLINT: what is tested
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
-constexpr CurveMethod both_methods[] = {CurveMethod::tracing, CurveMethod::solving};
 
 /// Takes memory beyond the limit of some options when a step of theirs begins, or goes on, for the
 /// k-th time.
@@ -89,15 +88,12 @@ TEST(HullLimits, ArePositive) {
 TEST(HullLimits, ThatAreMetAtOnceLeaveNothing) {
   for (const Shape& shape : {shapes::sphere(), shapes::disc(1, 0), Shape{{}, {}, {{0, 0, 0}}}}) {
     const Model model = make_model(shape);
-    for (const CurveMethod curves : both_methods) {
-      HullOptions options;
-      options.curves = curves;
-      options.max_seconds = 1e-9;
-      EXPECT_THROW(convex_hull(model, options), LimitMet);
-      options.max_seconds.reset();
-      options.max_memory = 1;
-      EXPECT_THROW(convex_hull(model, options), LimitMet);
-    }
+    HullOptions options;
+    options.max_seconds = 1e-9;
+    EXPECT_THROW(convex_hull(model, options), LimitMet);
+    options.max_seconds.reset();
+    options.max_memory = 1;
+    EXPECT_THROW(convex_hull(model, options), LimitMet);
   }
 }
 
@@ -105,7 +101,6 @@ TEST(HullLimits, ThatAreNotMetChangeNothing) {
   const Scene scene = make_scene(teapot());
   HullOptions options;
   options.relative = 1e-2;
-  options.curves = CurveMethod::solving;
   const Hull hull = precise_hull(scene, options);
   options.max_seconds = 1e6;
   options.max_memory = std::size_t{1} << 50;
@@ -117,21 +112,18 @@ TEST(HullLimits, ThatAreNotMetChangeNothing) {
 
 TEST(HullLimits, MetInAnyStepLeaveTheMeshAsBoundary) {
   const Scene scene = make_scene(teapot());
-  for (const CurveMethod curves : both_methods) {
-    for (const char* step : {"cull", "decide", "trace", "stitch"}) {
-      SCOPED_TRACE(step);
-      HullOptions options;
-      options.relative = 1e-2;
-      options.curves = curves;
-      const Ballast ballast(step, 1, options);
-      const std::optional<Hull> hull = found_before(scene, options);
-      EXPECT_TRUE(ballast.is_taken());
-      ASSERT_TRUE(hull && hull->boundary);
-      EXPECT_LE(hull->distance_bound, 1e-2 * scene.diagonal());
-      expect_true_bound(scene, *hull);
-      expect_closed(*hull->boundary);
-      EXPECT_EQ(hull->boundary->faces.size(), hull->mesh.n_faces());
-    }
+  for (const char* step : {"cull", "trace", "stitch"}) {
+    SCOPED_TRACE(step);
+    HullOptions options;
+    options.relative = 1e-2;
+    const Ballast ballast(step, 1, options);
+    const std::optional<Hull> hull = found_before(scene, options);
+    EXPECT_TRUE(ballast.is_taken());
+    ASSERT_TRUE(hull && hull->boundary);
+    EXPECT_LE(hull->distance_bound, 1e-2 * scene.diagonal());
+    expect_true_bound(scene, *hull);
+    expect_closed(*hull->boundary);
+    EXPECT_EQ(hull->boundary->faces.size(), hull->mesh.n_faces());
   }
 }
 
@@ -164,7 +156,6 @@ TEST(HullLimits, MetWhileTheExactHullIsMeshedLeaveItExact) {
   const Scene scene = make_scene(teapot());
   HullOptions options;
   options.relative = 1e-4;
-  options.curves = CurveMethod::solving;
   options.threads = 1;
   options.max_memory = resident_bytes() + 128 * mebibyte;
   std::vector<char> taken;

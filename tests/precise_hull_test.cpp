@@ -16,7 +16,6 @@
 #include "boundary_checks.h"
 #include "hull_checks.h"
 #include "taut/core/error.h"
-#include "taut/hull/compare/map_differences.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/solve/solved_graph.h"
@@ -61,9 +60,8 @@ HullOptions options(double relative = 1e-2, int threads = 1) {
 Hull boundary_of(const Scene& scene, int threads = 1) {
   Hull hull;
   hull.kind = HullKind::solid;
-  const GaussMap map(scene, {.threads = threads, .progress = {}});
   hull.boundary = std::make_shared<const HullBoundary>(
-      exact_boundary(scene, map, options(1e-2, threads), hull.statistics));
+      exact_boundary(scene, options(1e-2, threads), hull.statistics));
   return hull;
 }
 
@@ -318,9 +316,8 @@ TEST(PreciseHull, OrderOfInstancesDoesNotMatter) {
 }
 
 /// What a hull took, but for the time.
-std::array<long, 6> efforts(const HullStatistics& s) {
-  return {s.support_queries, s.newton_iterations, s.cells,
-          s.cells_kept,      s.map_cells,         s.map_candidates};
+std::array<long, 5> efforts(const HullStatistics& s) {
+  return {s.support_queries, s.newton_iterations, s.map_cells, s.map_candidates, s.map_contacts};
 }
 
 /// The same hull, of the first of the copies, at the same effort.
@@ -346,38 +343,6 @@ TEST(PreciseHull, OfExactCopies) {
   }
 }
 
-/// One culling serves rounds that differ in samples: they cull no more, and find the same.
-TEST(ExactBoundary, OfOneCullingWithMoreSamples) {
-  const Scene scene = make_scene(truth_named("three spheres").shape);
-  std::vector<std::string> steps;
-  HullOptions told = options();
-  told.progress.report = [&](std::string_view step, double) { steps.emplace_back(step); };
-  const GaussMap map(scene, {.threads = 1, .progress = {}});
-  HullStatistics culled;
-  const Culling culling = culling_of(scene, map, told, culled);
-  EXPECT_EQ(culled.support_queries, culling.support_queries);
-  const ContactGeometry geometry(scene);
-  steps.clear();
-  SupportQuery query(scene);
-  std::vector<Sample> more;
-  HullStatistics all;
-  const DirectionMap directions = directions_of(geometry, told, culled);
-  const HullBoundary whole = exact_boundary(scene, map, options(), all);
-  for (int round = 0; round < 3; ++round) {
-    HullStatistics own;
-    const HullBoundary boundary = exact_boundary(geometry, culling, directions, told, own, more);
-    EXPECT_EQ(counts(boundary), counts(whole));
-    if (round == 0) {
-      EXPECT_EQ(own.support_queries + culled.support_queries, all.support_queries);
-    }
-    Random random(unsigned(round) + 1);
-    const dvec3 n = random_direction(random);
-    more.push_back({n, query(n).contact});
-  }
-  EXPECT_EQ(std::count(steps.begin(), steps.end(), "trace"), 3);
-  EXPECT_EQ(std::count(steps.begin(), steps.end(), "cull"), 0);
-}
-
 /// Those of the map of directions, of solving and of stitching.
 TEST(ExactBoundary, CountsAllQueries) {
   const Scene scene = make_scene(teapot());
@@ -386,7 +351,7 @@ TEST(ExactBoundary, CountsAllQueries) {
   const DirectionMap directions = directions_of(geometry, options(), decided);
   EXPECT_GT(decided.support_queries, 0);
   HullStatistics statistics;
-  exact_boundary(geometry, {}, directions, options(), statistics);
+  exact_boundary(geometry, directions, options(), statistics);
   SupportQuery query(scene);
   SeparatingGraph graph = solved_graph(geometry, query, directions, {});
   HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);

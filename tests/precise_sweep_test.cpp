@@ -12,7 +12,7 @@
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/precise_hull.h"
-#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/solve/free_ends.h"
 
 namespace taut {
 namespace {
@@ -23,9 +23,8 @@ Hull hull_on_one_thread(const Scene& scene, HullOptions options = {}) {
   options.threads = 1;
   Hull hull;
   hull.kind = HullKind::solid;
-  const GaussMap map(scene, {.threads = 1, .progress = {}});
   hull.boundary =
-      std::make_shared<const HullBoundary>(exact_boundary(scene, map, options, hull.statistics));
+      std::make_shared<const HullBoundary>(exact_boundary(scene, options, hull.statistics));
   return hull;
 }
 

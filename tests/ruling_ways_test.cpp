@@ -18,7 +18,6 @@ Hull solved(const Scene& scene) {
   HullOptions options;
   options.relative = 1e-2;
   options.threads = 1;
-  options.curves = CurveMethod::solving;
   try {
     return convex_hull(scene, options);
   } catch (const HullNotConverged& stopped) {

@@ -31,12 +31,8 @@ struct Solved {
 
   explicit Solved(const Shape& shape) : Solved(make_model(shape)) {}
   explicit Solved(const Model& model) : scene(model) {
-    const GaussMap map(scene, {.threads = 1, .progress = {}});
-    HullOptions options;
-    options.curves = CurveMethod::solving;
     HullStatistics statistics;
-    boundary =
-        std::make_shared<const HullBoundary>(exact_boundary(scene, map, options, statistics));
+    boundary = std::make_shared<const HullBoundary>(exact_boundary(scene, {}, statistics));
   }
 
   void expect_closed() const {

@@ -20,7 +20,6 @@ Hull solved_hull_of(const Scene& scene) {
   HullOptions options;
   options.relative = 1e-2;
   options.threads = 1;
-  options.curves = CurveMethod::solving;
   return precise_hull(scene, options);
 }
 
@@ -92,7 +91,6 @@ TEST(SolvedHull, DentsAreNoPartOfPatches) {
   const double depth = glm::dot(query(up).point - middle, up);
   HullOptions options;
   options.relative = 1e-2;
-  options.curves = CurveMethod::solving;
   for (const double share : {4.0, 16.0, 64.0}) {
     SCOPED_TRACE(share);
     options.resolution = depth / share / scene.frame().length_to_frame(scene.diagonal());

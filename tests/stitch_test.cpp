@@ -11,7 +11,7 @@
 
 #include "boundary_checks.h"
 #include "models.h"
-#include "taut/hull/trace/separating_graph.h"
+#include "taut/hull/solve/separating_graph.h"
 
 namespace taut {
 namespace {
@@ -25,10 +25,10 @@ struct Stitched {
   explicit Stitched(const Shape& shape) : scene(make_scene(shape)) {
     const ContactGeometry geometry(scene);
     SupportQuery query(scene);
-    const GaussMap map(scene, {.threads = 1, .progress = {}});
-    const Culling culling = cull(scene, map, {.threads = 1, .progress = {}});
-    boundary = std::make_shared<const HullBoundary>(stitch(
-        geometry, query, trace_separating_curves(geometry, query, culling.samples, culling.cells)));
+    HullStatistics statistics;
+    const DirectionMap map = directions_of(geometry, {}, statistics);
+    boundary = std::make_shared<const HullBoundary>(
+        stitch(geometry, query, solved_graph(geometry, query, map, {}), map.resolution));
   }
 
   /// Patches, scrolls, facets; bitangents, edges, joins, rulings.

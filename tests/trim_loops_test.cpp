@@ -6,16 +6,16 @@
 #include <map>
 
 #include "models.h"
+#include "solved_scene.h"
 #include "taut/bounds/poles.h"
-#include "traced_scene.h"
 
 namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-struct Trimmed : TracedScene {
-  using TracedScene::TracedScene;
+struct Trimmed : SolvedScene {
+  using SolvedScene::SolvedScene;
 
   Contact at(const TrimRegion& r, const dvec2& uv) const {
     return {r.instance, SourceKind::face, r.patch, uv.x, uv.y};

@@ -6,16 +6,16 @@
 #include <cmath>
 
 #include "models.h"
+#include "solved_scene.h"
 #include "taut/core/integers.h"
-#include "traced_scene.h"
 
 namespace taut {
 namespace {
 
 using namespace taut_test;  // NOLINT: models
 
-struct StretchScene : TracedScene {
-  using TracedScene::TracedScene;
+struct StretchScene : SolvedScene {
+  using SolvedScene::SolvedScene;
 
   TrimStretches stretches() { return {geometry, graph, regions, unresolved}; }
 };

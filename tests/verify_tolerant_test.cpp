@@ -55,7 +55,6 @@ Sound solved(const std::string& name, Variant variant) {
       HullOptions options;
       options.relative = 1e-2;
       options.threads = 1;
-      options.curves = CurveMethod::solving;
       const Hull hull = convex_hull(sound.scene, options);
       sound.hull = hull_document(sound.scene, *hull.boundary);
       state(sound.hull, hull.resolution.rho, tolerant_faces(sound.hull), largest_bound(sound.hull));

@@ -1,8 +1,7 @@
 // Judges hulls of natural models and of cases: for each family and variant, and each case, a line
 // of how many are closed, within the resolution and verified, of wrong claims and counts, and
 // times.
-//   judge [SEEDS] [solving] [NAME | -NAME ...]   5 seeds of all; what has the names, without those
-// after -; "solving": by the method that is to take over.
+//   judge [SEEDS] [NAME | -NAME ...]   5 seeds of all; what has the names, without those after -
 // A name is a run of whole parts of "families/GROUP/FAMILY/VARIANT" or "cases/GROUP/CASE", as
 // "turned", "gear/float32" or "cases". Cases are sought in the folder "cases" beside that which
 // TAUT_MODELS names.
@@ -25,7 +24,6 @@
 namespace {
 
 using namespace taut_test;  // NOLINT: the judge
-using taut::CurveMethod;
 using taut::HullOptions;
 
 constexpr int exit_wrong = 1, exit_nothing = 2, exit_skipped = 77;
@@ -123,10 +121,6 @@ int main(int argc, char** argv) {
     arguments.erase(arguments.begin());
   }
   HullOptions options;
-  if (!arguments.empty() && arguments[0] == "solving") {
-    options.curves = CurveMethod::solving;
-    arguments.erase(arguments.begin());
-  }
   const Names names(arguments);
   int asked = 0, skipped = 0;
   bool right = true;

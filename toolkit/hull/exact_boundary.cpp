@@ -6,7 +6,6 @@
 
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/compare/map_differences.h"
 #include "taut/hull/solve/solved_graph.h"
 #include "taut/hull/solve/tolerant_places.h"
 #include "taut/hull/stitch/stitch.h"
@@ -33,7 +32,7 @@ long undecided(const DirectionMap& map) {
 DirectionMap map_of(const ContactGeometry& geometry, double resolution, const HullOptions& options,
                     HullStatistics& statistics) {
   const Stopwatch watch;
-  options.progress.update("decide", 0);
+  options.progress.update("cull", 0);
   DirectionMapOptions own;
   own.resolution = resolution;
   own.candidate_limit = map_candidates + map_candidates_a_patch * geometry.scene().patch_count();
@@ -43,6 +42,7 @@ DirectionMap map_of(const ContactGeometry& geometry, double resolution, const Hu
   statistics.map_cells += map.statistics.cells;
   statistics.map_candidates += map.statistics.candidates;
   statistics.map_undecided += undecided(map);
+  for (const MapCell& cell : map.cells) statistics.map_contacts += long(cell.contacts.size());
   statistics.support_queries += map.statistics.queries;
   statistics.seconds_map += watch.seconds();
   return map;
@@ -72,10 +72,22 @@ bool is_within(const HullBoundary& boundary, double resolution) {
   return boundary.unresolved.empty() && deepest_tolerant(boundary) <= resolution;
 }
 
-/// From the map or, where that has for one what a boundary cannot be made of as one, from finer
-/// ones, if these are decided.
-HullBoundary solved_within(const ContactGeometry& geometry, const DirectionMap& directions,
-                           const HullOptions& options, HullStatistics& statistics) {
+}  // namespace
+
+double same_elements_of(const Scene& scene, const HullOptions& options) {
+  const double rho = resolution_for(options, scene.model(), scene.diagonal()).rho;
+  return tie_share * scene.frame().length_to_frame(rho);
+}
+
+DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
+                           HullStatistics& statistics) {
+  const Scene& scene = geometry.scene();
+  const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
+  return map_of(geometry, scene.frame().length_to_frame(resolution.rho), options, statistics);
+}
+
+HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap& directions,
+                            const HullOptions& options, HullStatistics& statistics) {
   const double rho = directions.resolution;
   HullBoundary boundary = solved(geometry, directions, options, statistics);
   for (const double share : finer_maps) {
@@ -88,113 +100,11 @@ HullBoundary solved_within(const ContactGeometry& geometry, const DirectionMap& 
   return boundary;
 }
 
-/// Traced, with what the map tells or without, and stitched.
-HullBoundary traced(const ContactGeometry& geometry, const Culling& culling,
-                    const CurveSearch& search, const HullOptions& options,
-                    HullStatistics& statistics, const std::vector<Sample>& more) {
-  Stopwatch watch;
-  options.progress.update("trace", 0);
-  std::vector<Sample> samples = culling.samples;
-  samples.insert(samples.end(), more.begin(), more.end());
-  SupportQuery query(geometry.scene(), options.progress.stop);
-  SeparatingGraph graph =
-      trace_separating_curves(geometry, query, samples, culling.cells, search, options.progress);
-  statistics.support_queries += graph.support_queries;
-  statistics.cells_searched = graph.cells_searched;
-  statistics.newton_iterations += graph.newton_iterations;
-  statistics.seconds_trace += watch.lap();
-
-  options.progress.update("stitch", 0);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph));
-  statistics.seconds_stitch += watch.lap();
-  statistics.support_queries += query.queries();
-  statistics.newton_iterations += query.newton_iterations();
-  return boundary;
-}
-
-MapDifferences compared(const ContactGeometry& geometry, const DirectionMap& directions,
-                        const HullBoundary& boundary, const HullOptions& options,
-                        HullStatistics& statistics) {
-  const Stopwatch watch;
-  SupportQuery query(geometry.scene(), options.progress.stop);
-  MapDifferences differences = map_differences(geometry, query, directions, boundary);
-  statistics.seconds_map += watch.seconds();
-  statistics.support_queries += query.queries();
-  statistics.newton_iterations += query.newton_iterations();
-  return differences;
-}
-
-}  // namespace
-
-Culling culling_of(const Scene& scene, const GaussMap& map, const HullOptions& options,
-                   HullStatistics& statistics) {
-  Stopwatch watch;
-  options.progress.update("cull", 0);
-  Culling culling = cull(scene, map,
-                         {.levels = culling_levels(scene.patch_count()),
-                          .threads = options.threads,
-                          .progress = options.progress});
-  const auto finest = double(culling.levels.empty() ? 0 : culling.levels.size() - 1);
-  statistics.cells = std::lround(scene.patch_count() * std::exp2(2 * finest));
-  statistics.cells_kept = std::lround(double(statistics.cells) * (1 - culling.removed_share()));
-  statistics.support_queries += culling.support_queries;
-  statistics.seconds_cull += watch.lap();
-  return culling;
-}
-
-double same_elements_of(const Scene& scene, const HullOptions& options) {
-  if (options.curves != CurveMethod::solving) return 0;
-  const double rho = resolution_for(options, scene.model(), scene.diagonal()).rho;
-  return tie_share * scene.frame().length_to_frame(rho);
-}
-
-DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& options,
-                           HullStatistics& statistics) {
-  const Scene& scene = geometry.scene();
-  const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
-  return map_of(geometry, scene.frame().length_to_frame(resolution.rho), options, statistics);
-}
-
-HullBoundary exact_boundary(const ContactGeometry& geometry, const Culling& culling,
-                            const DirectionMap& directions, const HullOptions& options,
-                            HullStatistics& statistics, const std::vector<Sample>& more) {
-  if (options.curves == CurveMethod::solving) {
-    return solved_within(geometry, directions, options, statistics);
-  }
-  if (directions.cells.empty()) return traced(geometry, culling, {}, options, statistics, more);
-  // What the map decides need not be searched.
-  HullBoundary best =
-      traced(geometry, culling, {.cells = undecided(directions) > 0}, options, statistics, more);
-  MapDifferences differences = compared(geometry, directions, best, options, statistics);
-  for (const CurveSearch& search : {CurveSearch{}, CurveSearch{.map = &directions}}) {
-    if (differences.spots.empty() || best.exhausted || best.unresolved.size() > few_open_spots) {
-      break;
-    }
-    // The map tells more than was found: once more, with that.
-    std::vector<Sample> samples = more;
-    samples.insert(samples.end(), differences.samples.begin(), differences.samples.end());
-    HullBoundary next = traced(geometry, culling, search, options, statistics, samples);
-    MapDifferences left = compared(geometry, directions, next, options, statistics);
-    if (next.unresolved.size() + left.spots.size() <
-        best.unresolved.size() + differences.spots.size()) {
-      best = std::move(next);
-      differences = std::move(left);
-    }
-  }
-  // Of a search that was given up they tell nothing new.
-  if (!best.exhausted) {
-    best.unresolved.insert(best.unresolved.end(), differences.spots.begin(),
-                           differences.spots.end());
-  }
-  return best;
-}
-
-HullBoundary exact_boundary(const Scene& scene, const GaussMap& map, const HullOptions& options,
+HullBoundary exact_boundary(const Scene& scene, const HullOptions& options,
                             HullStatistics& statistics) {
-  const Culling culling = culling_of(scene, map, options, statistics);
   const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
-  const DirectionMap directions = directions_of(geometry, options, statistics);
-  return exact_boundary(geometry, culling, directions, options, statistics);
+  return exact_boundary(geometry, directions_of(geometry, options, statistics), options,
+                        statistics);
 }
 
 }  // namespace taut

@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "taut/core/stopwatch.h"
-#include "taut/hull/cull/culling.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/mesh/boundary_mesh.h"
 #include "taut/hull/sample/polytope_mesh.h"
@@ -17,18 +15,10 @@
 namespace taut {
 namespace {
 
-/// How often the boundary is sought again with support points that the mesh met on no face of it,
-/// unless more spots than so many could not be resolved: such points are then not what it wants.
-constexpr int uncovered_rounds = 2;
-constexpr std::size_t few_unresolved = 16;
 /// Share of the limits of time and memory that goes to a hull to fall back on.
 constexpr double fallback_share = 0.25;
 
-bool wants_more(const HullBoundary& boundary) {
-  return !boundary.exhausted && boundary.unresolved.size() <= few_unresolved;
-}
-
-/// What keeps a solved boundary from being what it promises, empty if nothing does.
+/// What keeps a boundary from being what it promises, empty if nothing does.
 std::string broken_promise(const HullBoundary& boundary, const Resolution& resolution) {
   std::array<char, 256> text{};
   if (!boundary.unresolved.empty()) {
@@ -45,10 +35,10 @@ std::string broken_promise(const HullBoundary& boundary, const Resolution& resol
   return text.data();
 }
 
-/// The hull with a boundary that was solved; or with its mesh's faces as the boundary, where that
+/// The hull with its boundary; or with its mesh's faces as the boundary, where that
 /// is not closed or would be farther off than these.
-Hull solved_hull(const Scene& scene, const ContactGeometry& geometry, HullBoundary boundary,
-                 const HullOptions& options) {
+Hull with_boundary(const Scene& scene, const ContactGeometry& geometry, HullBoundary boundary,
+                   const HullOptions& options) {
   auto own = std::make_shared<HullBoundary>(std::move(boundary));
   std::vector<Sample> uncovered;
   Hull hull;
@@ -79,55 +69,13 @@ Hull solved_hull(const Scene& scene, const ContactGeometry& geometry, HullBounda
   throw HullNotConverged(broken + "; its faces are those of the mesh", std::move(facetted));
 }
 
-/// The hull with a boundary that was traced.
-Hull traced_hull(const Scene& scene, const ContactGeometry& geometry, const Culling& culling,
-                 const DirectionMap& directions, const HullOptions& options,
-                 HullStatistics& statistics) {
-  std::vector<Sample> found;
-  for (int round = 0;; ++round) {
-    auto boundary = std::make_shared<HullBoundary>(
-        exact_boundary(geometry, culling, directions, options, statistics, found));
-    std::vector<Sample> uncovered;
-    Hull hull;
-    std::optional<std::string> limit;
-    try {
-      hull = boundary_mesh(scene, geometry, boundary, options, &uncovered);
-    } catch (const HullLimitExceeded& stopped) {
-      hull = *stopped.best;
-      limit = stopped.what();
-    }
-    if (!limit && !uncovered.empty() && round < uncovered_rounds && wants_more(*boundary)) {
-      // The mesh has met faces that were not known: once more, with what it met.
-      found.insert(found.end(), uncovered.begin(), uncovered.end());
-      statistics += hull.statistics;
-      continue;
-    }
-    // Of a search that was given up the samples tell nothing new.
-    if (boundary->exhausted) uncovered.clear();
-    for (const Sample& s : uncovered) {
-      boundary->unresolved.push_back({s.n, "a support point lies on no face that was found"});
-    }
-    throw_if_failed(hull, nullptr, limit);
-    return hull;
-  }
-}
-
 /// The hull with its exact boundary. What it took until then is added to the statistics, also where
 /// it throws.
 Hull exact_hull(const Scene& scene, const HullOptions& options, HullStatistics& statistics) {
-  Stopwatch watch;
-  const GaussMap map(scene, {.levels = culling_levels(scene.patch_count()),
-                             .threads = options.threads,
-                             .progress = options.progress});
-  statistics.seconds_gauss_map = watch.lap();
   const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
-  const Culling culling = culling_of(scene, map, options, statistics);
   const DirectionMap directions = directions_of(geometry, options, statistics);
-  if (options.curves == CurveMethod::tracing) {
-    return traced_hull(scene, geometry, culling, directions, options, statistics);
-  }
-  HullBoundary boundary = exact_boundary(geometry, culling, directions, options, statistics);
-  return solved_hull(scene, geometry, std::move(boundary), options);
+  HullBoundary boundary = exact_boundary(geometry, directions, options, statistics);
+  return with_boundary(scene, geometry, std::move(boundary), options);
 }
 
 /// The mesh with its faces as the boundary, within the tolerance or as far as a share of what the

@@ -10,14 +10,13 @@ namespace taut {
 /// developable scrolls and flat facets in Hull::boundary, and a mesh of it.
 ///
 /// The mesh is one as of sampled_hull(), with the same certificate, but its vertices lie on the
-/// boundary's curves too, and its faces are labelled by the boundary's faces. What of the boundary
-/// could not be resolved is listed there; the mesh is true all the same. A scene that is flat has
-/// no boundary: its hull is that of sampled_hull().
+/// boundary's curves too, and its faces are labelled by the boundary's faces. A scene that is flat
+/// has no boundary: its hull is that of sampled_hull().
 ///
-/// With CurveMethod::solving the boundary is closed always, and faces that are below supporting
-/// planes say by how much (HullFace::tolerant). Where none is found that is exact to within the
-/// resolution HullNotConverged says why, and the boundary of the best hull is the one that was
-/// found or, if that is not closed or farther off, the faces of the mesh.
+/// The boundary is closed always, and faces that are below supporting planes say by how much
+/// (HullFace::tolerant). Where none is found that is exact to within the resolution
+/// HullNotConverged says why, and the boundary of the best hull is the one that was found or, if
+/// that is not closed or farther off, the faces of the mesh.
 ///
 /// Under limits (HullOptions, Progress::stop) a mesh comes first, for which a quarter of them is
 /// kept; where one is met HullLimitExceeded has the nearer of that, with its faces as the boundary,

@@ -72,11 +72,6 @@ std::vector<dvec3> tessellation_of_accuracy(const Model& model, const Scene& sce
   return tessellate(model, high);
 }
 
-const GaussMap& teapot_map() {
-  static const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
-  return map;
-}
-
 HullOptions options_for(double relative) {
   HullOptions options;
   options.relative = relative;
@@ -84,29 +79,27 @@ HullOptions options_for(double relative) {
   return options;
 }
 
-/// What stands before the structure: hierarchies and Gauss map.
+/// What stands before the structure: hierarchies.
 void build(benchmark::State& state) {
   const Model model = teapot();
   for (auto _ : state) {
     const Scene scene(model, {.threads = 1, .progress = {}});
-    benchmark::DoNotOptimize(GaussMap(scene, {.threads = 1, .progress = {}}));
+    benchmark::DoNotOptimize(&scene);
   }
 }
 BENCHMARK(build)->Unit(benchmark::kMillisecond);
 
-/// The exact boundary, with the milliseconds of its phases; sampling belongs to culling.
+/// The exact boundary, with the milliseconds of its phases.
 void structure(benchmark::State& state) {
-  const GaussMap& map = teapot_map();
   HullStatistics statistics;
   HullBoundary boundary;
   for (auto _ : state) {
-    boundary = exact_boundary(teapot_scene(), map, options_for(1e-4), statistics);
+    boundary = exact_boundary(teapot_scene(), options_for(1e-4), statistics);
   }
   const auto milliseconds = [](double seconds) {
     return benchmark::Counter(1e3 * seconds, benchmark::Counter::kAvgIterations);
   };
-  state.counters["cull_ms"] = milliseconds(statistics.seconds_cull);
-  state.counters["decide_ms"] = milliseconds(statistics.seconds_map);
+  state.counters["cull_ms"] = milliseconds(statistics.seconds_map);
   state.counters["trace_ms"] = milliseconds(statistics.seconds_trace);
   state.counters["stitch_ms"] = milliseconds(statistics.seconds_stitch);
   state.counters["queries"] =
@@ -121,7 +114,7 @@ BENCHMARK(structure)->Unit(benchmark::kMillisecond);
 
 /// Culling down to level 5: the share of the patches' parameter area that is proven off the hull.
 void cull_to_level_5(benchmark::State& state) {
-  const GaussMap& map = teapot_map();
+  const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
   Culling culling;
   for (auto _ : state) {
     culling = cull(teapot_scene(), map, {.levels = 5, .threads = 1, .progress = {}});
@@ -145,9 +138,8 @@ void precise_mesh(benchmark::State& state) {
 BENCHMARK(precise_mesh)->DenseRange(3, 5)->Unit(benchmark::kMillisecond);
 
 void measure_boundary(benchmark::State& state) {
-  const GaussMap& map = teapot_map();
   HullStatistics statistics;
-  const HullBoundary boundary = exact_boundary(teapot_scene(), map, options_for(1e-4), statistics);
+  const HullBoundary boundary = exact_boundary(teapot_scene(), options_for(1e-4), statistics);
   const ContactGeometry geometry(teapot_scene());
   BoundaryMeasures measures;
   for (auto _ : state) measures = measure(teapot_scene(), geometry, boundary);

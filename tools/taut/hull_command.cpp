@@ -45,7 +45,6 @@ struct HullArguments {
   std::optional<double> relative;
   std::optional<double> tolerance;
   std::optional<double> resolution;
-  std::string curves = "solving";
   int max_vertices = HullOptions().max_vertices;
   std::optional<double> max_seconds;
   std::optional<std::size_t> max_memory;
@@ -307,18 +306,15 @@ Report make_report(Input& input, Outcome& outcome, const HullArguments& argument
   report.mesh.distance_bound = hull.distance_bound + input.model().deviation_bound();
   report.subdivision = subdivision(input.model());
   const HullStatistics& statistics = hull.statistics;
-  if (statistics.cells > 0) {
-    report.culling = {statistics.cells, statistics.cells_kept, statistics.cells_searched};
-  }
   if (statistics.map_cells > 0) {
+    report.culling = {statistics.map_candidates, statistics.map_contacts, statistics.map_undecided};
     report.directions = {statistics.map_cells, statistics.map_candidates, statistics.map_undecided};
   }
   report.queries = {statistics.support_queries, statistics.newton_iterations};
   report.seconds.read = input.seconds_read();
-  report.seconds.build = input.seconds_build() + statistics.seconds_gauss_map;
+  report.seconds.build = input.seconds_build();
   report.seconds.sample = statistics.seconds_sample;
-  report.seconds.cull = statistics.seconds_cull;
-  report.seconds.decide = statistics.seconds_map;
+  report.seconds.cull = statistics.seconds_map;
   report.seconds.trace = statistics.seconds_trace;
   report.seconds.stitch = statistics.seconds_stitch;
   report.seconds.mesh = statistics.seconds_mesh;
@@ -372,10 +368,9 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
                                      " of the diagonal");
   text += line("seconds", number(s.total, 3) + ": read " + number(s.read, 2) + ", build " +
                               number(s.build, 2) + ", sample " + number(s.sample, 2) + ", cull " +
-                              number(s.cull, 2) + ", decide " + number(s.decide, 2) + ", trace " +
-                              number(s.trace, 2) + ", stitch " + number(s.stitch, 2) + ", mesh " +
-                              number(s.mesh, 2) + ", measure " + number(s.measure, 2) + ", write " +
-                              number(s.write, 2));
+                              number(s.cull, 2) + ", trace " + number(s.trace, 2) + ", stitch " +
+                              number(s.stitch, 2) + ", mesh " + number(s.mesh, 2) + ", measure " +
+                              number(s.measure, 2) + ", write " + number(s.write, 2));
   for (const Report::Mesh::File& file : report.mesh.files) {
     if (file.rounding == 0) continue;
     text += line("rounding", "to float moved vertices of " + file.file + " by at most " +
@@ -475,7 +470,6 @@ ExitCode run_within_limits(const HullArguments& arguments, Console& console) {
   const double deviation = input.model().deviation_bound();
   options.tolerance = mesh_tolerance(wanted, deviation);
   options.resolution = arguments.resolution;
-  options.curves = arguments.curves == "solving" ? CurveMethod::solving : CurveMethod::tracing;
   options.threads = console.options().threads;
   options.max_vertices = arguments.max_vertices;
   options.progress = console.progress();
@@ -562,10 +556,6 @@ Command add_hull(CLI::App& parent) {
       ->type_name("T")
       ->excludes(relative);
   add_resolution(app, arguments->resolution);
-  app.add_option("--curves", arguments->curves, "How separating curves are found")
-      ->check(CLI::IsMember({"tracing", "solving"}).description(""))
-      ->type_name("METHOD")
-      ->group("");
   add_integer(app, "--max-vertices", arguments->max_vertices, 4, std::numeric_limits<int>::max(),
               "Vertices after which to give up on the tolerance, default " +
                   number(long(arguments->max_vertices)));

@@ -81,6 +81,11 @@ std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Conta
   return std::nullopt;
 }
 
+std::optional<Contact> in_element(const ContactGeometry& geometry, const Contact& c,
+                                  const Contact& other) {
+  return pole_side(geometry, c) ? pole_in(geometry, c, other) : expressed_in(geometry, c, other);
+}
+
 bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
   if (a.instance != b.instance || a.kind != b.kind || a.kind == SourceKind::vertex) return false;
   if (a.element == b.element) return true;

@@ -16,6 +16,10 @@ std::vector<Contact> about(const ContactGeometry& geometry, const Contact& c);
 std::optional<Contact> expressed_in(const ContactGeometry& geometry, const Contact& c,
                                     const Contact& other);
 
+/// The same of a contact that may lie at a pole, on all patches about it.
+std::optional<Contact> in_element(const ContactGeometry& geometry, const Contact& c,
+                                  const Contact& other);
+
 /// Both lie on one smooth surface or curve: in one element, in two that go on smoothly into each
 /// other, or about a smooth corner.
 bool continues(const ContactGeometry& geometry, const Contact& a, const Contact& b);

@@ -166,8 +166,6 @@ struct HullBoundary {
   /// How far the support function of the true hull may exceed that of the faces' points, at most,
   /// in the scene's frame: the resolution, or of a mesh its distance. 0: by no more than rounding.
   double gap = 0;
-  /// What was found until the search was given up as too costly; `unresolved` says so.
-  bool exhausted = false;
 
   int count(FaceKind kind) const {
     int n = 0;

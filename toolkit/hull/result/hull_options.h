@@ -8,12 +8,6 @@
 
 namespace taut {
 
-/// How separating curves are found.
-enum class CurveMethod {
-  tracing,  ///< followed step by step from places between samples
-  solving,  ///< from the map of directions, ruling by ruling; it is to take over
-};
-
 /// How a hull is computed and how close it comes.
 struct HullOptions {
   /// Largest distance of the mesh from the true hull, in model units. Zero: `relative` counts.
@@ -23,7 +17,6 @@ struct HullOptions {
   /// What is nearer than this fraction of that diagonal may be taken for one; 0: nothing but what
   /// rounding to doubles does. None: the model tells (Resolution).
   std::optional<double> resolution = std::nullopt;
-  CurveMethod curves = CurveMethod::solving;
   /// Threads to use, 0 for all. The result does not depend on it.
   int threads = 0;
   /// Vertices, some thirty to begin with apart, after which refinement gives up (HullNotConverged

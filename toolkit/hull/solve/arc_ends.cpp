@@ -7,9 +7,9 @@
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/solve/arc_pieces.h"
 #include "taut/hull/solve/arc_solver.h"
-#include "taut/hull/trace/arc_pieces.h"
-#include "taut/hull/trace/merging.h"
+#include "taut/hull/solve/merged_ends.h"
 
 namespace taut {
 namespace {
@@ -40,14 +40,20 @@ class FreeEndSearch {
     return length_of(r) <= (of_faces ? distance : std::pow(distance, 1.5));
   }
 
-  /// Adds what is left of the arc, if its end is told.
+  /// Adds what is left of the arc, if its end is told and the way there supports.
   bool ends(std::vector<ArcPiece>& pieces) const {
-    const CommonSupport last(geometry_, pieces.back().rulings.back());
-    CurvePoint point(search_.system(), search_.query(), last);
-    if (!point.settle()) return false;
-    std::optional<MergedEnd> merged = merged_end(point);
-    if (!merged) return false;
-    append(pieces, std::move(merged->pieces));
+    const Ruling last = pieces.back().rulings.back();
+    const std::optional<Ruling> end = merged_ruling(search_, last);
+    if (!end) return false;
+    ArcSolver solver(search_, last);
+    solver.go_on(*end);
+    std::vector<ArcPiece> way = solver.take();
+    const double resolution = search_.map().resolution;
+    if (std::any_of(way.begin(), way.end(),
+                    [&](const ArcPiece& piece) { return piece.tolerant > resolution; })) {
+      return false;
+    }
+    append(pieces, std::move(way));
     return true;
   }
 

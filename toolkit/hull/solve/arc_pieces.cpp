@@ -1,4 +1,4 @@
-#include "taut/hull/trace/arc_pieces.h"
+#include "taut/hull/solve/arc_pieces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,12 @@
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
-#include "taut/hull/trace/curve_point.h"
-#include "taut/hull/trace/pole_passage.h"
 
 namespace taut {
 namespace {
 
 /// Steps no longer than this are none, and what is no farther from a border is on it.
-constexpr double least_piece = margin_slack;
+constexpr double least_piece = 1e-12;
 /// The same where a contact goes from border to border of its element: beside a corner, or off and
 /// on a join that it runs along, where rounding moves it far along the one while hardly off it.
 constexpr double least_piece_at_corner = 1e-10;

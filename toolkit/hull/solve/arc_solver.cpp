@@ -11,7 +11,7 @@
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
-#include "taut/hull/trace/arc_pieces.h"
+#include "taut/hull/solve/arc_pieces.h"
 
 namespace taut {
 namespace {
@@ -316,9 +316,7 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
     s.n = unit_normal(geometry_, s.contact[i]);
     if (glm::dot(s.n, last().n) < 0) s.n = -s.n;
     const Contact other = climb(geometry_, s.contact[1 - i], s.n).contact;
-    const auto own = pole_side(geometry_, other)
-                         ? pole_in(geometry_, other, last().contact[1 - i])
-                         : expressed_in(geometry_, other, last().contact[1 - i]);
+    const auto own = in_element(geometry_, other, last().contact[1 - i]);
     if (!own) return std::nullopt;
     s.contact[1 - i] = *own;
   } else {

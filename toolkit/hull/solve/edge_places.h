@@ -1,7 +1,7 @@
 #pragma once
 
 #include "taut/bounds/contact_geometry.h"
-#include "taut/hull/trace/separating_graph.h"
+#include "taut/hull/solve/separating_graph.h"
 
 namespace taut {
 

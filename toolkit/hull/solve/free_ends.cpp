@@ -1,4 +1,4 @@
-#include "taut/hull/trace/free_ends.h"
+#include "taut/hull/solve/free_ends.h"
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,7 @@
 
 #include <vector>
 
-#include "taut/bounds/support_query.h"
-#include "taut/hull/contact/contact_system.h"
-#include "taut/hull/cull/culling.h"
-#include "taut/hull/decide/direction_map.h"
-#include "taut/hull/result/sample.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
 
@@ -41,40 +37,6 @@ struct SeparatingGraph {
   std::vector<FacetNode> nodes;
   std::vector<Unresolved> unresolved;
   long newton_iterations = 0;
-  /// Of the refinement of cells; those of the caller's query are counted there.
-  long support_queries = 0;
-  /// Cells, of the finest that were looked at, which are neither proven on nor off and which no
-  /// known contact accounts for; in them curves were sought in vain.
-  long cells_searched = 0;
-  /// The search was given up since it took too many cells of support queries, as `unresolved` tells
-  /// (not since too much of it failed): there may be much that it has not come to.
-  bool exhausted = false;
 };
-
-/// Where curves are sought beside those between samples.
-struct CurveSearch {
-  bool cells = true;                  ///< in mixed cells
-  const DirectionMap* map = nullptr;  ///< where it tells that contacts exchange
-};
-
-/// Finds and traces the separating curves that part the samples from each other: between every two
-/// neighbours on the samples' polytope whose contacts no climb joins there is a curve; it is traced
-/// to its ends, and so are all that leave its facets. Every ruling is checked against the support
-/// function, to within ContactGeometry::tie().
-///
-/// The same where a side of a mixed cell leads from a point that supports to one that does not, and
-/// on small circles about the normals of poles that support.
-///
-/// Mixed cells through which no curve runs by then are refined: their quarters are proven on or
-/// off, or a curve is found across their sides, and so on for those that are left as long as they
-/// become fewer; in the last of them, where curvature does not exclude it, free ends of the hull
-/// are sought. A curve can be missed only there, and in cells that other curves cross. Or curves
-/// are sought in all cells of the map in which contacts exchange and that none crosses by then.
-/// @throws Cancelled
-SeparatingGraph trace_separating_curves(const ContactGeometry& geometry, SupportQuery& query,
-                                        const std::vector<Sample>& samples,
-                                        const std::vector<CulledCell>& cells,
-                                        const CurveSearch& search = {},
-                                        const Progress& progress = {});
 
 }  // namespace taut

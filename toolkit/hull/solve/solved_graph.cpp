@@ -8,6 +8,7 @@
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/solve/arc_ends.h"
+#include "taut/hull/solve/arc_pieces.h"
 #include "taut/hull/solve/arc_solver.h"
 #include "taut/hull/solve/edge_places.h"
 #include "taut/hull/solve/facet_corners.h"
@@ -15,7 +16,6 @@
 #include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/node_ears.h"
 #include "taut/hull/solve/touching_plane.h"
-#include "taut/hull/trace/arc_pieces.h"
 
 namespace taut {
 namespace {

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "taut/bounds/support_query.h"
 #include "taut/core/progress.h"
 #include "taut/hull/decide/direction_map.h"
-#include "taut/hull/trace/separating_graph.h"
+#include "taut/hull/solve/separating_graph.h"
 
 namespace taut {
 

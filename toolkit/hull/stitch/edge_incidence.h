@@ -3,8 +3,9 @@
 #include <map>
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
+#include "taut/hull/solve/separating_graph.h"
 #include "taut/hull/stitch/trim_loops.h"
-#include "taut/hull/trace/separating_graph.h"
 
 namespace taut {
 

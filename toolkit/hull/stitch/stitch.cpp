@@ -40,7 +40,6 @@ class Stitcher {
     HullBoundary boundary;
     boundary.frame = geometry.scene().frame();
     boundary.unresolved = graph.unresolved;
-    boundary.exhausted = graph.exhausted;
     return boundary;
   }
 
@@ -48,10 +47,7 @@ class Stitcher {
                                             const SeparatingGraph& graph, double depth,
                                             std::vector<Unresolved>& unresolved) {
     std::vector<TrimRegion> regions = trim_regions(geometry, graph, unresolved);
-    // Of a search that was given up they would tell nothing, and cost as much.
-    if (!graph.exhausted) {
-      add_whole_patches(geometry, query, graph, depth, regions, unresolved);
-    }
+    add_whole_patches(geometry, query, graph, depth, regions, unresolved);
     return regions;
   }
 

@@ -2,7 +2,7 @@
 
 #include "taut/bounds/support_query.h"
 #include "taut/hull/result/hull_boundary.h"
-#include "taut/hull/trace/separating_graph.h"
+#include "taut/hull/solve/separating_graph.h"
 
 namespace taut {
 

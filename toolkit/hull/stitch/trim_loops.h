@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/trace/separating_graph.h"
+#include "taut/hull/solve/separating_graph.h"
 
 namespace taut {
 

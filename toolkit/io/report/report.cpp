@@ -65,10 +65,10 @@ ReportJson to_json(const Report::Queries& queries) {
 }
 
 ReportJson to_json(const Report::Seconds& seconds) {
-  return {{"read", seconds.read},     {"build", seconds.build},   {"sample", seconds.sample},
-          {"cull", seconds.cull},     {"decide", seconds.decide}, {"trace", seconds.trace},
-          {"stitch", seconds.stitch}, {"mesh", seconds.mesh},     {"measure", seconds.measure},
-          {"write", seconds.write},   {"total", seconds.total}};
+  return {{"read", seconds.read},  {"build", seconds.build},     {"sample", seconds.sample},
+          {"cull", seconds.cull},  {"trace", seconds.trace},     {"stitch", seconds.stitch},
+          {"mesh", seconds.mesh},  {"measure", seconds.measure}, {"write", seconds.write},
+          {"total", seconds.total}};
 }
 
 ReportJson to_json(const std::vector<Warning>& warnings) {

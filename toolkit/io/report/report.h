@@ -56,9 +56,8 @@ struct Report {
     };
     std::vector<File> files;
   } mesh;
-  /// Leaves of the hierarchies at the finest level, and how many of them could not be culled;
-  /// cells, of finer ones, that in the end neither a proof nor a known contact accounts for. None
-  /// where the method does not cull.
+  /// Pieces of the model that were looked at in cells of the map of directions, those that are left
+  /// in them, and cells that were not decided. None where there is no map.
   struct Culling {
     long leaves = 0, kept = 0, searched = 0;
   };
@@ -81,7 +80,7 @@ struct Report {
     long support = 0, newton_iterations = 0;
   } queries;
   struct Seconds {
-    double read = 0, build = 0, sample = 0, cull = 0, decide = 0, trace = 0, stitch = 0;
+    double read = 0, build = 0, sample = 0, cull = 0, trace = 0, stitch = 0;
     double mesh = 0, measure = 0, write = 0, total = 0;
   } seconds;
   long peak_bytes = 0;

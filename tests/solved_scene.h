@@ -4,14 +4,14 @@
 
 #include "models.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/cull/culling.h"
+#include "taut/hull/exact_boundary.h"
+#include "taut/hull/solve/solved_graph.h"
 #include "taut/hull/stitch/whole_patches.h"
-#include "taut/hull/trace/separating_graph.h"
 
 namespace taut_test {
 
 /// A scene with its separating curves and the regions that they trim.
-struct TracedScene {
+struct SolvedScene {
   taut::Scene scene;
   taut::ContactGeometry geometry;
   taut::SupportQuery query;
@@ -19,15 +19,15 @@ struct TracedScene {
   std::vector<taut::Unresolved> unresolved;
   std::vector<taut::TrimRegion> regions;
 
-  TracedScene(const TracedScene&) = delete;
-  explicit TracedScene(const Shape& shape)
+  SolvedScene(const SolvedScene&) = delete;
+  explicit SolvedScene(const Shape& shape)
       : scene(make_scene(shape)), geometry(scene), query(scene) {
-    const taut::GaussMap map(scene, {.threads = 1, .progress = {}});
-    const taut::Culling culling = taut::cull(scene, map, {.threads = 1, .progress = {}});
-    graph = trace_separating_curves(geometry, query, culling.samples, culling.cells);
+    taut::HullStatistics statistics;
+    const taut::DirectionMap map = directions_of(geometry, {}, statistics);
+    graph = solved_graph(geometry, query, map, {});
     unresolved = graph.unresolved;
     regions = trim_regions(geometry, graph, unresolved);
-    add_whole_patches(geometry, query, graph, 0, regions, unresolved);
+    add_whole_patches(geometry, query, graph, map.resolution, regions, unresolved);
   }
 };
 
