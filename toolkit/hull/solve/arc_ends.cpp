@@ -6,6 +6,7 @@
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
+#include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/solve/arc_pieces.h"
 #include "taut/hull/solve/arc_solver.h"
@@ -31,13 +32,12 @@ class FreeEndSearch {
   explicit FreeEndSearch(const RulingSearch& search)
       : search_(search), geometry_(search.geometry()) {}
 
-  /// Where one of them lies on an edge the system of two contacts is worse by the square of their
-  /// distance, not by its third power as merging_distance() has it.
+  /// Where they run on different surfaces or curves the system of two contacts is worse by the
+  /// square of their distance, not by its third power as merging_distance() has it.
   bool is_near(const Ruling& r) const {
-    const bool of_faces =
-        r.contact[0].kind == SourceKind::face && r.contact[1].kind == SourceKind::face;
     const double distance = merging_distance(geometry_);
-    return length_of(r) <= (of_faces ? distance : std::pow(distance, 1.5));
+    const bool is_smooth = continues(geometry_, r.contact[0], r.contact[1]);
+    return length_of(r) <= (is_smooth ? distance : std::pow(distance, 1.5));
   }
 
   /// Adds what is left of the arc, if its end is told and the way there supports.

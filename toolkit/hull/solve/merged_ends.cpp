@@ -22,6 +22,12 @@ constexpr double slowest_merging = -0.05;
 /// of their distance.
 constexpr double pole_reach = 8e-3;
 constexpr double pole_share = 0.02;
+/// Sine of the angle below which two edges that merge are one.
+constexpr double least_angle = 1e-3;
+/// Cosine by which the limit of the direction may miss its extrapolation.
+constexpr double least_cosine = 0.99;
+/// Contacts nearer than this are moved by rounding.
+constexpr double least_distance = 2e-4;
 /// How far contacts that meet may be off each other, as a share of their distance before.
 constexpr double meeting_share = 0.25;
 
@@ -54,6 +60,35 @@ std::optional<FreeEnd> kind_of_end(const ContactGeometry& geometry, const Ruling
     }
   }
   return std::nullopt;
+}
+
+/// The direction in which two contacts merge at a common point: a face's normal; across the
+/// tangents of two edges; of an edge and its end, across the edge's osculating plane. `near` tells
+/// the sense, and the direction where these are none.
+dvec3 limit_normal(const std::array<ContactJet, 2>& jet, const dvec3& near) {
+  const ContactJet& a = jet[0].dimension >= jet[1].dimension ? jet[0] : jet[1];
+  const ContactJet& b = jet[0].dimension >= jet[1].dimension ? jet[1] : jet[0];
+  dvec3 normal(0.0);
+  if (a.dimension == 2) {
+    normal = glm::cross(a.dx[0], a.dx[1]);
+  } else if (b.dimension == 1) {
+    normal = glm::cross(unit(a.dx[0]), unit(b.dx[0]));
+    // Of one edge: as at its end.
+    if (glm::length(normal) < least_angle) normal = dvec3(0.0);
+  } else {
+    normal = glm::cross(a.dx[0], a.dxx);
+  }
+  normal = unit(normal);
+  if (std::abs(glm::dot(normal, near)) < least_cosine) {
+    normal = near;
+    for (const ContactJet& j : jet) {
+      if (j.dimension != 1) continue;
+      const dvec3 along = unit(j.dx[0]);
+      normal -= glm::dot(normal, along) * along;
+    }
+    normal = unit(normal);
+  }
+  return aligned(normal, near);
 }
 
 class Merging {
@@ -96,11 +131,10 @@ class Merging {
     return glm::dot(n - at_.n, tangent_.n) + glm::dot(x - at_.jet[0].x, tangent_.x[0]) +
            glm::dot(x - at_.jet[1].x, tangent_.x[1]);
   }
-  /// About a free end heights differ by the fourth power of distances, at a border by the third:
-  /// what is extrapolated over less than the merging distance may be low by that.
+  /// The nearer the contacts, the better the extrapolation; until rounding spoils it.
   bool is_low(const Ruling& r) const {
-    const bool is_near = length_ <= merging_distance(geometry_);
-    return search_.depth(r) > (is_near ? search_.map().resolution : geometry_.tie());
+    const bool is_spoilt = length_ <= least_distance;
+    return search_.depth(r) > (is_spoilt ? search_.map().resolution : geometry_.tie());
   }
 
   const RulingSearch& search_;
@@ -265,20 +299,12 @@ std::optional<Ruling> Merging::in_free_end(const Ruling& near) const {
   return r;
 }
 
-/// Where it is extrapolated to, with the normal of a face there, or one across the edges.
+/// Where it is extrapolated to, in the direction in which contacts merge there.
 std::optional<Ruling> Merging::at(Ruling near) const {
   const std::array<ContactJet, 2> jet = {geometry_.jet(near.contact[0]),
                                          geometry_.jet(near.contact[1])};
   if (glm::distance(jet[0].x, jet[1].x) > meeting_share * length_) return std::nullopt;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (jet[i].dimension == 1) {
-      const dvec3 along = unit(jet[i].dx[0]);
-      near.n = unit(near.n - glm::dot(near.n, along) * along);
-    }
-  }
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (jet[i].dimension == 2) near.n = aligned(unit_normal(geometry_, near.contact[i]), near.n);
-  }
+  near.n = limit_normal(jet, near.n);
   const dvec3 x = jet[jet[0].dimension <= jet[1].dimension ? 0 : 1].x;
   near.point = {x, x};
   return is_low(near) ? std::nullopt : std::optional(near);
