@@ -306,6 +306,39 @@ bool ArcSolver::leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
   return sense * rate < 0;
 }
 
+/// The ruling with which contact i stands at the exit. Before an end in which contacts merge the
+/// system is nearly singular: from where they are when they approach each other evenly.
+bool ArcSolver::solve_change(CommonSupport& s, const Ruling& to, std::size_t i,
+                             const ContactExit& exit) const {
+  const ContactSystem& system = search_.system();
+  const auto margin = [&](const CommonSupport& now) {
+    return exit_margin(geometry_, now, int(i), exit);
+  };
+  if (to.point[0] != to.point[1]) return system.solve(s, margin);
+  if (exit.kind == ContactExit::Kind::side) {
+    s.contact[i] =
+        passed_on_side(geometry_, s.contact[i], Side(exit.index), last().point[i], to.point[i]);
+    s.evaluate(geometry_);
+  }
+  const double before = glm::distance(last().point[i], s.jet[i].x);
+  const double after = glm::distance(to.point[i], s.jet[i].x);
+  if (!(before + after > 0)) return false;
+  const double left = after / (before + after);
+  // n is a function of the square of their distance where they run on one surface or curve.
+  const bool is_smooth = continues(geometry_, last().contact[0], last().contact[1]);
+  s.n = unit(glm::mix(to.n, last().n, is_smooth ? left * left : left));
+  Contact& other = s.contact[1 - i];
+  if (same_element(other, to.contact[1 - i])) {
+    other.u = glm::mix(to.contact[1 - i].u, other.u, left);
+    other.v = glm::mix(to.contact[1 - i].v, other.v, left);
+  }
+  s.evaluate(geometry_);
+  const double expected = left * glm::distance(last().point[0], last().point[1]);
+  if (!system.settle(s, margin)) return false;
+  const double length = glm::length(s.d());
+  return 0.5 * expected < length && length < 2 * expected;
+}
+
 std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t i,
                                                    const ContactExit& exit) const {
   CommonSupport s(geometry_, last());
@@ -319,10 +352,8 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
     const auto own = in_element(geometry_, other, last().contact[1 - i]);
     if (!own) return std::nullopt;
     s.contact[1 - i] = *own;
-  } else {
-    const bool solved = search_.system().solve(
-        s, [&](const CommonSupport& now) { return exit_margin(geometry_, now, int(i), exit); });
-    if (!solved) return std::nullopt;
+  } else if (!solve_change(s, to, i, exit)) {
+    return std::nullopt;
   }
   for (Contact& c : s.contact) {
     if (glm::distance(parameters(c), parameters(clamped(c))) > way_slack) return std::nullopt;

@@ -47,6 +47,8 @@ class ArcSolver {
   double depth_on_the_way(const Ruling& to) const;
   bool leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
               const ContactExit& exit) const;
+  bool solve_change(CommonSupport& s, const Ruling& to, std::size_t i,
+                    const ContactExit& exit) const;
   std::optional<Change> change(const Ruling& to, std::size_t i, const ContactExit& exit) const;
 
   const RulingSearch& search_;

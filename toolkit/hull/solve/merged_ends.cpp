@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
@@ -60,6 +61,16 @@ std::optional<FreeEnd> kind_of_end(const ContactGeometry& geometry, const Ruling
     }
   }
   return std::nullopt;
+}
+
+/// The place of a free end as one of the element of a contact that runs there, or of one of its
+/// kind beyond others.
+Contact told_beside(const ContactGeometry& geometry, const Contact& end, const Contact& own) {
+  if (const auto there = expressed_in(geometry, end, own)) return *there;
+  if (own.kind != SourceKind::face || end.kind != SourceKind::edge) return end;
+  const Contact edge = geometry.first(end);
+  const std::vector<ContactGeometry::PieceSide>& sides = geometry.sides(edge);
+  return sides.empty() ? end : on_side(edge, sides.front());
 }
 
 /// The direction in which two contacts merge at a common point: a face's normal; across the
@@ -292,9 +303,7 @@ std::optional<Ruling> Merging::in_free_end(const Ruling& near) const {
   if (length_along(end->n, x) <= 0 || glm::distance(x, at_.jet[0].x) >= reach) return std::nullopt;
   Ruling r{end->n, {end->contact, end->contact}, {x, x}};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (const auto own = expressed_in(geometry_, end->contact, last_.contact[i])) {
-      r.contact[i] = *own;
-    }
+    r.contact[i] = told_beside(geometry_, end->contact, last_.contact[i]);
   }
   return r;
 }
