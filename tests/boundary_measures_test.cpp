@@ -819,7 +819,7 @@ HullBoundary thinned(HullBoundary boundary) {
 
 class MeasuresOf : public testing::TestWithParam<unsigned> {};
 
-/// Of traced boundaries, teapot and blobs: those are measured as exactly as half the rulings tell.
+/// Of solved boundaries, teapot and blobs: those are measured as exactly as half the rulings tell.
 TEST_P(MeasuresOf, RulingsDoNotMatter) {
   const Scene scene = make_scene(GetParam() == 0 ? teapot() : blob(GetParam()));
   const Hull hull = boundary_of(scene);

@@ -465,28 +465,6 @@ TEST(Poles, AreToldFromTipsAndCorners) {
   EXPECT_EQ(poles(box(1, 1, 1)), 0);
 }
 
-TEST(Poles, ClimbsBesideThem) {
-  for (const bool turned : {false, true}) {
-    const Shape shape = turned ? mapped(ellipsoid(3, 2, 1), skew_rotation()) : ellipsoid(3, 2, 1);
-    const Scene scene = make_scene(shape);
-    const ContactGeometry geometry(scene);
-    SupportQuery query(scene);
-    const dvec3 axis = turned ? skew_rotation() * dvec3(0, 0, 1) : dvec3(0, 0, 1);
-    const Contact top = query(axis).contact;
-    const std::optional<Side> side = pole_side(geometry, top);
-    ASSERT_TRUE(side);
-    EXPECT_NEAR(std::abs(glm::dot(unit_normal(geometry, top), axis)), 1, 1e-12);
-    Random random(5);
-    for (int k = 0; k < 100; ++k) {
-      const double turn = log_uniform(random, 1e-6, 0.1);
-      const dvec3 n = glm::normalize(axis + turn * random_direction(random));
-      const std::optional<Contact> c = beside_pole(geometry, top, n);
-      ASSERT_TRUE(c) << turn;
-      EXPECT_NEAR(glm::dot(geometry.point(*c), n), query(n).h, 1e-13) << turn;
-    }
-  }
-}
-
 TEST(MoveTogether, OverJoinsEdgesAndVertices) {
   const Scene scene = make_scene(lens());
   const ContactGeometry geometry(scene);
@@ -785,23 +763,6 @@ TEST(LevelSides, InDirectionsObliqueToTheParameters) {
       EXPECT_EQ(is_level_across(geometry, middle, side, up), is_origin);
       if (!is_origin) continue;
       found.insert(side);
-      const double way = 1e-8;
-      const double sense = at_upper_end(side) ? -1 : 1;
-      Contact beside = middle;
-      (along_v(side) ? beside.u : beside.v) += sense * way;
-      const std::optional<Contact> edge = on_level_edge(geometry, beside, side, up);
-      ASSERT_TRUE(edge);
-      EXPECT_EQ(edge->kind, SourceKind::edge);
-      EXPECT_LT(glm::length(in_model(*edge)), 1e-14);
-      // The maximum of a x - y^2 / 2 - x^3 / 6.
-      for (const double a : {1e-2, 1e-5, 1e-10}) {
-        const std::optional<Contact> inside =
-            inside_level(geometry, middle, glm::normalize(dvec3(a, 0, 1)));
-        ASSERT_TRUE(inside);
-        EXPECT_NEAR(in_model(*inside).x, std::sqrt(2 * a), 1e-12);
-        EXPECT_NEAR(in_model(*inside).y, 0, 1e-12);
-      }
-      EXPECT_FALSE(inside_level(geometry, middle, glm::normalize(dvec3(-1e-2, 0, 1))));
     }
   }
   EXPECT_EQ(found.size(), 4U);

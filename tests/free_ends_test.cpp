@@ -373,7 +373,7 @@ TEST(FreeEnds, PolishLeadsNowhereWhereThereIsNone) {
 }
 
 /// Where an arc of the exact boundary ends free, and where the rulings before lead by themselves.
-struct TracedEnd {
+struct ArcEnd {
   Ruling ruling;
   /// Point and n as cubics in the distance of the two contacts; only of ends with enough rulings.
   dvec3 x = dvec3(0.0), n = dvec3(0.0);
@@ -394,9 +394,9 @@ dvec3 extrapolated(std::span<const double> places, std::span<const dvec3> values
   return result;
 }
 
-TracedEnd traced_end(std::vector<Ruling> rulings, bool last) {
+ArcEnd arc_end(std::vector<Ruling> rulings, bool last) {
   if (last) std::reverse(rulings.begin(), rulings.end());
-  TracedEnd end;
+  ArcEnd end;
   end.ruling = rulings.front();
   if (rulings.size() < 5) return end;
   std::array<double, 4> apart;
@@ -415,12 +415,12 @@ TracedEnd traced_end(std::vector<Ruling> rulings, bool last) {
   return end;
 }
 
-std::vector<TracedEnd> traced_ends(const HullBoundary& boundary) {
-  std::vector<TracedEnd> result;
+std::vector<ArcEnd> arc_ends(const HullBoundary& boundary) {
+  std::vector<ArcEnd> result;
   for (const SeparatingArc& arc : boundary.arcs) {
     if (arc.closed) continue;
-    if (arc.facet[0] < 0) result.push_back(traced_end(arc.pieces.front().rulings, false));
-    if (arc.facet[1] < 0) result.push_back(traced_end(arc.pieces.back().rulings, true));
+    if (arc.facet[0] < 0) result.push_back(arc_end(arc.pieces.front().rulings, false));
+    if (arc.facet[1] < 0) result.push_back(arc_end(arc.pieces.back().rulings, true));
   }
   return result;
 }
@@ -435,11 +435,11 @@ void expect_those_of_arcs(const Shape& shape) {
   options.threads = 1;
   const HullBoundary boundary = exact_boundary(own.scene, options, statistics);
   const std::vector<FreeEnd> ends = own.ends();
-  const std::vector<TracedEnd> traced = traced_ends(boundary);
+  const std::vector<ArcEnd> of_arcs = arc_ends(boundary);
   if (boundary.unresolved.empty()) {
-    EXPECT_EQ(ends.size(), traced.size());
+    EXPECT_EQ(ends.size(), of_arcs.size());
   } else {
-    EXPECT_GE(ends.size(), traced.size());
+    EXPECT_GE(ends.size(), of_arcs.size());
   }
   const auto nearest = [&](const dvec3& x, const dvec3& n) {
     double best = 1;
@@ -449,7 +449,7 @@ void expect_those_of_arcs(const Shape& shape) {
     }
     return best;
   };
-  for (const TracedEnd& end : traced) {
+  for (const ArcEnd& end : of_arcs) {
     EXPECT_LT(nearest(end.ruling.point[0], end.ruling.n), 1e-12);
     EXPECT_LT(nearest(end.x, end.n), 4 * end.doubt + rulings_error);
   }

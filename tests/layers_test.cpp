@@ -332,14 +332,14 @@ TEST_F(Layers, FindsPlantedDirectionBetweenRooms) {
           << room;
     }
   }
-  EXPECT_TRUE(is_below(rooms_of.at("hull"), "result", "trace"));
-  EXPECT_FALSE(is_below(rooms_of.at("hull"), "sample", "trace"));
+  EXPECT_TRUE(is_below(rooms_of.at("hull"), "result", "solve"));
+  EXPECT_FALSE(is_below(rooms_of.at("hull"), "sample", "solve"));
 }
 
 TEST_F(Layers, FindsPlantedUseOfARoomFromAnotherLayer) {
   EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/polytope/b.h\""), 0U);
   EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/convex_hull.h\""), 0U);
-  EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/trace/b.h\""), 1U);
+  EXPECT_EQ(violations_of("toolkit/envelope/a.cpp", "\"taut/hull/solve/b.h\""), 1U);
   EXPECT_EQ(violations_of("toolkit/containment/a.cpp", "\"taut/hull/contact/b.h\""), 1U);
   EXPECT_EQ(violations_of("toolkit/io/a.cpp", "\"taut/hull/contact/b.h\""), 0U);
   EXPECT_EQ(violations_of("toolkit/core/a.cpp", "\"taut/hull/result/b.h\""), 1U);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "exact_checks.h"
 #include "sound_hull.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
@@ -82,6 +83,17 @@ int expect_verified_if_right(unsigned step) {
     right += o.right_report ? 1 : 0;
   }
   return right;
+}
+
+/// Tangents at the rims of thin ones, where angles of normals count, pass the middle closely.
+TEST(Plates, MeanWidthsAreAsAccurateAsIsStated) {
+  for (const unsigned seed : {4U, 9U, 32U, 51U}) {
+    const Scene scene = make_scene(random_plate(seed).shape());
+    const BoundaryMeasures own = measures_of(scene, boundary_of(scene));
+    const double truth = measures_of(random_plate(seed)).mean_width;
+    EXPECT_LE(std::abs(own.mean_width / truth - 1), own.accuracy + 1e-12) << seed;
+    EXPECT_LE(own.accuracy, 1e-10) << seed;
+  }
 }
 
 // The numbers of right ones may only grow.

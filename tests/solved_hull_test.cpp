@@ -33,6 +33,17 @@ TEST(SolvedHull, OfCopiesWithOtherParametersLacksNothing) {
   EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{1, 0, 0}));
 }
 
+/// A rim of a rounded wheel is told as the side of a patch where that supports as well: support
+/// points on it are on the boundary.
+TEST(SolvedHull, OfCurvesAlongSidesOfPatchesLacksNothing) {
+  for (const Variant variant : {Variant::float32, Variant::decimals}) {
+    const Hull hull = solved_hull_of(scene_of("wheel", variant));
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_TRUE(hull.boundary->unresolved.empty());
+    EXPECT_EQ(hull.boundary->count(FaceKind::facet), 2);
+  }
+}
+
 /// All of it is exact, and what is measured is as accurate as that is stated.
 void expect_exact_measures(const Shape& shape, const char* name) {
   SCOPED_TRACE(name);

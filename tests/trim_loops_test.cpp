@@ -237,7 +237,7 @@ TEST(HalfArcs, AtCrossings) {
   EXPECT_TRUE(is(next_half_arc(graph, {1, 1}), 0, 1));
 }
 
-/// In a graph that was traced half-arcs are permuted, in cycles along which the contact at the end
+/// In a graph that was solved half-arcs are permuted, in cycles along which the contact at the end
 /// of one is that at the beginning of the next, facets' curved sides apart.
 void expect_cycles(const Shape& shape, int half_arcs, int cycles) {
   const Trimmed trimmed(shape);

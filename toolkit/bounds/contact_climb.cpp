@@ -347,10 +347,4 @@ ClimbedContact climb(const ContactGeometry& geometry, const Contact& c, const dv
   return result;
 }
 
-std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
-                                   const dvec3& n) {
-  const std::optional<Contact> start = way_off_pole(geometry, pole, n);
-  return start ? climbed(geometry, *start, n) : std::nullopt;
-}
-
 }  // namespace taut

@@ -23,9 +23,4 @@ std::optional<Contact> climbed(const ContactGeometry& geometry, const Contact& c
 /// (ContactGeometry::canonical).
 ClimbedContact climb(const ContactGeometry& geometry, const Contact& c, const dvec3& n);
 
-/// The contact about the pole, in whichever patch, that supports locally in a direction near the
-/// pole's normal. @pre the contact lies at a pole
-std::optional<Contact> beside_pole(const ContactGeometry& geometry, const Contact& pole,
-                                   const dvec3& n);
-
 }  // namespace taut

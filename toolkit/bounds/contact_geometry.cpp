@@ -88,17 +88,6 @@ constexpr double straight_share = 4;
 
 }  // namespace
 
-dvec2 parameter_change(const ContactJet& j, const dvec3& dx) {
-  if (j.dimension == 0) return dvec2(0.0);
-  const double uu = glm::dot(j.dx[0], j.dx[0]);
-  const double u = glm::dot(j.dx[0], dx);
-  if (j.dimension == 1) return dvec2(u / uu, 0.0);
-  const double uv = glm::dot(j.dx[0], j.dx[1]);
-  const double vv = glm::dot(j.dx[1], j.dx[1]);
-  const double v = glm::dot(j.dx[1], dx);
-  return dvec2(vv * u - uv * v, uu * v - uv * u) / (uu * vv - uv * uv);
-}
-
 std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn) {
   if (j.dimension == 0) return dvec2(0.0);
   const dvec2 slope(glm::dot(j.dx[0], dn), glm::dot(j.dx[1], dn));
@@ -337,10 +326,7 @@ dvec3 ContactGeometry::to_frame(int instance, const dvec3& direction) const {
   return own.rotated ? own.rotation * direction : direction;
 }
 
-void ContactGeometry::start_evaluation() const {
-  stop_.check();
-  evaluations_.fetch_add(1, std::memory_order_relaxed);
-}
+void ContactGeometry::start_evaluation() const { stop_.check(); }
 
 ContactJet ContactGeometry::jet(const Contact& c) const {
   start_evaluation();

@@ -22,10 +22,6 @@ struct ContactJet {
   dvec3 dxx = dvec3(0.0), dxy = dvec3(0.0), dyy = dvec3(0.0);
 };
 
-/// The change of parameters by which the contact moves along its element as dx does, to first
-/// order; of those that it has not, zero. @pre the derivatives are independent
-dvec2 parameter_change(const ContactJet& j, const dvec3& dx);
-
 /// None of the numbers is infinite or no number.
 inline bool is_finite(const dvec3& x) {
   return glm::length(x) < std::numeric_limits<double>::infinity();
@@ -62,8 +58,6 @@ class ContactGeometry {
   /// slopes at joins of surfaces, in the scene's frame (coordinate_rounding).
   double rounding() const { return rounding_; }
   const Part& part(const Contact& c) const;
-  /// Jets asked for so far, by all threads: what work on contacts costs.
-  long evaluations() const { return evaluations_; }
   /// What works long on contacts and evaluates none asks now and then. @throws Cancelled
   void check_stop() const { stop_.check(); }
 
@@ -155,7 +149,6 @@ class ContactGeometry {
 
   const Scene& scene_;
   Stop stop_;
-  mutable std::atomic<long> evaluations_ = 0;
   double rounding_ = 0;
   double tie_ = 0;
   std::vector<PartElements> parts_;

@@ -37,22 +37,6 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
   return e;
 }
 
-double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit) {
-  switch (exit.kind) {
-    case ContactExit::Kind::side:
-      return glm::length(geometry.jet(c).dx[along_v(all_sides[std::size_t(exit.index)]) ? 0 : 1]);
-    case ContactExit::Kind::end:
-      return glm::length(geometry.jet(c).dx[0]);
-    case ContactExit::Kind::face: {
-      const ContactGeometry::PieceSide& side = geometry.sides(c)[std::size_t(exit.index)];
-      return glm::length(inward_derivative(geometry.jet(on_side(c, side)), side.side));
-    }
-    case ContactExit::Kind::edge:
-      return glm::length(tangent_from(geometry, c, geometry.ends(c)[std::size_t(exit.index)]));
-  }
-  return 0;
-}
-
 bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
                   const ContactExit& exit) {
   const auto k = std::size_t(i);

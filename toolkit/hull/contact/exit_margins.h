@@ -10,10 +10,6 @@ namespace taut {
 LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
                            const ContactExit& exit);
 
-/// The length of the derivative by which the exit's margin is measured at a contact: what rounding
-/// moves the margin by is a length over it.
-double exit_length(const ContactGeometry& geometry, const Contact& c, const ContactExit& exit);
-
 /// Of two contacts that part: where the direction turns into contact i's own region, the contact
 /// moves over the exit at which it stands. False where its element is flat.
 bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,

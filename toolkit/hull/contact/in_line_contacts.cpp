@@ -18,22 +18,6 @@ constexpr double aside_turn = 1e-4;
 /// Gains that are no larger, in units of what heights tie over, are rounding.
 constexpr double least_gain = 8;
 
-/// A contact beyond the one at `end`, farther along, in line with it, and as high.
-std::optional<Contact> beyond_in_line(const ContactGeometry& geometry, SupportQuery& query,
-                                      const dvec3& n, const Contact& end, const dvec3& along) {
-  const dvec3 x = geometry.point(end);
-  const Support top = query(glm::normalize(n + line_turn * along), end);
-  if (glm::dot(top.point - x, along) <= same_contact) return std::nullopt;
-  const std::optional<Contact> c = climbed(geometry, at_rest(geometry, top.contact, n), n);
-  if (!c) return std::nullopt;
-  const dvec3 off = geometry.point(*c) - x;
-  if (glm::dot(off, along) <= same_contact || glm::dot(off, n) < -geometry.tie() ||
-      !is_in_line(x, x + along, x + off)) {
-    return std::nullopt;
-  }
-  return c;
-}
-
 /// A contact of a line, seen from beside.
 struct Gain {
   std::size_t contact;
@@ -45,35 +29,6 @@ struct Gain {
 
 bool is_in_line(const dvec3& a, const dvec3& b, const dvec3& x) {
   return glm::length(glm::cross(x - a, unit(b - a))) <= same_contact;
-}
-
-std::optional<CommonSupport> widened(const ContactGeometry& geometry, SupportQuery& query,
-                                     const CommonSupport& s) {
-  const dvec3 along = unit(s.d());
-  const std::optional<Contact> first = beyond_in_line(geometry, query, s.n, s.contact[0], along);
-  const std::optional<Contact> last = beyond_in_line(geometry, query, s.n, s.contact[1], -along);
-  if (!first && !last) return std::nullopt;
-  CommonSupport wide;
-  wide.n = s.n;
-  wide.add(geometry, first.value_or(s.contact[0]));
-  wide.add(geometry, last.value_or(s.contact[1]));
-  return wide;
-}
-
-std::optional<Contact> between_in_line(const ContactGeometry& geometry, const CommonSupport& s,
-                                       const Contact& winner) {
-  std::optional<Contact> c = climbed(geometry, winner, s.n);
-  if (!c) return std::nullopt;
-  // Where an element is flat climbs end before its border.
-  c = snapped(geometry, *c, same_contact);
-  const dvec3 x = geometry.point(*c);
-  const dvec3 along = unit(s.d());
-  const double place = glm::dot(x - s.jet[1].x, along);
-  if (glm::dot(x - s.jet[1].x, s.n) < -geometry.tie() || place <= same_contact ||
-      place >= glm::length(s.d()) - same_contact || !is_in_line(s.jet[0].x, s.jet[1].x, x)) {
-    return std::nullopt;
-  }
-  return c;
 }
 
 std::vector<Contact> around_line(const ContactGeometry& geometry,

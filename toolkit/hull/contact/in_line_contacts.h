@@ -17,16 +17,6 @@ namespace taut {
 /// The point is no farther than same_contact from the line through a and b.
 bool is_in_line(const dvec3& a, const dvec3& b, const dvec3& x);
 
-/// The first and the last of the contacts in line with the two that support; none if these are the
-/// two themselves. @pre the two support at s.n
-std::optional<CommonSupport> widened(const ContactGeometry& geometry, SupportQuery& query,
-                                     const CommonSupport& s);
-
-/// The contact, of what surpasses the two at a direction near by, that lies between them in line at
-/// s.n and is as high; none if it is elsewhere.
-std::optional<Contact> between_in_line(const ContactGeometry& geometry, const CommonSupport& s,
-                                       const Contact& winner);
-
 /// Contacts in line that support at n, in their order around the facet of no area that they make:
 /// from the first to the last by those that support in directions turned to the one side of the
 /// line, and back by those that do to the other side; these bound the regions that meet in n. The

@@ -28,7 +28,7 @@ constexpr double merging_share = 0.25;
 constexpr double touching_share = 0.6;
 /// Chords from where both contacts' elements are flat are no longer.
 constexpr double longest_flat = 0.05;
-/// An arc that is so many times its chord is none that was traced.
+/// An arc that is so many times its chord is none that was solved.
 constexpr double longest_arc = 10;
 
 double square(const dvec3& x) { return glm::dot(x, x); }
@@ -432,27 +432,6 @@ std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& 
   if (between.empty()) return from;
   const std::optional<MovingRuling> m = between(s);
   return m ? std::optional(m->at.ruling()) : std::nullopt;
-}
-
-std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling& from,
-                                      const Ruling& to, double share) {
-  const RulingsBetween between(system, from, to);
-  if (between.empty()) return from;
-  const std::optional<MovingRuling> m = between(between.at_share(share));
-  return m ? std::optional(m->at.ruling()) : std::nullopt;
-}
-
-void divide_flat_ends(const ContactSystem& system, std::vector<Ruling>& rulings) {
-  for (std::size_t k = 1; k < rulings.size();) {
-    const RulingsBetween between(system, rulings[k - 1], rulings[k]);
-    const bool is_long = !between.empty() && between.stands() && between.length() > longest_flat;
-    const std::optional<MovingRuling> middle = is_long ? between(0.5) : std::nullopt;
-    if (middle) {
-      rulings.insert(rulings.begin() + std::ptrdiff_t(k), middle->at.ruling());
-    } else {
-      ++k;
-    }
-  }
 }
 
 }  // namespace taut

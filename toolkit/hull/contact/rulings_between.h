@@ -136,13 +136,4 @@ bool lies_at_pole(const ContactGeometry& geometry, const Ruling& r);
 std::optional<Ruling> ruling_between(const ContactSystem& system, const Ruling& from,
                                      const Ruling& to, double s);
 
-/// The ruling that divides the chord in this ratio, or, next to a free end, that ruling_between()
-/// has.
-std::optional<Ruling> ruling_at_share(const ContactSystem& system, const Ruling& from,
-                                      const Ruling& to, double share);
-
-/// Adds rulings where a curve begins or ends in elements that are flat there, until the first ones
-/// are so near that the interpolation, which stands for exact rulings there, is as good.
-void divide_flat_ends(const ContactSystem& system, std::vector<Ruling>& rulings);
-
 }  // namespace taut

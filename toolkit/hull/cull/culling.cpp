@@ -21,7 +21,7 @@ namespace {
 
 constexpr int level_limit = 20;
 
-/// The finer the patches, the less is to be gained by their cells: those left are refined later.
+/// The finer the patches, the less is to be gained by their cells.
 constexpr int default_levels = 3;
 constexpr long cells_in_all = 16384;
 
@@ -50,7 +50,7 @@ constexpr int widest_surrounding = 8;
 
 /// Cells that a task's queries may look at, and how many more each of them: ten times what is
 /// usual, and more. Where much of a model is as high but for little, as about a pole of needles,
-/// they take thousands, and decide next to nothing; the most of such cells are left to be traced.
+/// they take thousands, and decide next to nothing; the most of such cells are left.
 constexpr long cells_a_task = 5'000;
 constexpr long cells_a_query = 200;
 
@@ -177,36 +177,6 @@ class PatchCulling {
     visit({}, root, nodes_[std::size_t(root)].bounds, nets_.root(), {true, true}, {});
   }
 
-  /// For cells of a patch that are to be decided further.
-  PatchCulling(const Scene& scene, const SpreadSamples& spread, int instance, int patch,
-               Tools& tools)
-      : content_(scene.content()),
-        spread_(spread),
-        instance_(instance),
-        placed_(content_.instances[std::size_t(instance)]),
-        back_(glm::inverse(placed_.rotation)),
-        element_(content_.parts[std::size_t(placed_.part)].elements[std::size_t(
-            content_.element({instance, SourceKind::face, patch, 0, 0}))]),
-        finest_(0),
-        refines_(true),
-        nets_(element_),
-        tools_(tools) {}
-
-  /// The cell, if it can be decided with what surrounds it, or else its quarters.
-  void refine(const CulledCell& cell) {
-    const PatchCell& place = cell.cell;
-    const CellNets nets{nets_.points(place.u(), place.v()), nets_.normals(place.u(), place.v())};
-    const NormalBounds bounds = nets_.bounds(nets, place.level);
-    finest_ = place.level + 1;
-    result_.levels.resize(std::size_t(finest_) + 1);
-    if (bounds.pyramid && cell.signs.plus != cell.signs.minus &&
-        surely_on_with_others(*bounds.pyramid, place, cell.signs.plus ? 1 : -1)) {
-      finish(place, CellState::on, cell.signs);
-    } else {
-      refine(place, -1, nets, cell.signs, {});
-    }
-  }
-
   PatchResult&& result() { return std::move(result_); }
 
  private:
@@ -267,9 +237,7 @@ class PatchCulling {
     }
     ++count.kept;
     if (cell.level == finest_) {
-      const bool on = refines_ && bounds.pyramid && left.plus != left.minus &&
-                      surely_on_with_others(*bounds.pyramid, cell, left.plus ? 1 : -1);
-      finish(cell, on ? CellState::on : CellState::mixed, left, bounds.definite);
+      finish(cell, CellState::mixed, left, bounds.definite);
       return;
     }
     refine(cell, node, nets, left, beacons);
@@ -395,7 +363,7 @@ class PatchCulling {
     result_.frame_points.push_back(content_.frame_point(middle));
   }
 
-  /// Cells of the finest level are tried with others later, those that no curve crosses.
+  /// Cells of the finest level are not tried with others.
   bool surely_on(const NormalBounds& bounds, const std::vector<dvec4>& points,
                  const PatchCell& cell, double sign) {
     const NormalPyramid& pyramid = *bounds.pyramid;
@@ -481,7 +449,6 @@ class PatchCulling {
   std::span<const GaussNode> nodes_ = {};
   const SceneElement& element_;
   int finest_;
-  bool refines_ = false;
   PatchNets nets_;
   Tools& tools_;
   PatchResult result_;
@@ -524,41 +491,6 @@ void add_shares(std::size_t patches, std::vector<CullingLevel>& levels) {
 }
 
 }  // namespace
-
-struct CellRefinement::Content {
-  Content(const Scene& of, const Stop& stop)
-      : scene(of),
-        spread(of, 0, {.levels = 0, .threads = 1, .progress = {}}),
-        surroundings(of, stop),
-        tools(of, surroundings, stop) {}
-  const Scene& scene;
-  SpreadSamples spread;
-  ConcaveSurroundings surroundings;
-  Tools tools;
-};
-
-CellRefinement::CellRefinement(const Scene& scene, const Stop& stop)
-    : content_(std::make_unique<Content>(scene, stop)) {}
-CellRefinement::~CellRefinement() = default;
-
-std::vector<CulledCell> CellRefinement::refined(const std::vector<CulledCell>& cells) {
-  std::vector<CulledCell> result;
-  for (std::size_t k = 0; k < cells.size();) {
-    const int instance = cells[k].instance;
-    const int patch = cells[k].patch;
-    PatchCulling culling(content_->scene, content_->spread, instance, patch, content_->tools);
-    for (; k < cells.size() && cells[k].instance == instance && cells[k].patch == patch; ++k) {
-      culling.refine(cells[k]);
-    }
-    const PatchResult found = culling.result();
-    result.insert(result.end(), found.cells.begin(), found.cells.end());
-  }
-  return result;
-}
-
-long CellRefinement::support_queries() const {
-  return long(content_->spread.samples().size()) + content_->tools.query.queries();
-}
 
 std::set<std::pair<int, int>> mixed_patches(const std::vector<CulledCell>& cells) {
   std::set<std::pair<int, int>> patches;

@@ -99,24 +99,4 @@ struct Culling {
 /// @pre the map is the scene's @throws InvalidInput for levels out of range, Cancelled
 Culling cull(const Scene& scene, const GaussMap& map, const CullingOptions& options = {});
 
-/// Decides cells that were left mixed further, also by what surrounds them on other patches
-/// (ConcaveSurroundings). The scene must outlive it.
-class CellRefinement {
- public:
-  /// `stop`: makes refined() throw Cancelled.
-  explicit CellRefinement(const Scene& scene, const Stop& stop = {});
-  ~CellRefinement();
-
-  /// Each of the cells as one that is on, or its quarters. Not in parallel.
-  /// @pre they are mixed, those of a patch follow each other
-  std::vector<CulledCell> refined(const std::vector<CulledCell>& cells);
-
-  /// Made so far.
-  long support_queries() const;
-
- private:
-  struct Content;
-  std::unique_ptr<Content> content_;
-};
-
 }  // namespace taut

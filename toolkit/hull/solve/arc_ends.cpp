@@ -27,9 +27,9 @@ bool is_close(const Ruling& a, const Ruling& b) {
          glm::distance(a.point[1], b.point[1]) <= pole_chord;
 }
 
-class FreeEndSearch {
+class ArcEndSearch {
  public:
-  explicit FreeEndSearch(const RulingSearch& search)
+  explicit ArcEndSearch(const RulingSearch& search)
       : search_(search), geometry_(search.geometry()) {}
 
   /// Where they run on different surfaces or curves the system of two contacts is worse by the
@@ -127,7 +127,7 @@ void drop_close_to_pole(const ContactGeometry& geometry, const Ruling& end_rulin
 }
 
 void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces) {
-  const FreeEndSearch ends(search);
+  const ArcEndSearch ends(search);
   for (;;) {
     const Ruling last = pieces.back().rulings.back();
     if (ends.is_near(last) && ends.ends(pieces)) return;

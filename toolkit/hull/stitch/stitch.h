@@ -1,5 +1,6 @@
 #pragma once
 
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/solve/separating_graph.h"
