@@ -40,6 +40,7 @@ class GraphSolver {
   SeparatingGraph run() {
     for (const MapGraph::Node& node : known_.graph.nodes) add(node);
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
+    drop_arcs();
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
@@ -284,6 +285,28 @@ class GraphSolver {
       append(arc.pieces, std::move(first));
     }
     graph_.arcs.push_back(std::move(arc));
+  }
+
+  /// Leaves out arcs that lead back.
+  void drop_arcs() {
+    std::vector<int> number;
+    int count = 0;
+    for (const SeparatingArc& arc : graph_.arcs) number.push_back(leads_back(arc) ? -1 : count++);
+    std::erase_if(graph_.arcs, [&](const SeparatingArc& arc) { return leads_back(arc); });
+    for (FacetNode& node : graph_.nodes) {
+      for (FacetNode::Slot& slot : node.slots) {
+        if (slot.arc >= 0) slot.arc = number[std::size_t(slot.arc)];
+      }
+    }
+  }
+
+  /// It begins and ends in one free end: cells beside that were taken for an arc.
+  bool leads_back(const SeparatingArc& arc) const {
+    if (arc.closed || arc.facet[0] >= 0 || arc.facet[1] >= 0) return false;
+    const Ruling& first = arc.pieces.front().rulings.front();
+    const Ruling& last = arc.pieces.back().rulings.back();
+    return glm::distance(first.n, last.n) <= same_contact &&
+           glm::distance(first.point[0], last.point[0]) <= same_contact;
   }
 
   const ContactGeometry& geometry_;
