@@ -10,8 +10,6 @@
 namespace taut {
 namespace {
 
-/// Turn of the direction, in radians, by which contacts beyond others in line show.
-constexpr double line_turn = 1e-6;
 /// The turn to a side of the line: contacts that move gain half of its square times their radius of
 /// curvature, or more.
 constexpr double aside_turn = 1e-4;
