@@ -7,9 +7,7 @@
 
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
-#include "taut/bounds/curvature_nets.h"
 #include "taut/bounds/poles.h"
-#include "taut/bounds/scene_content.h"
 #include "taut/bounds/supporting_plane.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/facet_contacts.h"
@@ -17,6 +15,7 @@
 #include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/contact/parabolic_sides.h"
 #include "taut/hull/contact/sign_changes.h"
+#include "taut/hull/cull/concave_patch.h"
 
 namespace taut {
 namespace {
@@ -507,15 +506,6 @@ void FreeEndSearch::search_cell(const CurvatureNets& nets, const Contact& c, Pat
   }
 }
 
-std::array<bool, 4> poles(const Patch& patch) {
-  std::array<bool, 4> result{};
-  for (const Side side : all_sides) {
-    const Border& border = patch.borders[std::size_t(side)];
-    result[std::size_t(side)] = border.kind == BorderKind::collapsed && border.vertex < 0;
-  }
-  return result;
-}
-
 void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
   const SceneContent& content = geometry_.scene().content();
   std::optional<CurvatureNets> nets;  // of the last cell's patch
@@ -528,7 +518,7 @@ void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
     if (index < 0) continue;
     if (element != &part.elements[std::size_t(index)]) {
       element = &part.elements[std::size_t(index)];
-      nets.emplace(geometry_.patch(c).bezier, poles(geometry_.patch(c)));
+      nets = ConcavePatch(*element, geometry_.patch(c)).curvature_nets();
     }
     search_cell(nets_over(*nets, cell.cell), c, cell.cell);
   }
