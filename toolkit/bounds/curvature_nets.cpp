@@ -191,15 +191,16 @@ int CurvatureNets::definite_sign() const {
                        [&](std::size_t k) { return is_so(form(k)); });
   };
   if (at_corners([](const SecondForm& f) { return f.surely_negative(); })) {
-    return determinant_is_positive() ? -1 : 0;
+    return least_determinant() > 0 ? -1 : 0;
   }
   if (at_corners([](const SecondForm& f) { return f.surely_positive(); })) {
-    return determinant_is_positive() ? 1 : 0;
+    return least_determinant() > 0 ? 1 : 0;
   }
   return 0;
 }
 
-bool CurvatureNets::determinant_is_positive() const {
+/// Of uu vv - uv^2, over all of the square.
+double CurvatureNets::least_determinant() const {
   const auto net = [&](const std::vector<double>& entries) {
     return scaled<double>(
         uu_.shape, [&](int i, int j) { return entries[std::size_t(i * (uu_.shape.q + 1) + j)]; });
@@ -215,20 +216,24 @@ bool CurvatureNets::determinant_is_positive() const {
   const double roundings = (uu_.shape.p + 1.0) * (uu_.shape.q + 1.0) + 16;
   const double error = uu * vv_.error + vv * uu_.error + 2 * mixed * uv_.error +
                        roundings * rounding_unit * (uu * vv + mixed * mixed);
-  const std::vector<double> entries = unscaled(determinant);
-  return std::all_of(entries.begin(), entries.end(), [&](double x) { return x > error; });
+  return range(unscaled(determinant), error).lower;
 }
 
-/// By the least eigenvalue of an entry, which its errors change by no more than their sum.
+/// By the least eigenvalue of an entry, which its errors change by no more than their sum. Or, of
+/// forms of which this tells little as they are singular along lines, by the determinant: where it
+/// is negative the one eigenvalue is its quotient by the other, which is more than the trace.
 double CurvatureNets::shortfall_bound(int sign) const {
-  double result = 0;
+  double shortfall = 0;
+  double trace = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < uu_.entries.size(); ++k) {
     const double a = sign * uu_.entries[k];
     const double c = sign * vv_.entries[k];
     const double least = 0.5 * (a + c) - std::hypot(0.5 * (a - c), uv_.entries[k]);
-    result = std::max(result, uu_.error + uv_.error + vv_.error - least);
+    shortfall = std::max(shortfall, uu_.error + uv_.error + vv_.error - least);
+    trace = std::min(trace, a + c - uu_.error - vv_.error);
   }
-  return result;
+  if (shortfall == 0 || !(trace > 0)) return shortfall;
+  return std::min(shortfall, std::max(0.0, -least_determinant()) / trace);
 }
 
 CurvatureNets::NormalBounds CurvatureNets::normal_bounds() const {

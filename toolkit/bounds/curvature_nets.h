@@ -65,8 +65,7 @@ class CurvatureNets {
     Net<Entry> upper_half(Direction direction, Net<Entry>& lower) const;
   };
   CurvatureNets() = default;
-  /// Surely, over all of the square.
-  bool determinant_is_positive() const;
+  double least_determinant() const;
   static Interval range(const std::vector<double>& entries, double error);
   static Interval range(const Net<double>& net, const Interval& u, const Interval& v);
 

@@ -18,8 +18,14 @@ namespace {
 constexpr long map_candidates = 600'000;
 constexpr long map_candidates_a_patch = 200;
 
-/// Finer maps that are asked, as shares of the resolution.
+long candidate_limit(const ContactGeometry& geometry) {
+  return map_candidates + map_candidates_a_patch * geometry.scene().patch_count();
+}
+
+/// Finer maps that are asked, as shares of the resolution, and for how many times as many pieces,
+/// together.
 constexpr std::array finer_maps = {1. / 2, 1. / 4, 1. / 16, 1. / 64};
+constexpr long finer_map_times = 2;
 
 /// Spots that could not be resolved beyond which it does not help to know more.
 constexpr std::size_t few_open_spots = 16;
@@ -28,14 +34,15 @@ long undecided(const DirectionMap& map) {
   return map.statistics.of_kind[std::size_t(MapCellKind::undecided)];
 }
 
-/// The map of the scene's directions at a resolution in its frame.
-DirectionMap map_of(const ContactGeometry& geometry, double resolution, const HullOptions& options,
-                    HullStatistics& statistics) {
+/// The map of the scene's directions at a resolution in its frame, for which so many pieces may be
+/// looked at.
+DirectionMap map_of(const ContactGeometry& geometry, double resolution, long candidates,
+                    const HullOptions& options, HullStatistics& statistics) {
   const Stopwatch watch;
   options.progress.update("cull", 0);
   DirectionMapOptions own;
   own.resolution = resolution;
-  own.candidate_limit = map_candidates + map_candidates_a_patch * geometry.scene().patch_count();
+  own.candidate_limit = candidates;
   own.threads = options.threads;
   own.stop = options.progress.stop;
   DirectionMap map = direction_map(geometry, own);
@@ -83,17 +90,22 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
                            HullStatistics& statistics) {
   const Scene& scene = geometry.scene();
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
-  return map_of(geometry, scene.frame().length_to_frame(resolution.rho), options, statistics);
+  return map_of(geometry, scene.frame().length_to_frame(resolution.rho), candidate_limit(geometry),
+                options, statistics);
 }
 
 HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap& directions,
                             const HullOptions& options, HullStatistics& statistics) {
   const double rho = directions.resolution;
   HullBoundary boundary = solved(geometry, directions, options, statistics);
+  if (is_within(boundary, rho) || boundary.unresolved.size() > few_open_spots) return boundary;
+  // What is left undecided is not decided by finer maps either.
+  if (undecided(directions) > 0) return boundary;
+  long left = finer_map_times * candidate_limit(geometry);
   for (const double share : finer_maps) {
-    if (is_within(boundary, rho) || boundary.unresolved.size() > few_open_spots) break;
-    const DirectionMap finer = map_of(geometry, share * rho, options, statistics);
-    if (undecided(finer) > 0) continue;
+    const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
+    left -= finer.statistics.candidates;
+    if (undecided(finer) > 0 || left <= 0) break;
     HullBoundary other = solved(geometry, finer, options, statistics);
     if (is_within(other, rho)) return other;
   }

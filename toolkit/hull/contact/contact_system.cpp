@@ -62,6 +62,11 @@ struct Linearized {
     const double xy = glm::dot(j.dxy, s.n);
     const double yy = glm::dot(j.dyy, s.n);
     for (int a = 0; a < j.dimension; ++a) {
+      if (s.kept[std::size_t(i)] == a) {
+        at(i, a) = 1;
+        ++rows;
+        continue;
+      }
       const double own = size[std::size_t(a)];
       add_direction(j.dx[std::size_t(a)] / own);
       at(i, 0) = (a == 0 ? xx : xy) / (own * size[0]);
@@ -125,6 +130,13 @@ void CommonSupport::evaluate(const ContactGeometry& geometry) {
 }
 
 Ruling CommonSupport::ruling() const { return {n, {contact[0], contact[1]}, {jet[0].x, jet[1].x}}; }
+
+int kept_parameter(const Contact& a, const Contact& b) {
+  if (a.kind != SourceKind::face || !same_element(a, b)) return CommonSupport::free;
+  const auto is_end = [](double t) { return t == 0 || t == 1; };
+  if (a.u == b.u && is_end(a.u)) return 0;
+  return a.v == b.v && is_end(a.v) ? 1 : CommonSupport::free;
+}
 
 void LinearEquation::add_point(const CommonSupport& s, int i, const dvec3& g) {
   const ContactJet& j = s.jet[std::size_t(i)];

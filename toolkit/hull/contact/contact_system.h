@@ -16,6 +16,11 @@ struct CommonSupport {
   int count = 0;
   std::array<Contact, capacity> contact;
   std::array<ContactJet, capacity> jet;
+  /// The parameter that a contact keeps, 0 or 1: one on a side of its patch beyond which a plane or
+  /// a ruled surface goes on stays on the side, where the patch may be so flat across it that the
+  /// direction does not tell how far off it is. It supports all the same, or is no solution.
+  std::array<int, capacity> kept = {free, free, free};
+  static constexpr int free = -1;
 
   CommonSupport() = default;
   CommonSupport(const ContactGeometry& geometry, const Ruling& ruling);
@@ -25,6 +30,10 @@ struct CommonSupport {
   dvec3 d() const { return jet[0].x - jet[1].x; }
   Ruling ruling() const;
 };
+
+/// The parameter that is at the same end of [0, 1] for both of two contacts of one patch, or
+/// CommonSupport::free: they lie on one side.
+int kept_parameter(const Contact& a, const Contact& b);
 
 /// Contacts nearer than this, in the scene's frame, are one. Two contacts of one direction that are
 /// so near are about to merge in a free end; they differ in height by the fourth power of it.

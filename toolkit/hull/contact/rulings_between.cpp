@@ -186,6 +186,8 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     : system_(system),
       from_(from),
       to_(to),
+      kept_({kept_parameter(from.contact[0], to.contact[0]),
+             kept_parameter(from.contact[1], to.contact[1])}),
       square_(square(to.n - from.n) + square(to.point[0] - from.point[0]) +
               square(to.point[1] - from.point[1])) {
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
@@ -224,7 +226,7 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
 /// The longer ruling's length falls towards the end with the square of the way.
 bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
-  m.at = CommonSupport(system_.geometry(), longer);
+  m.at = support(longer);
   length_ = glm::length(m.at.d());
   return find_slope(m, 1) && touches(end, longer, m);
 }
@@ -261,7 +263,7 @@ void RulingsBetween::fit() {
   double s = 0;
   for (const Ruling* end : {&from_, &to_}) {
     MovingRuling m;
-    m.at = CommonSupport(system_.geometry(), *end);
+    m.at = support(*end);
     if (straight_[end == &from_ ? 0 : 1]) {
       // n and the parameters are smooth in powers of the share, which begins level.
       polynomial_.add(s, place(m), State{});
@@ -302,7 +304,7 @@ bool RulingsBetween::is_noise(const CommonSupport& s) const {
 /// with slopes.
 void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
-  m.at = CommonSupport(system_.geometry(), longer);
+  m.at = support(longer);
   length_ = glm::length(m.at.d());
   polynomial_.add(0, state(end.n, parameters(end.contact[0]), parameters(end.contact[1])));
   if (!find_slope(m, 1) || bends(end, longer, m)) {
@@ -321,7 +323,6 @@ void RulingsBetween::fit_free_end(const Ruling& end, const Ruling& longer) {
 
 bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
   const dvec3 dn = (to_.n - from_.n) / square_;
-  const MovingRuling start = m;
   const auto equation = [&](const CommonSupport& at) {
     LinearEquation e;
     e.n = dn;
@@ -333,19 +334,35 @@ bool RulingsBetween::solve_share(MovingRuling& m, double s) const {
     }
     return e;
   };
-  if (system_.solve(m.at, equation) && is_near(start, m)) return true;
-  m = start;
-  return system_.settle(m.at, equation) && is_near(start, m);
+  return solve(m, equation);
 }
 
 /// The ruling of r times the longer ruling's length.
 bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
   const double length = r * length_;
+  return solve(m, [&](const CommonSupport& at) { return distance_equation(at, length); });
+}
+
+/// Where contacts that lie on sides at both ends do not support on them in between they are free.
+template <class Equation>
+bool RulingsBetween::solve(MovingRuling& m, const Equation& equation) const {
   const MovingRuling start = m;
-  const auto equation = [&](const CommonSupport& at) { return distance_equation(at, length); };
   if (system_.solve(m.at, equation) && is_near(start, m)) return true;
   m = start;
+  constexpr std::array all_free = {CommonSupport::free, CommonSupport::free};
+  if (kept_ != all_free) {
+    m.at.kept = CommonSupport().kept;
+    if (system_.solve(m.at, equation) && is_near(start, m)) return true;
+    m = start;
+    m.at.kept = CommonSupport().kept;
+  }
   return system_.settle(m.at, equation) && is_near(start, m);
+}
+
+CommonSupport RulingsBetween::support(const Ruling& r) const {
+  CommonSupport s(system_.geometry(), r);
+  for (std::size_t i = 0; i < 2; ++i) s.kept[i] = kept_[i];
+  return s;
 }
 
 /// The rounding of the system's answer, a rounding unit over the cube of the length, is less than
@@ -400,7 +417,7 @@ MovingRuling RulingsBetween::moving(double r, double sense) const {
     ruling.contact[i].v = value[4 + 2 * i];
     m.dp[i] = sense * dvec2(slope[3 + 2 * i], slope[4 + 2 * i]);
   }
-  m.at = CommonSupport(system_.geometry(), ruling);
+  m.at = support(ruling);
   m.complete();
   return m;
 }

@@ -107,12 +107,16 @@ class RulingsBetween {
   bool find_slope(MovingRuling& m, double r) const;
   bool is_near(const MovingRuling& start, const MovingRuling& m) const;
   MovingRuling moving(double r, double sense) const;
+  CommonSupport support(const Ruling& r) const;
+  template <class Equation>
+  bool solve(MovingRuling& m, const Equation& equation) const;
 
   const ContactSystem& system_;
   const Ruling& from_;
   const Ruling& to_;
-  double square_ = 0;   // of the chord
-  double shorter_ = 0;  // of the two rulings' lengths
+  std::array<int, 2> kept_;  // of the contacts' parameters (CommonSupport::kept)
+  double square_ = 0;        // of the chord
+  double shorter_ = 0;       // of the two rulings' lengths
   bool nearly_merges_ = false;
   bool lies_flat_ = false;
   bool leaves_pole_ = false;

@@ -52,12 +52,9 @@ bool BorderHeights::rise_from_face(int index) {
   const auto is_border = [&](Side side) { return glue_->is_border(index, side); };
   if (std::none_of(all_sides.begin(), all_sides.end(), is_border)) return true;
   show(index);
-  const auto is_apart = [&](Side side) {
-    return is_border(side_at_end(side, false)) && is_border(side_at_end(side, true));
-  };
   return std::all_of(all_sides.begin(), all_sides.end(), [&](Side side) {
     return !is_border(side) || sides_.rise(*view_, side, tilt_) ||
-           (tilt_ == 0 && is_apart(side) && sides_.have_no_low(*view_, side));
+           sides_.have_no_low(*view_, side, tilt_);
   });
 }
 
@@ -111,19 +108,29 @@ bool BorderHeights::rise_from_vertex(int index) const {
   return fold_outwards(growth, inside);
 }
 
+RectangleSides::Corner BorderHeights::corner(const CornerRings::Corner& c) {
+  show(c.chart);
+  return sides_.corner(c.next, c.other);
+}
+
 bool BorderHeights::rise_from(const JoinEnd& end) {
-  const auto corner = [&](const CornerRings::Corner& c) {
-    show(c.chart);
-    return sides_.corner(c.next, c.other);
-  };
   const RectangleSides::Corner own = corner(end.at);
   HeightGrowth growth(*view_, tilt_);
   growth.include(own.point);
   if (growth.along({own.along, 0})) return true;
-  return end.fan && std::all_of(end.fan->begin(), end.fan->end(), [&](const auto& c) {
-           const RectangleSides::Corner last = corner(c);
-           const dvec3 border = unit(last.along);
-           return growth.along({last.along_other - glm::dot(last.along_other, border) * border, 0});
+  if (!end.fan) return false;
+  bool inwards = true;
+  dvec3 both(0.0);
+  for (const CornerRings::Corner& c : *end.fan) {
+    const RectangleSides::Corner last = corner(c);
+    const dvec3 border = unit(last.along);
+    both += border;
+    inwards = inwards &&
+              growth.along({last.along_other - glm::dot(last.along_other, border) * border, 0});
+  }
+  const auto& d = view_->corners();
+  return inwards || std::all_of(d.begin(), d.end(), [&](const dvec3& n) {
+           return glm::dot(both, n) + tilt_ * glm::length(both) <= slack_;
          });
 }
 

@@ -203,12 +203,30 @@ std::optional<MapCellKind> CellDecider::decided_last() {
 std::optional<MapCellKind> CellDecider::decided_sharply(int level) {
   for (int round = 1; round < level / 2; ++round) {
     if (view_.seen().size() > sharpened_limit) return std::nullopt;
-    if (!view_.sharpen(sharp_share * options_.resolution)) return std::nullopt;
+    if (!view_.sharpen(sharp_share * options_.resolution, shares_of_branches()))
+      return std::nullopt;
     branches_.find(view_);
     if (are_one()) return MapCellKind::region;
     if (const auto kind = kind_of_branches(true)) return kind;
   }
   return std::nullopt;
+}
+
+/// Of the seen pieces, in the extents of their branches: where slopes grow over a piece they do so
+/// for all that is beyond it.
+std::vector<double> CellDecider::shares_of_branches() const {
+  std::vector<double> shares(view_.seen().size(), 1);
+  for (const Branch& branch : branches_.all()) {
+    const double whole = glm::distance(branch.lower, branch.upper);
+    for (const int chart : branch.charts) {
+      for (const int k : branches_.chart(chart).pieces) {
+        const Box& box = view_.seen()[std::size_t(k)].piece->box;
+        const double own = glm::distance(box.lower, box.upper);
+        if (own < whole) shares[std::size_t(k)] = own / whole;
+      }
+    }
+  }
+  return shares;
 }
 
 /// Branches are parts of a surface that has one contact.

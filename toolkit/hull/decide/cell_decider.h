@@ -58,6 +58,7 @@ class CellDecider {
   std::optional<MapCellKind> decided(bool before_splits);
   std::optional<MapCellKind> decided_last();
   std::optional<MapCellKind> decided_sharply(int level);
+  std::vector<double> shares_of_branches() const;
   bool are_one();
   bool are_of_one_surface() const;
   std::optional<MapCellKind> kind_without_dominated();

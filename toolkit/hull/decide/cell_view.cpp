@@ -175,7 +175,7 @@ void CellView::add_highest_corner(const SeenPiece& seen) {
   beacons_.push_back(best);
 }
 
-bool CellView::sharpen(double depth) {
+bool CellView::sharpen(double depth, const std::vector<double>& shares) {
   for (const SeenPiece& seen : seen_) add_highest_corner(seen);
   std::sort(beacons_.begin(), beacons_.end());
   beacons_.erase(std::unique(beacons_.begin(), beacons_.end()), beacons_.end());
@@ -189,9 +189,10 @@ bool CellView::sharpen(double depth) {
   before_.swap(seen_);
   seen_.clear();
   bool any = false;
-  for (const SeenPiece& seen : before_) {
+  for (std::size_t k = 0; k < before_.size(); ++k) {
+    const SeenPiece& seen = before_[k];
     const std::optional<Direction> split =
-        PieceSlopes(pieces_, seen, values(seen), noise_).bends_both_ways(8 * depth);
+        PieceSlopes(pieces_, seen, values(seen), noise_).bends_both_ways(8 * depth * shares[k]);
     if (!split) {
       look(*seen.piece);
       continue;

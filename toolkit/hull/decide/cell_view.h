@@ -41,9 +41,10 @@ class CellView {
 
   /// Splits pieces over which slopes change by more than over the cell. True if there were any.
   bool refine();
-  /// Splits pieces that bend up by more than `depth` in places, and drops those that are farther
-  /// than it below the convex hull of what else there is. True if there were any.
-  bool sharpen(double depth);
+  /// Splits pieces that bend up in places, by more than the part of `depth` that is a piece's
+  /// `share` of it, and drops those that are farther than `depth` below the convex hull of what
+  /// else there is. True if there were any.
+  bool sharpen(double depth, const std::vector<double>& shares);
 
   /// How many times more pieces than in a wide cell are not too many.
   std::size_t crowding() const;

@@ -146,7 +146,7 @@ bool ContactIndex::is_nearly_concave(const CellView& view, const Branches& branc
 bool ContactIndex::is_one(const CellView& view, const Branches& branches, const Branch& branch) {
   if (glm::distance(branch.lower, branch.upper) <= point_size * rho_) return true;
   if (!is_cap(view, branches, branch)) return false;
-  border_.turn_to(view, branches, glue_, tilt_);
+  border_.turn_to(view, branches, glue_, tilt_, slack(branch));
   return std::all_of(ends_.begin(), ends_.end(),
                      [&](const JoinEnd& end) { return border_.rise_from(end); }) &&
          std::all_of(branch.charts.begin(), branch.charts.end(),
@@ -161,14 +161,14 @@ bool ContactIndex::are_one_of_more(const CellView& view, Branches branches) {
     for (const Branch& branch : branches.all()) {
       if (!bends_down(view, branches, branch) || !glue_.find(branches, branch)) return false;
       close_poles(branches, branch);
-      border_.turn_to(view, branches, glue_, 0);
+      border_.turn_to(view, branches, glue_, 0, slack(branch));
       if (!add_falling(branches, branch, one, beyond)) return false;
     }
     if (beyond.empty()) {
       // Now it is to be a cap, of which less may be a border and heights have to grow by more.
       const Branch& all = branches.all().front();
       if (!one || !is_cap(view, branches, all)) return false;
-      border_.turn_to(view, branches, glue_, tilt_);
+      border_.turn_to(view, branches, glue_, tilt_, slack(all));
       if (!add_falling(branches, all, true, beyond)) return false;
       if (beyond.empty() && !add_ends(beyond)) return false;
       if (beyond.empty()) return true;

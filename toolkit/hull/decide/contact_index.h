@@ -78,6 +78,10 @@ class ContactIndex {
   bool is_curved(const CellView& view, const Chart& chart);
   bool is_nearly_concave(const CellView& view, const Branches& branches, const Branch& branch);
   double kink(const Branches& branches, const Glue& glue);
+  /// A slope that amounts to the resolution over the branch.
+  double slack(const Branch& branch) const {
+    return rho_ / glm::distance(branch.lower, branch.upper);
+  }
   void close_poles(const Branches& branches, const Branch& branch);
   using Sides = std::vector<std::pair<int, Side>>;  ///< of charts
   bool add_ends(Sides& sides);

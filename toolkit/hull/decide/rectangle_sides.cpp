@@ -21,13 +21,13 @@ void RectangleSides::turn_to(int index, const Interval& u, const Interval& v) {
   if (element.rational) even_weights(shape_, net_);
 }
 
-bool RectangleSides::have_no_low(const CellView& view, Side side) const {
+bool RectangleSides::have_no_low(const CellView& view, Side side, double tilt) const {
   const int degree = along_v(side) ? shape_.q : shape_.p;
   const int fixed = at_upper_end(side) ? (along_v(side) ? shape_.p : shape_.q) : 0;
   const auto at_side = [&](int along) -> const dvec4& {
     return along_v(side) ? at(fixed, along) : at(along, fixed);
   };
-  HeightGrowth growth(view);
+  HeightGrowth growth(view, tilt);
   for (int k = 0; k <= degree; ++k) growth.include(at_side(k));
   bool concave = degree > 1;
   for (int k = 0; k + 2 <= degree && concave; ++k) {

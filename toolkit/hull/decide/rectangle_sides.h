@@ -19,8 +19,10 @@ class RectangleSides {
   /// Straight inwards, or if `obliquely` also along the side so that the slope is much the same all
   /// over it; by more than `tilt` along vectors of length one.
   bool rise(const CellView& view, Side side, double tilt, bool obliquely = true) const;
-  /// No height along the side is lower than those on both sides of it: it is concave, or monotone.
-  bool have_no_low(const CellView& view, Side side) const;
+  /// No height along the side is lower than those on both sides of it: they are concave, or
+  /// monotone; so are they less a function that grows by no more than `tilt` along vectors of
+  /// length one, and has no hollow.
+  bool have_no_low(const CellView& view, Side side, double tilt = 0) const;
 
   /// A corner, and what leads from it along the one side that ends there and along the other.
   struct Corner {

@@ -143,6 +143,8 @@ void ArcSolver::end_in_one_contact() {
 void ArcSolver::go_on(const Ruling& to, int depth) {
   if (depth == division_limit) return jump(to);
   if (!same_elements(last(), to)) {
+    const Ruling own = told_as_last(to);
+    if (!same_elements(own, to)) return go_on(own, depth + 1);
     if (stays(to, geometry_.tie()) || step_over(to) || stays(to, search_.map().resolution)) {
       return go_on(to, depth + 1);
     }
@@ -150,6 +152,26 @@ void ArcSolver::go_on(const Ruling& to, int depth) {
   }
   if (is_smooth(to)) return append(to);
   divide(to, depth);
+}
+
+/// With contacts told as ones of the elements that they are in by now, where they support on the
+/// borders of these: what runs along a border is not told now as one side's and now as the other's.
+/// Of what is tolerant itself, slopes that amount to no more than the resolution tell nothing.
+Ruling ArcSolver::told_as_last(Ruling to) const {
+  const bool is_exact = search_.depth(to) <= geometry_.tie();
+  const double slope = is_exact ? geometry_.tie() : search_.map().contact_extent();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto own = expressed_in(geometry_, to.contact[i], last().contact[i]);
+    if (!own || own->kind == SourceKind::vertex) continue;
+    const ContactJet j = geometry_.jet(*own);
+    const auto is_level = [&](const dvec3& dx) {
+      return std::abs(glm::dot(dx, to.n)) <= slope * glm::length(dx);
+    };
+    if (!std::all_of(j.dx.begin(), j.dx.begin() + j.dimension, is_level)) continue;
+    to.contact[i] = *own;
+    to.point[i] = j.x;
+  }
+  return to;
 }
 
 /// A contact that is in one place, within a distance, but told as one of another element, is so

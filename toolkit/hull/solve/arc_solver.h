@@ -36,6 +36,7 @@ class ArcSolver {
   const Ruling& last() const { return pieces_.back().rulings.back(); }
   void append(const Ruling& r) { pieces_.back().rulings.push_back(r); }
   void go_on(const Ruling& to, int depth);
+  Ruling told_as_last(Ruling to) const;
   bool stays(const Ruling& to, double distance);
   bool is_smooth(const Ruling& to);
   Ruling inside(Ruling r) const;

@@ -19,6 +19,9 @@ constexpr int secant_steps = 2;
 constexpr int element_limit = 6;
 /// How far parameters may leave [0, 1] by rounding.
 constexpr double parameter_rounding = 1e-9;
+/// How far from a side a contact may be that the direction does not tell from one on the side:
+/// where x . n departs with the third power, its slope with the second is rounding up to there.
+constexpr double side_reach = 1e-5;
 /// Turn, in radians, into a contact's own region.
 constexpr double beside_turn = 1e-6;
 /// How far from a contact another one is like it, as a share of the way to the other contact.
@@ -109,6 +112,7 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
     if (!moved) {
       for (Contact& c : s.contact) c = clamped(c);
       s.evaluate(geometry_);
+      keep_on_sides(s, equation);
       const Ruling found = s.ruling();
       if (glm::length(s.d()) <= same_contact || depth(found) > depth_limit) return std::nullopt;
       return found;
@@ -117,6 +121,28 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
     start = s;
   }
   return std::nullopt;
+}
+
+/// A contact next to a side, that supports on it, is there: beyond it a plane or a ruled surface
+/// goes on, and the direction does not tell the two places apart.
+void RulingSearch::keep_on_sides(CommonSupport& s, LinearEquation equation) const {
+  CommonSupport kept = s;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (s.contact[i].kind != SourceKind::face) continue;
+    kept.contact[i] = moved_to_border(geometry_, s.contact[i], side_reach);
+    kept.kept[i] = kept_parameter(kept.contact[i], kept.contact[i]);
+  }
+  if (kept.kept == s.kept) return;
+  kept.evaluate(geometry_);
+  const bool solved = system_.solve(kept, [&](const CommonSupport& now) {
+    equation.residual = glm::dot(equation.n, now.n);
+    return equation;
+  });
+  if (!solved || !std::all_of(kept.contact.begin(), kept.contact.begin() + 2, is_in_element))
+    return;
+  for (std::size_t i = 0; i < 2; ++i) s.contact[i] = clamped(kept.contact[i]);
+  s.n = kept.n;
+  s.evaluate(geometry_);
 }
 
 Ruling RulingSearch::settled(Ruling ruling) const {

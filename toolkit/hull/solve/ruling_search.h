@@ -49,6 +49,8 @@ class RulingSearch {
   std::optional<Ruling> polished(const dvec3& n, const std::array<Contact, 2>& contacts,
                                  const dvec3& across, double depth_limit) const;
 
+  void keep_on_sides(CommonSupport& s, LinearEquation equation) const;
+
   /// The ruling with contacts that lie on a border, or where others end, told as ones of the
   /// element into which their own regions extend.
   Ruling settled(Ruling ruling) const;
