@@ -11,6 +11,7 @@
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/result/region_outline.h"
 #include "taut/hull/solve/arc_pieces.h"
 
 namespace taut {
@@ -61,6 +62,16 @@ Ruling middle_of(const Ruling& a, const Ruling& b) {
   r.n = 0.5 * (a.n + b.n);
   for (std::size_t i = 0; i < 2; ++i) r.point[i] = 0.5 * (a.point[i] + b.point[i]);
   return r;
+}
+
+/// How far a ruling's contacts are from the middle of two others', in parameters.
+double off_chord(const Ruling& a, const Ruling& b, const Ruling& middle) {
+  double farthest = 0;
+  for (const std::size_t i : {0u, 1u}) {
+    const dvec2 chord = 0.5 * (parameters(a.contact[i]) + parameters(b.contact[i]));
+    farthest = std::max(farthest, glm::distance(parameters(middle.contact[i]), chord));
+  }
+  return farthest;
 }
 
 /// Where the segment from one point to another passes a side of a patch, nearly: of the side's
@@ -207,6 +218,7 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   const Ruling middle = inside(exact->at.ruling());
   if (between.lies_flat() && !is_interpolated(between)) return false;
   if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
+  if (off_chord(last(), to, middle) > 0.5 * outline_slack) return false;
   const double depth = search_.depth(middle);
   if (depth > search_.map().resolution) return false;
   if (depth > geometry_.tie()) pieces_.back().tolerant = std::max(pieces_.back().tolerant, depth);
