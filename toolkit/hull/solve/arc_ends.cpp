@@ -15,6 +15,8 @@
 namespace taut {
 namespace {
 
+/// Parts of the last way to a free end, at whose ends rulings are looked for.
+constexpr int found_places = 16;
 /// Rulings at a free end are no shorter: the root of what rounding moves contacts by that are so
 /// near to each other (merge_distance).
 constexpr double shortest_merging = 1e-4;
@@ -40,8 +42,9 @@ class ArcEndSearch {
     return length_of(r) <= (is_smooth ? distance : std::pow(distance, 1.5));
   }
 
-  /// Adds what is left of the arc, if its end is told and the way there supports.
-  bool ends(std::vector<ArcPiece>& pieces) const {
+  /// Adds what is left of the arc, if its end is told and the way there supports; if `surely`, and
+  /// rulings are found all along the last part.
+  bool ends(std::vector<ArcPiece>& pieces, bool surely) const {
     const Ruling last = pieces.back().rulings.back();
     const std::optional<Ruling> end = merged_ruling(search_, last);
     if (!end) return false;
@@ -53,6 +56,7 @@ class ArcEndSearch {
                     [&](const ArcPiece& piece) { return piece.tolerant > resolution; })) {
       return false;
     }
+    if (surely && !is_found(way.back())) return false;
     append(pieces, std::move(way));
     return true;
   }
@@ -71,6 +75,16 @@ class ArcEndSearch {
   }
 
  private:
+  bool is_found(const ArcPiece& piece) const {
+    const std::vector<Ruling>& r = piece.rulings;
+    if (r.size() < 2) return true;
+    const RulingsBetween between(search_.system(), r[r.size() - 2], r.back());
+    for (int place = 1; place < found_places && !between.empty(); ++place) {
+      if (!between(double(place) / found_places)) return false;
+    }
+    return true;
+  }
+
   /// Not beyond an end in which another arc begins: halfway between the two the length is between
   /// theirs.
   bool follows(const Ruling& from, const Ruling& to) const {
@@ -130,9 +144,9 @@ void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces) {
   const ArcEndSearch ends(search);
   for (;;) {
     const Ruling last = pieces.back().rulings.back();
-    if (ends.is_near(last) && ends.ends(pieces)) return;
+    if (ends.is_near(last) && ends.ends(pieces, true)) return;
     const std::optional<Ruling> next = ends.shorter(last);
-    if (!next && !ends.is_near(last) && ends.ends(pieces)) return;
+    if (!next && ends.ends(pieces, false)) return;
     ArcSolver solver(search, last);
     if (next) {
       solver.go_on(*next);

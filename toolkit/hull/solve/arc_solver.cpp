@@ -11,7 +11,6 @@
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
-#include "taut/hull/result/region_outline.h"
 #include "taut/hull/solve/arc_pieces.h"
 
 namespace taut {
@@ -36,6 +35,8 @@ constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
 /// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
+/// How far from a border, in units of the resolution, what is tolerant may be told to be on it.
+constexpr double border_depths = 4;
 /// How far before the way or beyond it a change may be by rounding, as a share; beside the
 /// resolution.
 constexpr double way_slack = 1e-9;
@@ -62,16 +63,6 @@ Ruling middle_of(const Ruling& a, const Ruling& b) {
   r.n = 0.5 * (a.n + b.n);
   for (std::size_t i = 0; i < 2; ++i) r.point[i] = 0.5 * (a.point[i] + b.point[i]);
   return r;
-}
-
-/// How far a ruling's contacts are from the middle of two others', in parameters.
-double off_chord(const Ruling& a, const Ruling& b, const Ruling& middle) {
-  double farthest = 0;
-  for (const std::size_t i : {0u, 1u}) {
-    const dvec2 chord = 0.5 * (parameters(a.contact[i]) + parameters(b.contact[i]));
-    farthest = std::max(farthest, glm::distance(parameters(middle.contact[i]), chord));
-  }
-  return farthest;
 }
 
 /// Where the segment from one point to another passes a side of a patch, nearly: of the side's
@@ -165,18 +156,19 @@ void ArcSolver::go_on(const Ruling& to, int depth) {
   divide(to, depth);
 }
 
-/// With contacts told as ones of the elements that they are in by now, where they support on the
-/// borders of these: what runs along a border is not told now as one side's and now as the other's.
-/// Of what is tolerant itself, slopes that amount to no more than the resolution tell nothing.
+/// With contacts told as ones of the elements that they are in by now, as far as they are no
+/// farther from the borders of these, and slopes there amount to no more, than the resolution: what
+/// is tolerant and runs along a border is not told now as one side's and now as the other's.
 Ruling ArcSolver::told_as_last(Ruling to) const {
-  const bool is_exact = search_.depth(to) <= geometry_.tie();
-  const double slope = is_exact ? geometry_.tie() : search_.map().contact_extent();
+  if (search_.depth(to) <= geometry_.tie()) return to;
+  const double resolution = search_.map().resolution;
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto own = expressed_in(geometry_, to.contact[i], last().contact[i]);
+    const Contact border = moved_to_border(geometry_, to.contact[i], border_depths * resolution);
+    const auto own = expressed_in(geometry_, border, last().contact[i]);
     if (!own || own->kind == SourceKind::vertex) continue;
     const ContactJet j = geometry_.jet(*own);
     const auto is_level = [&](const dvec3& dx) {
-      return std::abs(glm::dot(dx, to.n)) <= slope * glm::length(dx);
+      return std::abs(glm::dot(dx, to.n)) <= search_.map().contact_extent() * glm::length(dx);
     };
     if (!std::all_of(j.dx.begin(), j.dx.begin() + j.dimension, is_level)) continue;
     to.contact[i] = *own;
@@ -218,7 +210,6 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   const Ruling middle = inside(exact->at.ruling());
   if (between.lies_flat() && !is_interpolated(between)) return false;
   if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
-  if (off_chord(last(), to, middle) > 0.5 * outline_slack) return false;
   const double depth = search_.depth(middle);
   if (depth > search_.map().resolution) return false;
   if (depth > geometry_.tie()) pieces_.back().tolerant = std::max(pieces_.back().tolerant, depth);

@@ -24,10 +24,6 @@ namespace {
 constexpr double first_corner_depths = 8;
 /// Places on edges that are one, in units of the resolution.
 constexpr double place_depths = 8;
-/// Known rulings of an arc are no denser than this, in (n, x_0, x_1), and than this share of their
-/// lengths: cells may be as small as they like, but what is found between dense ones is rounding.
-constexpr double densest_rulings = 0.01;
-constexpr double densest_share = 0.1;
 
 class GraphSolver {
  public:
@@ -254,24 +250,6 @@ class GraphSolver {
     }
   }
 
-  /// Leaves out rulings next to others.
-  static void thin_out(std::vector<Ruling>& known) {
-    const auto reach = [](const Ruling& a, const Ruling& b) {
-      return glm::distance(a.n, b.n) + glm::distance(a.point[0], b.point[0]) +
-             glm::distance(a.point[1], b.point[1]);
-    };
-    std::vector<Ruling> left = {known.front()};
-    for (std::size_t k = 1; k + 1 < known.size(); ++k) {
-      const double length = glm::distance(known[k].point[0], known[k].point[1]);
-      const double least = std::min(densest_rulings, densest_share * length);
-      const bool is_apart =
-          reach(left.back(), known[k]) > least && reach(known[k], known.back()) > least;
-      if (is_apart) left.push_back(known[k]);
-    }
-    if (known.size() > 1) left.push_back(known.back());
-    known.swap(left);
-  }
-
   void solve(std::size_t k) {
     progress_.check();
     const MapGraph::Arc& told = known_.graph.arcs[k];
@@ -290,7 +268,6 @@ class GraphSolver {
       if (r) known.insert(end == 0 ? known.begin() : known.end(), *r);
     }
     if (arc.closed) known.push_back(known.front());
-    thin_out(known);
     ArcSolver solver(search_, known.front());
     for (std::size_t i = 1; i < known.size(); ++i) solver.go_on(known[i]);
     arc.pieces = solver.take();

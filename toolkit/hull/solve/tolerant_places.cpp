@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/result/region_outline.h"
 
@@ -12,18 +13,28 @@ namespace {
 /// Parts of a facet's curved side, and of the way between two rulings, at whose ends it is looked.
 constexpr int side_places = 8;
 constexpr int ruling_places = 8;
+/// How many times the resolution of exact models that is that rounding makes of a model's numbers.
+constexpr double rounded_depths = 2;
+/// How many times deeper it may be between two places than in the deepest one.
+constexpr double between_places = 1.25;
 /// Places of a region at which it is looked, along each of the patch's parameters.
 constexpr int region_places = 3;
+/// How many slacks of its outline a place is inside: rulings may be few.
+constexpr double region_slacks = 2;
 
 class TolerantPlaces {
  public:
   TolerantPlaces(const ContactSystem& system, SupportQuery& query, double resolution)
-      : system_(system), geometry_(system.geometry()), query_(query), resolution_(resolution) {}
+      : system_(system), geometry_(system.geometry()), query_(query), resolution_(resolution) {
+    const Scene& scene = geometry_.scene();
+    const double floor = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
+    is_rounded_ = resolution_ > rounded_depths * floor;
+  }
 
   double of(const ArcPiece& piece) {
     double deepest = piece.tolerant;
     for (const Ruling& r : piece.rulings) deepest = std::max(deepest, depth(r));
-    if (piece.tolerant == 0 && deepest <= geometry_.tie()) return 0;
+    if (!is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie()) return 0;
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
       const RulingsBetween between(system_, piece.rulings[k - 1], piece.rulings[k]);
       if (between.empty()) continue;
@@ -34,7 +45,7 @@ class TolerantPlaces {
         deepest = std::max(deepest, exact ? depth(exact->at.ruling()) : resolution_);
       }
     }
-    return deepest <= geometry_.tie() ? 0 : deepest;
+    return deepest <= geometry_.tie() ? 0 : bound_of(deepest);
   }
 
   double of(const HullFace& facet) {
@@ -54,23 +65,36 @@ class TolerantPlaces {
     return deepest <= geometry_.tie() ? 0 : deepest;
   }
 
-  /// Places as near to the outline as that may be off are left to its arcs.
+  /// Places as near to the outline as that may be off are as deep as the arcs there.
   double of(const HullBoundary& boundary, const PatchRegion& region) {
     const RegionOutline outline = outline_of(boundary, region);
     double deepest = 0;
     for (int k = 0; k < region_places * region_places; ++k) {
       const dvec2 uv = (dvec2(k % region_places, k / region_places) + 0.5) / double(region_places);
-      if (depth_in(outline, uv) < outline_slack) continue;
+      if (depth_in(outline, uv) < region_slacks * outline_slack) continue;
       const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
       const ContactJet j = geometry_.jet(c);
       const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
       if (n == dvec3(0.0)) continue;
       deepest = std::max(deepest, query_(n, c).h - glm::dot(j.x, n));
     }
-    return deepest <= geometry_.tie() ? 0 : deepest;
+    deepest = deepest <= geometry_.tie() ? 0 : bound_of(deepest);
+    for (const std::vector<TrimStretch>& loop : region.loops) {
+      for (const TrimStretch& s : loop) {
+        if (s.arc < 0) continue;
+        const SeparatingArc& arc = boundary.arcs[std::size_t(s.arc)];
+        deepest = std::max(deepest, arc.pieces[std::size_t(s.piece)].tolerant);
+      }
+    }
+    return deepest;
   }
 
  private:
+  /// Between the places it may be deeper, as far as that is within the resolution.
+  double bound_of(double deepest) const {
+    return std::max(deepest, std::min(between_places * deepest, resolution_));
+  }
+
   double depth(const Ruling& r) {
     const double h = query_(r.n, r.contact[0]).h;
     return h - std::min(glm::dot(r.point[0], r.n), glm::dot(r.point[1], r.n));
@@ -80,6 +104,7 @@ class TolerantPlaces {
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   double resolution_;
+  bool is_rounded_ = false;  // surfaces are known to the resolution only, also between rulings
 };
 
 }  // namespace
