@@ -308,6 +308,18 @@ double volume_of_tube(int k, double taper) {
   return area_in_spline(square) * 2 * (1 + top + top * top) / 3;
 }
 
+/// In 3 x 3 quads a side, its middle is plane and the edges' middles are cylinders, beyond whose
+/// ends the surface departs with the third power: contacts stay on the seams there.
+TEST(CageHull, OfABoxWithFlatSides) {
+  const Model model = cage_model(box_cage({3}));
+  const Hull hull = whole_hull(model, "box");
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_EQ(hull.boundary->count(FaceKind::patch), 24);
+  EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 12);
+  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6);
+  for (const HullFace& face : hull.boundary->faces) EXPECT_LE(face.tolerant, hull.resolution.rho);
+}
+
 /// In 2 x 2 quads a side, surfaces have no curvature across the sides' middles, where contacts and
 /// ends of edges are level; in 3 x 3 the middles are plane, and facets' sides run along seams.
 TEST(CageHull, OfBoxesWithoutLids) {

@@ -44,6 +44,18 @@ TEST(SolvedHull, OfCurvesAlongSidesOfPatchesLacksNothing) {
   }
 }
 
+/// Of a rounded box and a copy that is moved by less than the resolution, or by little more:
+/// contacts on seams are not told now as one side's and now as the other's.
+TEST(SolvedHull, OfCopiesAllButInPlaceIsThatOfOne) {
+  for (const Variant variant : all_variants) {
+    SCOPED_TRACE(name_of(variant));
+    const Hull hull = solved_hull_of(scene_of("copies_all_but_in_place", variant));
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_TRUE(hull.boundary->unresolved.empty());
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{8, 12, 6}));
+  }
+}
+
 /// All of it is exact, and what is measured is as accurate as that is stated.
 void expect_exact_measures(const Shape& shape, const char* name) {
   SCOPED_TRACE(name);

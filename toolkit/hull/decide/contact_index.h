@@ -28,7 +28,8 @@ namespace taut {
 /// turn apart through the surface. If heights grow along what the charts share there, too, they
 /// grow along all that is between; or if they grow straight inwards from both ends of the border
 /// there: then the gradient itself leads inwards, less than half a turn from each of these
-/// directions, for charts that go round the point once at most.
+/// directions, for charts that go round the point once at most. Nor does it matter where it leads
+/// if the heights do not grow along both borders from there at once: that is no minimum of theirs.
 ///
 /// From parts of the border to which nothing of the branch is glued, so that beyond them no plane
 /// touches, heights may fall: if along these they have no local minimum, the highest points of
