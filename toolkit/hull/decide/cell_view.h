@@ -41,9 +41,9 @@ class CellView {
 
   /// Splits pieces over which slopes change by more than over the cell. True if there were any.
   bool refine();
-  /// Splits pieces that bend up in places, by more than the part of `depth` that is a piece's
-  /// `share` of it, and drops those that are farther than `depth` below the convex hull of what
-  /// else there is. True if there were any.
+  /// Splits pieces that bend up in places, by more than its share of `depth`, with one of
+  /// `shares` for each of seen(), and drops those that are farther than `depth` below the convex
+  /// hull of what else there is. True if there were any.
   bool sharpen(double depth, const std::vector<double>& shares);
 
   /// How many times more pieces than in a wide cell are not too many.

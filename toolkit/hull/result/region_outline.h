@@ -6,7 +6,8 @@
 
 namespace taut {
 
-/// How far outlines, as polygons through rulings, may run from the curves, in parameters.
+/// How far outlines, as polygons through rulings, mostly run from the curves at most, in
+/// parameters; it is no bound: between two rulings that are far apart it may be more.
 inline constexpr double outline_slack = 0.05;
 
 /// The loops of a region in (u, v), as polygons through the rulings of arcs.
