@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/bounds/contact_exits.h"
 #include "taut/bounds/poles.h"
 #include "taut/surface/rulings.h"
 
@@ -28,12 +29,13 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
   const Part& part = geometry.part(own);
   for (std::size_t k = 0; own.kind == SourceKind::face; ++k) {
     const PatchPoint at{own.element, {own.u, own.v}};
-    const std::vector<std::array<dvec2, 2>> all = rulings(geometry.patch(own), at.uv);
+    const std::vector<std::array<dvec2, 2>> all =
+        rulings(geometry.patch(own), at.uv, geometry.bent());
     if (k >= all.size()) break;
     const dvec3 along =
         unit(point(part, {at.patch, all[k][1]}) - point(part, {at.patch, all[k][0]}));
     const auto last = [&](const dvec3& direction) {
-      const std::vector<PatchPoint> path = ruling_path(part, at, direction);
+      const std::vector<PatchPoint> path = ruling_path(part, at, direction, geometry.bent());
       const PatchPoint end = path.empty() ? at : path.back();
       return Contact{own.instance, own.kind, end.patch, end.uv.x, end.uv.y};
     };
@@ -56,6 +58,21 @@ Contact moved_to_border(const ContactGeometry& geometry, Contact c, double dista
   if (j.dimension == 2 && !(pole && along_v(*pole))) snap(c.v, j.dx[1]);
   if (j.dimension >= 1 && !(pole && !along_v(*pole))) snap(c.u, j.dx[0]);
   return c;
+}
+
+Contact moved_to_bent(const ContactGeometry& geometry, Contact c, double distance) {
+  if (geometry.bent() == 0 || c.kind != SourceKind::face) return c;
+  const dvec3 x = geometry.point(c);
+  Contact result = c;
+  for (const Side side : all_sides) {
+    const Contact on = on_side(c.instance, c.element, side, along_v(side) ? c.v : c.u);
+    const int piece = geometry.patch(c).borders[std::size_t(side)].piece;
+    if (piece < 0 || glm::distance(geometry.point(on), x) > distance) continue;
+    if (!geometry.is_beside_bent(geometry.first({c.instance, SourceKind::edge, piece, 0, 0})))
+      continue;
+    (along_v(side) ? result.u : result.v) = at_upper_end(side) ? 1 : 0;
+  }
+  return result;
 }
 
 Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance) {

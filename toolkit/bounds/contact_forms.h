@@ -15,6 +15,10 @@ Contact at_rest(const ContactGeometry& geometry, const Contact& c, const dvec3& 
 /// The contact on those borders and ends of its element from which it is no farther than this.
 Contact moved_to_border(const ContactGeometry& geometry, Contact c, double distance);
 
+/// The contact of a patch on those of its sides no farther away beyond which a ruled patch is bent
+/// (ContactGeometry::is_beside_bent).
+Contact moved_to_bent(const ContactGeometry& geometry, Contact c, double distance);
+
 /// The contact in its canonical form where it lies within rounding of a border, an end or a pole:
 /// no farther than `distance`.
 Contact snapped(const ContactGeometry& geometry, const Contact& c, double distance);

@@ -86,6 +86,10 @@ int last_vertex(const std::vector<EdgePiece>& pieces, const std::vector<bool>& s
 /// what rounding moves points by is up to half of it.
 constexpr double straight_share = 4;
 
+/// Patches are told ruled likewise: seven eighths of the resolution are what rounding may do to the
+/// distance of a point from a line or plane of others (cover_share).
+constexpr double ruled_share = cover_share / tie_share;
+
 }  // namespace
 
 std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn) {
@@ -117,6 +121,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, Stop stop, double same)
   rounding_ =
       coordinate_rounding * scene.frame().length_to_frame(farthest.x + farthest.y + farthest.z);
   tie_ = std::max(support_tie, rounding_);
+  bent_ = ruled_share * same / scene.frame().scale;
   const SceneContent& content = scene.content();
   const std::vector<Part>& parts = scene.model().parts();
   parts_.resize(parts.size());
@@ -141,7 +146,7 @@ ContactGeometry::ContactGeometry(const Scene& scene, Stop stop, double same)
         const Border& border = patch.borders[std::size_t(side)];
         if (border.kind == BorderKind::collapsed) collapse(own.patches.back(), side, tie_);
         if (border.piece < 0 || patch.repeats >= 0) continue;
-        auto& sides = patch.ruled() ? own.ruled_sides : own.sides;
+        auto& sides = lines(patch).any() ? own.ruled_sides : own.sides;
         sides[std::size_t(border.piece)].push_back({-1, int(i), side, border.piece_reversed});
       }
     }
@@ -307,6 +312,15 @@ const ContactGeometry::PartElements& ContactGeometry::elements(const Contact& c)
 
 bool ContactGeometry::is_straight(const Contact& c) const {
   return own_of(elements(c).straight, c, SourceKind::edge)[0] >= 0;
+}
+
+bool ContactGeometry::is_beside_bent(const Contact& c) const {
+  if (bent_ == 0 || c.kind != SourceKind::edge) return false;
+  const std::vector<PieceSide>& ruled = ruled_sides(c);
+  return std::any_of(ruled.begin(), ruled.end(), [&](const PieceSide& side) {
+    const int instance = side.instance < 0 ? c.instance : side.instance;
+    return !patch({instance, SourceKind::face, side.patch, 0, 0}).ruled();
+  });
 }
 
 Contact ContactGeometry::straight_end(const Contact& c, int end) const {

@@ -46,8 +46,8 @@ class ContactGeometry {
  public:
   /// The scene must outlive it. `stop`: makes evaluations throw Cancelled from then on, so that all
   /// that works on contacts stops. `same`: elements that miss each other by no more, in the scene's
-  /// frame, are one, and edges straight that are no farther from a segment than four times as much;
-  /// rounding apart.
+  /// frame, are one, edges straight that are no farther from a segment than four times as much, and
+  /// patches ruled that are no farther from one that is than seven times; rounding apart.
   explicit ContactGeometry(const Scene& scene, Stop stop = {}, double same = 0);
 
   const Scene& scene() const { return scene_; }
@@ -116,7 +116,13 @@ class ContactGeometry {
   Contact straight_end(const Contact& c, int end) const;
   /// Contacts inside of the patch are contacts of straight segments of it, and so of their ends.
   /// @pre kind face
-  bool is_ruled(const Contact& c) const { return patch(c).ruled(); }
+  bool is_ruled(const Contact& c) const { return lines(patch(c)).any(); }
+  /// By how much patches may miss being ruled, in the model's units.
+  double bent() const { return bent_; }
+  /// On an edge with a side of a patch that is told ruled but is not: contacts near it are told as
+  /// the edge's.
+  bool is_beside_bent(const Contact& c) const;
+  RuledLines lines(const Patch& patch) const { return patch.lines(bent_); }
 
   /// @pre kind face
   const Patch& patch(const Contact& c) const;
@@ -151,6 +157,7 @@ class ContactGeometry {
   Stop stop_;
   double rounding_ = 0;
   double tie_ = 0;
+  double bent_ = 0;
   std::vector<PartElements> parts_;
   RepeatedElements repeated_elements_;
   /// Of elements that others repeat: by instance and element.

@@ -99,8 +99,8 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
   const double rho = directions.resolution;
   HullBoundary boundary = solved(geometry, directions, options, statistics);
   if (is_within(boundary, rho) || boundary.unresolved.size() > few_open_spots) return boundary;
-  // What is left undecided is not decided by finer maps either.
-  if (undecided(directions) > 0) return boundary;
+  // What is left undecided is not decided by finer maps either, and what is bent stays so.
+  if (undecided(directions) > 0 || directions.bent > 0) return boundary;
   long left = finer_map_times * candidate_limit(geometry);
   for (const double share : finer_maps) {
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);

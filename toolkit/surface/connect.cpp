@@ -58,17 +58,17 @@ class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,
             std::vector<dvec3>& vertices, const Box& box, double smooth_angle, double grid,
-            const Progress& progress)
+            double bent, const Progress& progress)
       : patches_(patches),
         pieces_(pieces),
         edges_(edges),
         vertices_(vertices),
         box_(box),
         progress_(progress),
-        tolerance_(join_tolerance(box)),
+        tolerance_(join_tolerance(box, bent)),
         free_piece_count_(to_int(pieces.size())),
         sides_(side_curves(patches, tolerance_)),
-        smoothness_(patches, sides_, tolerance_, smooth_angle, grid),
+        smoothness_(patches, sides_, tolerance_, smooth_angle, grid, bent),
         points_(4 * patches.size() + 2 * pieces.size()) {}
 
   void run() {
@@ -414,13 +414,40 @@ void Connector::fill_repeated() {
   }
 }
 
-void find_rulings(std::vector<Patch>& patches, const Progress& progress) {
+/// A line that is bent no more than with a radius of so many diagonals of its part was straight.
+constexpr double straight_radius = 100;
+
+/// By how much the patch misses being ruled along u and v, where rounding alone may have made it.
+std::array<double, 2> distances_from_ruled(const BezierPatch& patch, double bent, double size) {
+  // The middle of a line of length s bent with radius r is s^2 / (8 r) off.
+  const auto was_straight = [&](Direction direction, double off) {
+    return off <= bent && square_of_lines(patch, direction) >= 8 * straight_radius * size * off;
+  };
+  const auto were_straight = [&](double off) {
+    return was_straight(Direction::u, off) && was_straight(Direction::v, off);
+  };
+  const double from_plane = distance_from_plane(patch);
+  if (were_straight(from_plane) && !is_folded(patch)) return {from_plane, from_plane};
+  const auto off = [&](Direction direction) {
+    const double d = distance_from_ruled(patch, direction);
+    return was_straight(direction, d) ? d : infinity;
+  };
+  return {off(Direction::u), off(Direction::v)};
+}
+
+/// `bent`: what the rounding of coordinates may have made of the distances of patches' points from
+/// straight lines and planes.
+void find_rulings(std::vector<Patch>& patches, const Box& box, double bent,
+                  const Progress& progress) {
   for (Patch& patch : patches) {
     progress.check();
     const bool plane = is_plane(patch.bezier) && !is_folded(patch.bezier);
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
     patch.ruled_obliquely = !patch.ruled() && is_developable(patch.bezier);
+    if (bent > 0 && !patch.stand_in) {
+      patch.off_ruled = distances_from_ruled(patch.bezier, bent, diagonal(box));
+    }
   }
 }
 
@@ -433,13 +460,17 @@ void Part::connect(double smooth_angle, const Progress& progress) {
                        " is not between 0 and pi/2");
   }
   point_count_ = to_int(vertices_.size());
-  find_rulings(patches_, progress);
-  split_crests(faces_, patches_, box_, progress);
-  split_junctions(faces_, patches_, box_, progress);
+  // What points may be off lines and planes of others, if that is no more than is ever taken for
+  // one.
+  const double bent = cover_share * std::min(grid_resolution * 0.5 * coordinate_grid().step,
+                                             coarsest_resolution * diagonal(box_));
+  find_rulings(patches_, box_, bent, progress);
+  split_crests(faces_, patches_, box_, bent, progress);
+  split_junctions(faces_, patches_, box_, bent, progress);
   find_repeated_patches(patches_, box_, progress);
   // Patches of cages are computed, whatever the cages' points were rounded to.
   Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle,
-                      cages_.empty() ? coordinate_grid().step : 0, progress);
+                      cages_.empty() ? coordinate_grid().step : 0, bent, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
   join_gap_ = connector.join_gap();

@@ -33,4 +33,24 @@ BezierCurve parameter_curve(const BezierPatch& patch, Direction direction, doubl
 /// Largest absolute coordinate of the Euclidean control points.
 double largest_coordinate(const std::vector<dvec4>& points);
 
+/// @name How far a surface is from one that is ruled
+/// Upper bounds.
+/// @{
+
+/// Of a patch's points from the segments between the ends, for the same value of the other
+/// parameter, of its lines along this one: its control points are off points that divide these
+/// segments all alike by no more. Infinity if the weights are no products of two factors, up to
+/// ruled_rounding.
+double distance_from_ruled(const BezierPatch& patch, Direction direction);
+
+/// Mean square of the lengths of these segments, over the control points of the sides.
+double square_of_lines(const BezierPatch& patch, Direction direction);
+
+/// Of a curve's control points from the segment between its ends.
+double distance_from_segment(const BezierCurve& curve);
+
+/// Of its control points from a plane.
+double distance_from_plane(const BezierPatch& patch);
+/// @}
+
 }  // namespace taut

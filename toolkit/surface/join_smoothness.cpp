@@ -29,12 +29,13 @@ bool normal_is_inward_cross_along(Side side) { return side == Side::u0 || side =
 
 JoinSmoothness::JoinSmoothness(const std::vector<Patch>& patches,
                                const std::vector<SideCurve>& sides, double tolerance,
-                               double smooth_angle, double grid)
+                               double smooth_angle, double grid, double bent)
     : patches_(patches),
       sides_(sides),
       corner_points_(corner_points(patches)),
       tolerance_(tolerance),
       grid_(grid),
+      bent_(bent),
       chord_(2 * std::sin(smooth_angle / 2)) {}
 
 /// G1 along a border x(t) is det(X, X', A, B) = 0 with homogeneous X and cross derivatives A, B: a
@@ -63,8 +64,9 @@ bool JoinSmoothness::is_smooth(const Join& join) const {
 }
 
 bool JoinSmoothness::is_seam(const Join& join) const {
-  const bool straight = is_straight(curve(join[0]));
-  const bool ruled[2] = {patch(join[0].side).ruled(), patch(join[1].side).ruled()};
+  const bool straight =
+      is_straight(curve(join[0])) || distance_from_segment(curve(join[0])) <= bent_;
+  const bool ruled[2] = {lines(join[0]).any(), lines(join[1]).any()};
   if (ruled[0] != ruled[1]) return true;
   if (ruled[0]) return !straight && !rulings_go_on(join);
   return !straight &&
@@ -80,10 +82,15 @@ bool JoinSmoothness::may_be_crest(const Use& use) const {
          may_support(bezier, direction, s, corner_points_, std::max(tolerance_, grid_));
 }
 
+bool JoinSmoothness::is_plane(const Use& use) const {
+  const BezierPatch& bezier = patch(use.side).bezier;
+  return taut::is_plane(bezier) || (lines(use).both() && distance_from_plane(bezier) <= bent_);
+}
+
 /// Rulings of the one patch that end on the join are continued by those of the other, as of two
 /// parts of one plane all are.
 bool JoinSmoothness::rulings_go_on(const Join& join) const {
-  if (is_plane(patch(join[0].side).bezier) && is_plane(patch(join[1].side).bezier)) return true;
+  if (is_plane(join[0]) && is_plane(join[1])) return true;
   const int m = 4 * curve(join[0]).degree();
   for (int k = 0; k <= m; ++k) {
     const double t = sample_parameter(k, m);
@@ -91,7 +98,7 @@ bool JoinSmoothness::rulings_go_on(const Join& join) const {
     for (const std::size_t i : {0u, 1u}) {
       const Use& use = join[i];
       const dvec2 uv = on_side(side_of(use.side), use.reversed ? 1 - t : t);
-      e[i] = ruling_at(patch(use.side), uv);
+      e[i] = ruling_at(patch(use.side), uv, bent_);
     }
     if (!e[0] || !e[1]) return false;
     const double allowed = same_ruling_angle + e[0]->rounding + e[1]->rounding;

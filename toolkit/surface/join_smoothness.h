@@ -10,10 +10,11 @@ namespace taut {
 /// angle.
 class JoinSmoothness {
  public:
-  /// Patches and sides must outlive this. `grid`: by how much coordinates were rounded before.
+  /// Patches and sides must outlive this. `grid`: by how much coordinates were rounded before;
+  /// `bent`: by how much patches that were ruled then may miss it.
   /// @pre rulings are found
   JoinSmoothness(const std::vector<Patch>& patches, const std::vector<SideCurve>& sides,
-                 double tolerance, double smooth_angle, double grid = 0);
+                 double tolerance, double smooth_angle, double grid = 0, double bent = 0);
 
   /// Unit vectors differ by at most the angle.
   bool same_direction(const dvec3& a, const dvec3& b) const { return glm::length(a - b) <= chord_; }
@@ -35,6 +36,8 @@ class JoinSmoothness {
     return sides_[static_cast<std::size_t>(use.side)].curve;
   }
   const Patch& patch(int side) const { return patches_[static_cast<std::size_t>(side / 4)]; }
+  RuledLines lines(const Use& use) const { return patch(use.side).lines(bent_); }
+  bool is_plane(const Use& use) const;
   bool rulings_go_on(const Join& join) const;
   bool may_be_crest(const Use& use) const;
 
@@ -43,6 +46,7 @@ class JoinSmoothness {
   std::vector<dvec3> corner_points_;
   double tolerance_;
   double grid_;
+  double bent_;
   double chord_;  // of the angle
 };
 

@@ -43,6 +43,17 @@ struct Border {
   int vertex = -1;
 };
 
+/// Along which parameters a patch is a straight segment for every value of the other one, or
+/// obliquely to them.
+struct RuledLines {
+  bool u = false;
+  bool v = false;
+  bool oblique = false;
+  bool any() const { return u || v || oblique; }
+  /// As planes are, whatever their parameters.
+  bool both() const { return u && v; }
+};
+
 /// A Bezier patch of a face with the rectangle of the face's parameters that it covers.
 struct Patch {
   BezierPatch bezier;
@@ -57,6 +68,17 @@ struct Patch {
   /// at a speed of their own.
   bool ruled_obliquely = false;
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
+  /// By how much the patch misses being ruled along u and along v: what the rounding of its control
+  /// points has left of one that was. Zero where it is ruled, infinity where nothing tells so.
+  std::array<double, 2> off_ruled = {infinity, infinity};
+  /// Or was before its control points were rounded.
+  bool may_be_ruled() const {
+    return ruled() || off_ruled[0] < infinity || off_ruled[1] < infinity;
+  }
+  /// Those that it misses by no more than a length.
+  RuledLines lines(double within) const {
+    return {ruled_u || off_ruled[0] <= within, ruled_v || off_ruled[1] <= within, ruled_obliquely};
+  }
   /// Indexed by Side: known to go on smoothly there, whatever its tangent planes say.
   std::array<bool, 4> smooth_sides = {};
   /// The patch stands for a surface that is within the part's deviation bound of it, and to which

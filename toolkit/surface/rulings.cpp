@@ -175,11 +175,13 @@ class RulingTrace {
 };
 
 /// Ends of segments through the point, that in the direction among them if there is one.
-std::vector<dvec2> ends_along(const Patch& patch, const dvec2& uv, const dvec3& along) {
+std::vector<dvec2> ends_along(const Patch& patch, const dvec2& uv, const dvec3& along,
+                              double bent) {
+  const RuledLines lines = patch.lines(bent);
   std::vector<dvec2> ends;
-  if (patch.ruled_v) ends.insert(ends.end(), {dvec2(uv.x, 0), dvec2(uv.x, 1)});
-  if (patch.ruled_u) ends.insert(ends.end(), {dvec2(0, uv.y), dvec2(1, uv.y)});
-  if (!patch.ruled_obliquely) return ends;
+  if (lines.v) ends.insert(ends.end(), {dvec2(uv.x, 0), dvec2(uv.x, 1)});
+  if (lines.u) ends.insert(ends.end(), {dvec2(0, uv.y), dvec2(1, uv.y)});
+  if (!lines.oblique) return ends;
   if (const auto direction = traced_direction(patch.bezier, uv)) {
     const double sense = glm::dot(direction->along, along) < 0 ? -1 : 1;
     ends.push_back(RulingTrace(patch.bezier, uv, direction->along).end(sense));
@@ -188,19 +190,22 @@ std::vector<dvec2> ends_along(const Patch& patch, const dvec2& uv, const dvec3& 
 }
 
 /// The end of a segment through the point in the direction.
-std::optional<PatchPoint> end_along(const Part& part, const PatchPoint& at, const dvec3& along) {
+std::optional<PatchPoint> end_along(const Part& part, const PatchPoint& at, const dvec3& along,
+                                    double bent) {
   const double least = shortest * diagonal(part.control_box());
   const dvec3 x = point(part, at);
-  for (const dvec2& uv : ends_along(part.patches()[std::size_t(at.patch)], at.uv, along)) {
+  for (const dvec2& uv : ends_along(part.patches()[std::size_t(at.patch)], at.uv, along, bent)) {
     const PatchPoint end{at.patch, uv};
     const dvec3 way = point(part, end) - x;
-    if (glm::length(way) > least && glm::distance(unit(way), along) < same_line) return end;
+    const double length = glm::length(way);
+    if (length <= least) continue;
+    if (glm::distance(unit(way), along) < same_line + 2 * bent / length) return end;
   }
   return std::nullopt;
 }
 
 /// The point in all the ruled patches about it that smooth joins lead to, beginning with its own.
-std::vector<PatchPoint> about(const Part& part, const PatchPoint& at) {
+std::vector<PatchPoint> about(const Part& part, const PatchPoint& at, double bent) {
   std::vector<PatchPoint> all = {at};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const dvec2 uv = all[k].uv;
@@ -215,7 +220,7 @@ std::vector<PatchPoint> about(const Part& part, const PatchPoint& at) {
                             on_side(border.neighbor_side, border.reversed ? 1 - t : t)};
       const bool known = std::any_of(all.begin(), all.end(),
                                      [&](const PatchPoint& p) { return p.patch == over.patch; });
-      if (!known && part.patches()[std::size_t(over.patch)].ruled()) all.push_back(over);
+      if (!known && part.patches()[std::size_t(over.patch)].lines(bent).any()) all.push_back(over);
     }
   }
   return all;
@@ -230,23 +235,24 @@ std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const 
   return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
 }
 
-std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv) {
+std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv, double bent) {
+  const RuledLines lines = patch.lines(bent);
   std::vector<std::array<dvec2, 2>> result;
-  if (patch.ruled_v) result.push_back({dvec2(uv.x, 0), dvec2(uv.x, 1)});
-  if (patch.ruled_u) result.push_back({dvec2(0, uv.y), dvec2(1, uv.y)});
-  if (!patch.ruled_obliquely) return result;
+  if (lines.v) result.push_back({dvec2(uv.x, 0), dvec2(uv.x, 1)});
+  if (lines.u) result.push_back({dvec2(0, uv.y), dvec2(1, uv.y)});
+  if (!lines.oblique) return result;
   if (const auto ends = ruling_ends(patch.bezier, uv)) result.push_back(*ends);
   return result;
 }
 
-std::optional<RulingDirection> ruling_at(const Patch& patch, const dvec2& uv) {
+std::optional<RulingDirection> ruling_at(const Patch& patch, const dvec2& uv, double bent) {
   if (patch.ruled_obliquely) return traced_direction(patch.bezier, uv);
-  const std::vector<std::array<dvec2, 2>> all = rulings(patch, uv);
+  const std::vector<std::array<dvec2, 2>> all = rulings(patch, uv, bent);
   if (all.size() != 1) return std::nullopt;
   const auto at = [&](const dvec2& end) { return point(patch.bezier, end.x, end.y); };
-  const dvec3 e = unit(at(all[0][1]) - at(all[0][0]));
-  if (e == dvec3(0.0)) return std::nullopt;
-  return RulingDirection{e, 0};
+  const dvec3 way = at(all[0][1]) - at(all[0][0]);
+  if (unit(way) == dvec3(0.0)) return std::nullopt;
+  return RulingDirection{unit(way), patch.ruled() ? 0 : 2 * bent / glm::length(way)};
 }
 
 std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv) {
@@ -258,13 +264,14 @@ dvec3 point(const Part& part, const PatchPoint& at) {
   return point(part.patches()[std::size_t(at.patch)].bezier, at.uv.x, at.uv.y);
 }
 
-std::vector<PatchPoint> ruling_path(const Part& part, const PatchPoint& from, const dvec3& along) {
+std::vector<PatchPoint> ruling_path(const Part& part, const PatchPoint& from, const dvec3& along,
+                                    double bent) {
   std::vector<PatchPoint> path;
   PatchPoint at = from;
   while (path.size() < path_limit) {
     std::optional<PatchPoint> next;
-    for (const PatchPoint& p : about(part, at)) {
-      next = end_along(part, p, along);
+    for (const PatchPoint& p : about(part, at, bent)) {
+      next = end_along(part, p, along, bent);
       if (next) break;
     }
     if (!next) break;

@@ -57,8 +57,8 @@ bool is_collapsed(const BezierCurve& curve, double tolerance) {
 
 }  // namespace
 
-double join_tolerance(const Box& box) {
-  return std::max(join_distance * diagonal(box), std::numeric_limits<double>::min());
+double join_tolerance(const Box& box, double bent) {
+  return std::max({join_distance * diagonal(box), bent, std::numeric_limits<double>::min()});
 }
 
 double sample_parameter(int k, int m) { return 0.5 - 0.5 * std::cos(std::numbers::pi * k / m); }

@@ -7,8 +7,9 @@
 
 namespace taut {
 
-/// Points nearer than this are one: join_distance of the box's diagonal.
-double join_tolerance(const Box& box);
+/// Points nearer than this are one: join_distance of the box's diagonal, or what rounding may have
+/// bent borders by if that is more.
+double join_tolerance(const Box& box, double bent = 0);
 
 /// One side of a patch; sides are numbered 4 * patch + side.
 struct SideCurve {

@@ -68,13 +68,13 @@ struct Cut {
 
 class RowSplitter {
  public:
-  RowSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
+  RowSplitter(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box, double bent,
               const Progress& progress)
       : faces_(faces),
         patches_(patches),
         box_(box),
         progress_(progress),
-        tolerance_(join_tolerance(box)) {}
+        tolerance_(join_tolerance(box, bent)) {}
 
   void split_at_crests() {
     find_grids();
@@ -141,7 +141,7 @@ std::vector<Cut> RowSplitter::find_crests() const {
   for (int p = 0; p < to_int(patches_.size()); ++p) {
     progress_.check();
     const Patch& patch = patches_[to_size(p)];
-    if (patch.ruled()) continue;
+    if (patch.may_be_ruled()) continue;
     for (const Direction direction : {Direction::u, Direction::v}) {
       for (const double s : inner_crests(patch.bezier, direction)) {
         if (!may_support(patch.bezier, direction, s, points, tolerance_)) continue;
@@ -359,17 +359,17 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches) {
 }
 
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
-                  const Progress& progress) {
-  RowSplitter(faces, patches, box, progress).split_at_crests();
+                  double bent, const Progress& progress) {
+  RowSplitter(faces, patches, box, bent, progress).split_at_crests();
 }
 
 void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
-                     const Progress& progress) {
+                     double bent, const Progress& progress) {
   // A cut may end inside of a side that met none before.
   std::vector<Face> cut_faces = faces;
   std::vector<Patch> cut_patches = patches;
   for (int round = 0; round < round_limit; ++round) {
-    if (RowSplitter(cut_faces, cut_patches, box, progress).split_at_junctions()) continue;
+    if (RowSplitter(cut_faces, cut_patches, box, bent, progress).split_at_junctions()) continue;
     if (round == 0) return;
     faces = std::move(cut_faces);
     patches = std::move(cut_patches);

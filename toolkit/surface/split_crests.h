@@ -17,10 +17,11 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches);
 /// which the rows would wind without end, or that would leave strips as thin as what counts as one
 /// point, stays where it is.
 /// Faces of cages with more than one patch are not split.
+/// `bent`: see join_tolerance.
 /// @pre the patches of all other faces are grids, v within u; rulings are found. The box contains
 /// them. @throws Cancelled, as the next one does
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
-                  const Progress& progress);
+                  double bent, const Progress& progress);
 
 /// Splits patches, rows as above, where sides of others end inside of theirs and run along them, so
 /// that whole sides meet; but for sides that are straight, along which no point is extreme. Sides
@@ -28,6 +29,6 @@ void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const B
 /// further sides, as around a closed face, are not made at all.
 /// @pre as above
 void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
-                     const Progress& progress);
+                     double bent, const Progress& progress);
 
 }  // namespace taut

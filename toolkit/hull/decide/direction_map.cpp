@@ -48,6 +48,7 @@ class MapMaker {
     while (!is_spent() && split_nodes_beside_others()) decide_waiting();
     std::sort(map_.cells.begin(), map_.cells.end(), comes_before);
     map_.resolution = options_.resolution;
+    map_.bent = pieces_.bent_above();
     return std::move(map_);
   }
 

@@ -25,6 +25,8 @@ struct DirectionMap {
   std::vector<MapCell> cells;
   DirectionMapStatistics statistics;
   double resolution = 0;  ///< at which it is decided, in the scene's frame
+  /// By how much ruled patches that are bent may be above the ends of their lines.
+  double bent = 0;
 
   /// Two contacts no farther from each other than this may be one, though a cell tells them apart:
   /// on a surface that curves as much as the scene, of size one, is large, heights of one contact

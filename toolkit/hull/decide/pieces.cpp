@@ -52,7 +52,11 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
         if (geometry.is_repeated(c) || joins_.passes(c)) continue;
         const std::size_t before = elements_.size();
         if (kind == SourceKind::face) {
-          if (part.patches()[std::size_t(k)].repeats < 0 && !geometry.is_ruled(c)) add_face(c);
+          const Patch& patch = part.patches()[std::size_t(k)];
+          if (patch.repeats >= 0) continue;
+          const bool is_ruled = geometry.is_ruled(c);
+          any_bent_ = any_bent_ || (is_ruled && !patch.ruled());
+          if (!is_ruled) add_face(c);
         } else if (kind == SourceKind::edge) {
           add_edge(c);
         } else {
@@ -73,8 +77,8 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
   }
   rounds_ = std::move(found.rounds);
   cover_straight(resolution);
-  any_covered_ = std::any_of(elements_.begin(), elements_.end(),
-                             [](const MapElement& e) { return e.likeness.covered; });
+  any_covered_ = any_bent_ || std::any_of(elements_.begin(), elements_.end(),
+                                          [](const auto& e) { return e.likeness.covered; });
   let_ends_stand();
 }
 

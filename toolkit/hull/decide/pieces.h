@@ -89,6 +89,9 @@ class MapPieces {
   /// By how much points may be above all that is not covered, in the scene's frame.
   double covered_above() const { return any_covered_ ? resolution_ : 0; }
 
+  /// And by how much those of ruled patches that are bent.
+  double bent_above() const { return any_bent_ ? resolution_ : 0; }
+
   /// Of all there is, also of what has no contacts of its own.
   std::vector<dvec3> control_points() const;
 
@@ -114,7 +117,8 @@ class MapPieces {
   double resolution_;
   SmoothJoins joins_;
   std::vector<MapElement> elements_;
-  bool any_covered_ = false;
+  bool any_bent_ = false;     // ruled ones, within the resolution only
+  bool any_covered_ = false;  // or bent
   std::vector<RoundShape> rounds_;
   std::deque<MapPiece> roots_;
   std::vector<std::array<int, 3>> first_;  // per instance and kind, into index_

@@ -138,9 +138,10 @@ double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece) {
 
 }  // namespace
 
-void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+                       double extent) {
   // At its ends, where heights tie over as much.
-  const double tied = std::max(longest_empty_piece, std::sqrt(geometry.rounding()));
+  const double tied = std::max({longest_empty_piece, std::sqrt(geometry.rounding()), extent});
   const auto is_empty = [&](std::size_t k) {
     const std::vector<Ruling>& rulings = pieces[k].rulings;
     const bool ends = k == 0 || k + 1 == pieces.size();

@@ -13,8 +13,10 @@ inline constexpr double longest_empty_piece = 1e-7;
 
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
 /// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
-/// Contacts with which the others begin and end are in their normal form (turned_to).
-void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
+/// Contacts with which the others begin and end are in their normal form (turned_to). `extent`: up
+/// to so long the first and the last may be none, if that is more than rounding tells.
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+                       double extent = 0);
 
 /// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
 /// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge

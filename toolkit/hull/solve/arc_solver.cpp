@@ -163,6 +163,7 @@ Ruling ArcSolver::told_as_last(Ruling to) const {
   if (search_.depth(to) <= geometry_.tie()) return to;
   const double resolution = search_.map().resolution;
   for (std::size_t i = 0; i < 2; ++i) {
+    if (geometry_.is_beside_bent(to.contact[i])) continue;
     const Contact border = moved_to_border(geometry_, to.contact[i], border_depths * resolution);
     const auto own = expressed_in(geometry_, border, last().contact[i]);
     if (!own || own->kind == SourceKind::vertex) continue;

@@ -42,10 +42,13 @@ class EdgePlaces {
       const double speed = length(line);
       const std::set<double>& level = level_[line];
       const auto is_level = [&](double t) { return level.count(t) > 0; };
+      const auto& [instance, piece, patch, side] = line;
+      const bool is_bent =
+          piece >= 0 && geometry_.is_beside_bent({instance, SourceKind::edge, piece, 0, 0});
       for (auto first = places.begin(); first != places.end();) {
         auto last = std::next(first);
         for (auto before = first; last != places.end(); before = last++) {
-          const bool wide = is_level(before->first) || is_level(last->first);
+          const bool wide = is_bent || is_level(before->first) || is_level(last->first);
           const double reach = wide ? level_distance_ : distance_;
           if ((last->first - before->first) * speed > reach) break;
         }
@@ -156,7 +159,7 @@ void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, 
                        double level_distance) {
   EdgePlaces places(geometry, distance, std::max(distance, level_distance));
   for_each_end(graph, [&](Contact& c, const dvec3&) {
-    c = moved_to_border(geometry, c, distance);
+    c = moved_to_bent(geometry, moved_to_border(geometry, c, distance), level_distance);
     places.add(c);
   });
   for (const FacetNode& node : graph.nodes) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/joined_elements.h"
 
@@ -103,7 +104,8 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
       // It has run over into another element, or others rise beside where it ends: by heights that
       // are lost in rounding where it is not told so.
       const std::optional<Contact> there = climbed(geometry_, clamped(s.contact[i]), s.n);
-      const bool same = there && same_element(*there, start.contact[i]);
+      const bool same = there && (same_element(*there, start.contact[i]) ||
+                                  rises_little(s.n, clamped(s.contact[i]), *there));
       if (inside && (same || !there)) continue;
       if (!there || same) return std::nullopt;
       s.contact[i] = geometry_.first(*there);
@@ -123,9 +125,103 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
   return std::nullopt;
 }
 
+/// What ends beside ruled patches that are bent supports there, though others rise by as little as
+/// these may.
+bool RulingSearch::rises_little(const dvec3& n, const Contact& from, const Contact& to) const {
+  if (map_.bent == 0 || from.kind == SourceKind::face) return false;
+  return glm::dot(geometry_.point(to) - geometry_.point(from), n) <= map_.bent;
+}
+
+/// The nearest place nearby, if any, on an edge beside which a ruled patch is bent, of the
+/// contact's patch or of those next to it: what curves beyond it does not tell where it supports.
+std::optional<Contact> RulingSearch::on_bent(const Contact& c) const {
+  if (map_.bent == 0) return std::nullopt;
+  const dvec3 x = geometry_.point(c);
+  // Where curvature begins at the border, heights depart with the third power.
+  double nearest = std::cbrt(map_.resolution);
+  std::optional<Contact> found;
+  std::vector<Contact> places = {c};
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Contact own = places[k];
+    for (const ContactExit& exit : exits(geometry_, own)) {
+      const Contact on = at_exit(own, exit);
+      const double off = glm::distance(geometry_.point(on), x);
+      if (off > nearest) continue;
+      const std::optional<Contact> over = beyond(geometry_, on, exit);
+      if (k == 0 && over && over->kind == SourceKind::face) places.push_back(*over);
+      const Contact edge = geometry_.first(geometry_.canonical(on));
+      if (!geometry_.is_beside_bent(edge)) continue;
+      nearest = off;
+      found = edge;
+    }
+  }
+  return found;
+}
+
+/// Of a contact that has left an edge by one of its ends: the end of the edge that goes on there
+/// most nearly straight, of those beside ruled patches that are bent.
+std::optional<Contact> RulingSearch::beyond_end(const Contact& c) const {
+  const Contact end = clamped(c);
+  const ContactExit exit{ContactExit::Kind::end, end.u > 0.5 ? 1 : 0};
+  const std::optional<Contact> over = beyond(geometry_, at_exit(end, exit), exit);
+  if (!over || geometry_.is_beside_bent(*over)) return over;
+  if (over->kind != SourceKind::vertex) return std::nullopt;
+  const dvec3 way = (exit.index == 1 ? 1.0 : -1.0) * geometry_.jet(end).dx[0];
+  std::optional<Contact> best;
+  double straightest = 0;
+  for (const ContactGeometry::PieceEnd& next : geometry_.ends(*over)) {
+    const Contact at = geometry_.first(piece_end(*over, next));
+    if (same_element(at, end) || !geometry_.is_beside_bent(at)) continue;
+    const double along = glm::dot(unit(tangent_from(geometry_, *over, next)), unit(way));
+    if (along <= straightest) continue;
+    straightest = along;
+    best = at;
+  }
+  return best;
+}
+
+/// Contacts next to edges beside which ruled patches are bent are on these, as far as others are
+/// no higher than such patches may be.
+bool RulingSearch::keep_on_bent(CommonSupport& s, LinearEquation equation) const {
+  if (map_.bent == 0) return false;
+  CommonSupport kept = s;
+  bool any = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (s.contact[i].kind != SourceKind::face) continue;
+    const std::optional<Contact> edge = on_bent(s.contact[i]);
+    if (edge) kept.contact[i] = *edge;
+    any = any || edge;
+  }
+  for (int k = 0; k < element_limit && any; ++k) {
+    kept.evaluate(geometry_);
+    const bool solved = system_.solve(kept, [&](const CommonSupport& now) {
+      equation.residual = glm::dot(equation.n, now.n);
+      return equation;
+    });
+    if (!solved) return false;
+    bool moved = false;
+    for (Contact& c : kept.contact) {
+      if (is_in_element(c)) continue;
+      if (c.kind != SourceKind::edge) return false;
+      const std::optional<Contact> next = beyond_end(c);
+      if (!next) return false;
+      c = *next;
+      moved = true;
+    }
+    if (moved) continue;
+    for (Contact& c : kept.contact) c = clamped(c);
+    kept.evaluate(geometry_);
+    if (depth(kept.ruling()) > map_.bent) return false;
+    s = kept;
+    return true;
+  }
+  return false;
+}
+
 /// A contact next to a side, that supports on it, is there: beyond it a plane or a ruled surface
 /// goes on, and the direction does not tell the two places apart.
 void RulingSearch::keep_on_sides(CommonSupport& s, LinearEquation equation) const {
+  if (keep_on_bent(s, equation)) return;
   CommonSupport kept = s;
   for (std::size_t i = 0; i < 2; ++i) {
     if (s.contact[i].kind != SourceKind::face) continue;
@@ -151,6 +247,11 @@ Ruling RulingSearch::settled(Ruling ruling) const {
   for (const std::size_t i : {0u, 1u}) {
     const Contact own = geometry_.first(snapped(geometry_, ruling.contact[i], parameter_rounding));
     if (is_off_borders(own)) continue;
+    if (geometry_.is_beside_bent(own)) {
+      ruling.contact[i] = own;
+      ruling.point[i] = geometry_.point(own);
+      continue;
+    }
     if (own.kind == SourceKind::vertex) {
       // It stays there along the curve, be its own region an edge's or not.
       const dvec3 ahead = beside_turn * glm::cross(ruling.n, right);
@@ -180,7 +281,7 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
   for (int k = 0; k < bracket_halvings * secant_steps; ++k) {
     const bool halves = k % (secant_steps + 1) == secant_steps;
     const dvec3 n = halves ? unit(right.n + left.n) : exchange(right, left);
-    if (const auto found = polished(n, {right.contact, left.contact}, across, geometry_.tie())) {
+    if (const auto found = polished(n, {right.contact, left.contact}, across, touching())) {
       const double way = glm::dot(right.n, left.n);
       const bool is_between =
           glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way;
@@ -271,7 +372,7 @@ std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to
   for (std::size_t i = 0; i < 2; ++i) {
     contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
   }
-  const auto found = polished(n, contacts, across, geometry_.tie());
+  const auto found = polished(n, contacts, across, touching());
   if (found && is_between(from, to, *found)) return settled(*found);
   const Which which = [&](const SupportingContact& s) {
     const int side = glm::distance(s.x, x[0]) <= glm::distance(s.x, x[1]) ? 0 : 1;

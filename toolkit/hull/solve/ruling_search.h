@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
@@ -44,11 +45,18 @@ class RulingSearch {
   double depth(const Ruling& ruling) const;
 
  private:
+  /// By how much others may be above contacts that support.
+  double touching() const { return std::max(geometry_.tie(), map_.bent); }
+
   /// The ruling with contacts near these, n in the plane across `across`. None if Newton's method
   /// does not converge, the contacts are one, or something is higher by more than so much.
   std::optional<Ruling> polished(const dvec3& n, const std::array<Contact, 2>& contacts,
                                  const dvec3& across, double depth_limit) const;
 
+  bool rises_little(const dvec3& n, const Contact& from, const Contact& to) const;
+  std::optional<Contact> on_bent(const Contact& c) const;
+  std::optional<Contact> beyond_end(const Contact& c) const;
+  bool keep_on_bent(CommonSupport& s, LinearEquation equation) const;
   void keep_on_sides(CommonSupport& s, LinearEquation equation) const;
 
   /// The ruling with contacts that lie on a border, or where others end, told as ones of the

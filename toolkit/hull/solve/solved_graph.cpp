@@ -44,7 +44,7 @@ class GraphSolver {
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
-      drop_empty_pieces(geometry_, arc.pieces);
+      drop_empty_pieces(geometry_, arc.pieces, map_.bent > 0 ? map_.contact_extent() : 0);
     }
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);

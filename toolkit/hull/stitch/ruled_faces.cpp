@@ -21,12 +21,12 @@ int source_of(const ContactGeometry& geometry, const Contact& c) {
 
 /// Whether the corners and the middle of the patch lie in the facet's plane.
 bool is_in_plane(const ContactGeometry& geometry, Contact c, const HullFace& facet) {
+  const double allowed = geometry.tie() + geometry.scene().frame().length_to_frame(geometry.bent());
   for (const double u : {0.0, 0.5, 1.0}) {
     for (const double v : {0.0, 0.5, 1.0}) {
       c.u = u;
       c.v = v;
-      if (std::abs(glm::dot(geometry.point(c), facet.n) - facet.offset) > geometry.tie())
-        return false;
+      if (std::abs(glm::dot(geometry.point(c), facet.n) - facet.offset) > allowed) return false;
     }
   }
   return true;
@@ -39,7 +39,7 @@ void label_facets(const ContactGeometry& geometry, HullBoundary& boundary) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     for (int p = 0; p < int(part.patches().size()); ++p) {
       const Patch& patch = part.patches()[std::size_t(p)];
-      if (!patch.ruled_u || !patch.ruled_v) continue;
+      if (!geometry.lines(patch).both()) continue;
       const Contact c{i, SourceKind::face, p, 0, 0};
       for (HullFace& face : boundary.faces) {
         if (face.kind != FaceKind::facet || face.source >= 0) continue;
@@ -57,7 +57,7 @@ int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling
   if (glm::length(glm::cross(normal, r.n)) > same_ruling) return -1;
   const dvec3 along = geometry.to_local(c.instance, unit(r.point[1 - end] - r.point[end]));
   const std::vector<PatchPoint> path =
-      ruling_path(geometry.part(c), {c.element, {c.u, c.v}}, along);
+      ruling_path(geometry.part(c), {c.element, {c.u, c.v}}, along, geometry.bent());
   if (path.empty()) return -1;
   const auto contact = [&](const PatchPoint& p) {
     return Contact{c.instance, c.kind, p.patch, p.uv.x, p.uv.y};

@@ -45,9 +45,9 @@ class WholePatches {
   /// Ruled ones are parts of scrolls and facets.
   bool has_curved_patches() const {
     const Model& model = geometry_.scene().model();
-    return std::any_of(model.parts().begin(), model.parts().end(), [](const Part& part) {
+    return std::any_of(model.parts().begin(), model.parts().end(), [&](const Part& part) {
       return std::any_of(part.patches().begin(), part.patches().end(),
-                         [](const Patch& patch) { return !patch.ruled(); });
+                         [&](const Patch& patch) { return !geometry_.lines(patch).any(); });
     });
   }
 
