@@ -89,9 +89,23 @@ void add_roots(const Across& across, const std::vector<dvec3>& turns, int axis,
   }
 }
 
-/// What rounding to a grid does to a crest's heights and, times the degree, its normals, in steps
-/// of the grid: half a step moves a control point, and derivatives are of differences of two.
+/// What rounding to a grid does to a crest's heights and, times the degree, its derivatives, in
+/// steps of the grid: half a step moves a control point, and derivatives are of differences of two.
 constexpr double grid_steps = 4;
+
+/// What rounding does to a patch's points, and to its normal at a place.
+struct Rounding {
+  Rounding(const BezierPatch& patch, const dvec2& at, double grid)
+      : point(std::max(coordinate_rounding * largest_coordinate(patch.points), grid_steps * grid)) {
+    const PatchJet1 j = jet1(patch, at.x, at.y);
+    angle = point * (patch.degree_u / glm::length(j.Su) + patch.degree_v / glm::length(j.Sv));
+  }
+  /// Over the tangent plane, of a point so far from the place.
+  double of_height(double distance) const { return point + angle * distance; }
+
+  double point = 0;
+  double angle = 0;
+};
 
 double size_of(const std::vector<dvec4>& points) {
   Box box;
@@ -104,12 +118,11 @@ double size_of(const std::vector<dvec4>& points) {
 bool is_crest(const BezierPatch& patch, Direction direction, double s, double grid) {
   const Across across{patch, direction};
   const double size = size_of(patch.points);
-  const double rounding =
-      std::max(coordinate_rounding * largest_coordinate(patch.points), grid_steps * grid);
-  const double height = crest_height * size + rounding;
-  const double angle = crest_angle + across.degree_across() * rounding / size;
   const auto at = [&](double t) { return across.uv(s, t); };
   const dvec2 middle = at(0.5);
+  const Rounding rounding(patch, middle, grid);
+  const double height = crest_height * size + rounding.of_height(size);
+  const double angle = crest_angle + rounding.angle;
   const dvec3 n = unit_normal(patch, middle.x, middle.y);
   const double h = glm::dot(n, point(patch, middle.x, middle.y));
   if (n == dvec3(0.0)) return false;
@@ -125,16 +138,18 @@ bool is_crest(const BezierPatch& patch, Direction direction, double s, double gr
 }
 
 bool may_support(const BezierPatch& patch, Direction direction, double s,
-                 std::span<const dvec3> points, double tolerance) {
+                 std::span<const dvec3> points, double tolerance, double grid) {
   const dvec2 middle = Across{patch, direction}.uv(s, 0.5);
   const dvec3 n = unit_normal(patch, middle.x, middle.y);
   const dvec3 x = point(patch, middle.x, middle.y);
+  const Rounding rounding(patch, middle, grid);
   bool above = false;
   bool below = false;
   for (const dvec3& p : points) {
     const double height = glm::dot(n, p - x);
-    above = above || height > tolerance;
-    below = below || height < -tolerance;
+    const double allowed = std::max(tolerance, rounding.of_height(glm::distance(p, x)));
+    above = above || height > allowed;
+    below = below || height < -allowed;
     if (above && below) return false;
   }
   return true;

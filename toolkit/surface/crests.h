@@ -19,9 +19,9 @@ namespace taut {
 bool is_crest(const BezierPatch& patch, Direction direction, double s, double grid = 0);
 
 /// Whether the crest's plane may support a surface with these points: none lies above it, or none
-/// below, up to the tolerance.
+/// below, up to the tolerance or to what rounding to the grid does.
 bool may_support(const BezierPatch& patch, Direction direction, double s,
-                 std::span<const dvec3> points, double tolerance);
+                 std::span<const dvec3> points, double tolerance, double grid = 0);
 
 /// Parameters inside of ]0, 1[, ascending, of the crests across which the slope over their plane
 /// changes its sign; others (the flat circle of z = r^3) carry no support points of a ridge.

@@ -79,7 +79,7 @@ bool JoinSmoothness::may_be_crest(const Use& use) const {
   const Direction direction = along_v(side) ? Direction::u : Direction::v;
   const double s = at_upper_end(side) ? 1 : 0;
   return is_crest(bezier, direction, s, grid_) &&
-         may_support(bezier, direction, s, corner_points_, std::max(tolerance_, grid_));
+         may_support(bezier, direction, s, corner_points_, tolerance_, grid_);
 }
 
 bool JoinSmoothness::is_plane(const Use& use) const {
