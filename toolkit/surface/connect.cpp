@@ -460,17 +460,18 @@ void Part::connect(double smooth_angle, const Progress& progress) {
                        " is not between 0 and pi/2");
   }
   point_count_ = to_int(vertices_.size());
-  // What points may be off lines and planes of others, if that is no more than is ever taken for
-  // one.
-  const double bent = cover_share * std::min(grid_resolution * 0.5 * coordinate_grid().step,
-                                             coarsest_resolution * diagonal(box_));
+  // As far as the resolution goes that it asks for.
+  const double half_step = std::min(0.5 * coordinate_grid().step,
+                                    coarsest_resolution / grid_resolution * diagonal(box_));
+  // What points may be off lines and planes of others.
+  const double bent = cover_share * grid_resolution * half_step;
   find_rulings(patches_, box_, bent, progress);
   split_crests(faces_, patches_, box_, bent, progress);
   split_junctions(faces_, patches_, box_, bent, progress);
   find_repeated_patches(patches_, box_, progress);
   // Patches of cages are computed, whatever the cages' points were rounded to.
   Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle,
-                      cages_.empty() ? coordinate_grid().step : 0, bent, progress);
+                      cages_.empty() ? 2 * half_step : 0, bent, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
   join_gap_ = connector.join_gap();

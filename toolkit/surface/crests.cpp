@@ -93,12 +93,23 @@ void add_roots(const Across& across, const std::vector<dvec3>& turns, int axis,
 /// steps of the grid: half a step moves a control point, and derivatives are of differences of two.
 constexpr double grid_steps = 4;
 
-/// What rounding does to a patch's points, and to its normal at a place.
+double size_of(const std::vector<dvec4>& points) {
+  Box box;
+  for (const dvec4& p : points) box.include(euclidean(p));
+  return diagonal(box);
+}
+
+/// What rounding does to a patch's points, and to its normals along a curve. Curves as short as
+/// those about a pole are no crests.
 struct Rounding {
-  Rounding(const BezierPatch& patch, const dvec2& at, double grid)
-      : point(std::max(coordinate_rounding * largest_coordinate(patch.points), grid_steps * grid)) {
-    const PatchJet1 j = jet1(patch, at.x, at.y);
-    angle = point * (patch.degree_u / glm::length(j.Su) + patch.degree_v / glm::length(j.Sv));
+  Rounding(const Across& across, double s, double grid)
+      : point(std::max(coordinate_rounding * largest_coordinate(across.patch.points),
+                       grid_steps * grid)) {
+    const dvec2 at = across.uv(s, 0.5);
+    const PatchJet1 j = jet1(across.patch, at.x, at.y);
+    const double speed = glm::length(across.direction == Direction::u ? j.Su : j.Sv);
+    angle = point *
+            (across.degree_across() / speed + across.degree_along() / size_of(across.patch.points));
   }
   /// Over the tangent plane, of a point so far from the place.
   double of_height(double distance) const { return point + angle * distance; }
@@ -107,12 +118,6 @@ struct Rounding {
   double angle = 0;
 };
 
-double size_of(const std::vector<dvec4>& points) {
-  Box box;
-  for (const dvec4& p : points) box.include(euclidean(p));
-  return diagonal(box);
-}
-
 }  // namespace
 
 bool is_crest(const BezierPatch& patch, Direction direction, double s, double grid) {
@@ -120,7 +125,7 @@ bool is_crest(const BezierPatch& patch, Direction direction, double s, double gr
   const double size = size_of(patch.points);
   const auto at = [&](double t) { return across.uv(s, t); };
   const dvec2 middle = at(0.5);
-  const Rounding rounding(patch, middle, grid);
+  const Rounding rounding(across, s, grid);
   const double height = crest_height * size + rounding.of_height(size);
   const double angle = crest_angle + rounding.angle;
   const dvec3 n = unit_normal(patch, middle.x, middle.y);
@@ -139,10 +144,11 @@ bool is_crest(const BezierPatch& patch, Direction direction, double s, double gr
 
 bool may_support(const BezierPatch& patch, Direction direction, double s,
                  std::span<const dvec3> points, double tolerance, double grid) {
-  const dvec2 middle = Across{patch, direction}.uv(s, 0.5);
+  const Across across{patch, direction};
+  const dvec2 middle = across.uv(s, 0.5);
   const dvec3 n = unit_normal(patch, middle.x, middle.y);
   const dvec3 x = point(patch, middle.x, middle.y);
-  const Rounding rounding(patch, middle, grid);
+  const Rounding rounding(across, s, grid);
   bool above = false;
   bool below = false;
   for (const dvec3& p : points) {

@@ -21,6 +21,8 @@ struct CommonSupport {
   /// direction does not tell how far off it is. It supports all the same, or is no solution.
   std::array<int, capacity> kept = {free, free, free};
   static constexpr int free = -1;
+  /// The slope of x . n across such a side that is none: rounded patches meet with kinks.
+  double slope_kept = 0;
 
   CommonSupport() = default;
   CommonSupport(const ContactGeometry& geometry, const Ruling& ruling);

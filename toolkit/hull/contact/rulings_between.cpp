@@ -26,6 +26,8 @@ constexpr double merging_share = 0.25;
 /// Rates per share of the length, relative to the chord, below which the length falls with the
 /// square of the way: one half, where others are one.
 constexpr double touching_share = 0.6;
+/// Kinks, in radians, between patches that go on into each other but for rounding.
+constexpr double largest_kink = 1e-6;
 /// An arc that is so many times its chord is none that was solved.
 constexpr double longest_arc = 10;
 
@@ -190,6 +192,7 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
              kept_parameter(from.contact[1], to.contact[1])}),
       square_(square(to.n - from.n) + square(to.point[0] - from.point[0]) +
               square(to.point[1] - from.point[1])) {
+  slope_kept_ = std::min(largest_kink, 2 * std::max(slope_kept(from), slope_kept(to)));
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
@@ -343,19 +346,23 @@ bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
   return solve(m, [&](const CommonSupport& at) { return distance_equation(at, length); });
 }
 
-/// Where contacts that lie on sides at both ends do not support on them in between they are free.
+/// Contacts that lie on sides at both ends stay there; or where they do not support there, they are
+/// free; or, where they would leave their patches by that, on sides that are kinks.
 template <class Equation>
 bool RulingsBetween::solve(MovingRuling& m, const Equation& equation) const {
   const MovingRuling start = m;
-  if (system_.solve(m.at, equation) && is_near(start, m)) return true;
-  m = start;
-  constexpr std::array all_free = {CommonSupport::free, CommonSupport::free};
-  if (kept_ != all_free) {
-    m.at.kept = CommonSupport().kept;
-    if (system_.solve(m.at, equation) && is_near(start, m)) return true;
+  const auto solved = [&](const std::array<int, CommonSupport::capacity>& kept, double slope) {
     m = start;
-    m.at.kept = CommonSupport().kept;
-  }
+    m.at.kept = kept;
+    m.at.slope_kept = slope;
+    return system_.solve(m.at, equation) && is_near(start, m);
+  };
+  const auto& all_free = CommonSupport().kept;
+  if (solved(start.at.kept, 0)) return true;
+  if (start.at.kept != all_free && solved(all_free, 0)) return true;
+  if (slope_kept_ > 0 && solved(start.at.kept, slope_kept_)) return true;
+  m = start;
+  m.at.kept = all_free;
   return system_.settle(m.at, equation) && is_near(start, m);
 }
 
@@ -363,6 +370,17 @@ CommonSupport RulingsBetween::support(const Ruling& r) const {
   CommonSupport s(system_.geometry(), r);
   for (std::size_t i = 0; i < 2; ++i) s.kept[i] = kept_[i];
   return s;
+}
+
+/// The larger slope of x . n across the sides that contacts stay on.
+double RulingsBetween::slope_kept(const Ruling& r) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (kept_[i] == CommonSupport::free) continue;
+    const dvec3 across = system_.geometry().jet(r.contact[i]).dx[std::size_t(kept_[i])];
+    largest = std::max(largest, std::abs(glm::dot(unit(across), r.n)));
+  }
+  return largest;
 }
 
 /// The rounding of the system's answer, a rounding unit over the cube of the length, is less than

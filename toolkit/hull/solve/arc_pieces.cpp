@@ -138,20 +138,20 @@ double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece) {
 
 }  // namespace
 
-void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces, double reach,
                        double extent) {
   // At its ends, where heights tie over as much.
-  const double tied = std::max({longest_empty_piece, std::sqrt(geometry.rounding()), extent});
+  const double tied =
+      std::max({longest_empty_piece, std::sqrt(geometry.rounding()), reach, extent});
   const auto is_empty = [&](std::size_t k) {
     const std::vector<Ruling>& rulings = pieces[k].rulings;
     const bool ends = k == 0 || k + 1 == pieces.size();
-    const double longest = ends ? tied : longest_empty_piece;
     const Ruling& a = rulings.front();
     double length = 0;
     for (const Ruling& b : rulings) {
       if (!has_contacts(a, b)) length = std::max(length, distance(a, b));
     }
-    return length < longest && (ends || length < shortest_piece(geometry, pieces[k]));
+    return length < (ends ? tied : std::max(reach, shortest_piece(geometry, pieces[k])));
   };
   // Leaving a piece out shortens those about it.
   for (std::size_t count = 0; count != pieces.size();) {
@@ -173,7 +173,9 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
   }
-  for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
+  for (ArcPiece& piece : pieces) {
+    tell_along_joins(geometry, piece);
+  }
   turn_ends(geometry, pieces);
 }
 
@@ -204,6 +206,15 @@ void set_places(const ContactGeometry& geometry, Ruling& ruling, Ruling& other) 
 
 bool same_elements(const Ruling& a, const Ruling& b) {
   return same_element(a.contact[0], b.contact[0]) && same_element(a.contact[1], b.contact[1]);
+}
+
+void drop_beside_ends(std::vector<Ruling>& rulings, double extent) {
+  while (rulings.size() > 2 && distance(rulings[0], rulings[1]) < extent) {
+    rulings.erase(rulings.begin() + 1);
+  }
+  while (rulings.size() > 2 && distance(rulings[rulings.size() - 2], rulings.back()) < extent) {
+    rulings.erase(rulings.end() - 2);
+  }
 }
 
 void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {

@@ -13,10 +13,15 @@ inline constexpr double longest_empty_piece = 1e-7;
 
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
 /// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
-/// Contacts with which the others begin and end are in their normal form (turned_to). `extent`: up
-/// to so long the first and the last may be none, if that is more than rounding tells.
+/// Contacts with which the others begin and end are in their normal form (turned_to). `reach`: up
+/// to so long they may be none, and up to `extent` the first and the last, if that is more than
+/// rounding tells.
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
-                       double extent = 0);
+                       double reach = 0, double extent = 0);
+
+/// Leaves out rulings so near to the first or the last of a piece that they are the same place: of
+/// rounded surfaces rounding tells the way from one to the other.
+void drop_beside_ends(std::vector<Ruling>& rulings, double extent);
 
 /// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
 /// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge

@@ -160,11 +160,12 @@ void ArcSolver::go_on(const Ruling& to, int depth) {
 /// farther from the borders of these, and slopes there amount to no more, than the resolution: what
 /// is tolerant and runs along a border is not told now as one side's and now as the other's.
 Ruling ArcSolver::told_as_last(Ruling to) const {
-  if (search_.depth(to) <= geometry_.tie()) return to;
-  const double resolution = search_.map().resolution;
+  const bool is_exact = search_.depth(to) <= geometry_.tie();
+  const double distance = is_exact ? 0 : border_depths * search_.map().resolution;
   for (std::size_t i = 0; i < 2; ++i) {
     if (geometry_.is_beside_bent(to.contact[i])) continue;
-    const Contact border = moved_to_border(geometry_, to.contact[i], border_depths * resolution);
+    if (is_exact && to.contact[i].kind != SourceKind::face) continue;
+    const Contact border = moved_to_border(geometry_, to.contact[i], distance);
     const auto own = expressed_in(geometry_, border, last().contact[i]);
     if (!own || own->kind == SourceKind::vertex) continue;
     const ContactJet j = geometry_.jet(*own);

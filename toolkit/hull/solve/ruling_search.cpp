@@ -100,16 +100,24 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
     bool moved = false;
     for (std::size_t i = 0; i < 2; ++i) {
       const bool inside = is_in_element(s.contact[i]);
-      if (inside && s.contact[i].kind == SourceKind::face) continue;
+      const bool kept = s.kept[i] != CommonSupport::free;
+      if (inside && (kept || s.contact[i].kind == SourceKind::face)) continue;
       // It has run over into another element, or others rise beside where it ends: by heights that
       // are lost in rounding where it is not told so.
       const std::optional<Contact> there = climbed(geometry_, clamped(s.contact[i]), s.n);
       const bool same = there && (same_element(*there, start.contact[i]) ||
                                   rises_little(s.n, clamped(s.contact[i]), *there));
       if (inside && (same || !there)) continue;
-      if (!there || same) return std::nullopt;
-      s.contact[i] = geometry_.first(*there);
+      if (same || (!there && s.contact[i].kind != SourceKind::face)) return std::nullopt;
       moved = true;
+      if (there) {
+        s.contact[i] = geometry_.first(*there);
+        continue;
+      }
+      // On a join with a kink, which neither side rises from: there it stays.
+      s.contact[i] = clamped(s.contact[i]);
+      s.kept[i] = kept_parameter(s.contact[i], s.contact[i]);
+      s.slope_kept = map_.contact_extent();
     }
     if (!moved) {
       for (Contact& c : s.contact) c = clamped(c);

@@ -15,6 +15,7 @@
 #include "taut/hull/solve/known_arcs.h"
 #include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/node_ears.h"
+#include "taut/hull/solve/tolerant_places.h"
 #include "taut/hull/solve/touching_plane.h"
 
 namespace taut {
@@ -44,7 +45,10 @@ class GraphSolver {
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
-      drop_empty_pieces(geometry_, arc.pieces, map_.bent > 0 ? map_.contact_extent() : 0);
+      drop_empty_pieces(geometry_, arc.pieces, place_depths * map_.resolution,
+                        map_.bent > 0 ? map_.contact_extent() : 0);
+      if (!is_rounded(geometry_.scene(), map_.resolution)) continue;
+      for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, map_.contact_extent());
     }
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);

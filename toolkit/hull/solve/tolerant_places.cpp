@@ -26,9 +26,7 @@ class TolerantPlaces {
  public:
   TolerantPlaces(const ContactSystem& system, SupportQuery& query, double resolution)
       : system_(system), geometry_(system.geometry()), query_(query), resolution_(resolution) {
-    const Scene& scene = geometry_.scene();
-    const double floor = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
-    is_rounded_ = resolution_ > rounded_depths * floor;
+    is_rounded_ = is_rounded(geometry_.scene(), resolution_);
   }
 
   double of(const ArcPiece& piece) {
@@ -72,24 +70,30 @@ class TolerantPlaces {
     for (int k = 0; k < region_places * region_places; ++k) {
       const dvec2 uv = (dvec2(k % region_places, k / region_places) + 0.5) / double(region_places);
       if (depth_in(outline, uv) < region_slacks * outline_slack) continue;
-      const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
-      const ContactJet j = geometry_.jet(c);
-      const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-      if (n == dvec3(0.0)) continue;
-      deepest = std::max(deepest, query_(n, c).h - glm::dot(j.x, n));
+      deepest = std::max(deepest, own_depth(region, uv));
     }
     deepest = deepest <= geometry_.tie() ? 0 : bound_of(deepest);
     for (const std::vector<TrimStretch>& loop : region.loops) {
       for (const TrimStretch& s : loop) {
-        if (s.arc < 0) continue;
-        const SeparatingArc& arc = boundary.arcs[std::size_t(s.arc)];
-        deepest = std::max(deepest, arc.pieces[std::size_t(s.piece)].tolerant);
+        if (s.arc >= 0) deepest = std::max(deepest, piece_of(boundary, s).tolerant);
       }
     }
     return deepest;
   }
 
  private:
+  static const ArcPiece& piece_of(const HullBoundary& boundary, const TrimStretch& s) {
+    return boundary.arcs[std::size_t(s.arc)].pieces[std::size_t(s.piece)];
+  }
+
+  /// Of the patch by its own normal.
+  double own_depth(const PatchRegion& region, const dvec2& uv) {
+    const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+    const ContactJet j = geometry_.jet(c);
+    const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
+    return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
+  }
+
   /// Between the places it may be deeper, as far as that is within the resolution.
   double bound_of(double deepest) const {
     return std::max(deepest, std::min(between_places * deepest, resolution_));
@@ -104,10 +108,15 @@ class TolerantPlaces {
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   double resolution_;
-  bool is_rounded_ = false;  // surfaces are known to the resolution only, also between rulings
+  bool is_rounded_ = false;
 };
 
 }  // namespace
+
+bool is_rounded(const Scene& scene, double resolution) {
+  const double floor = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
+  return resolution > rounded_depths * floor;
+}
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution) {

@@ -6,6 +6,10 @@
 
 namespace taut {
 
+/// Rounding of a model's numbers has made its resolution what it is: surfaces are known to it only,
+/// also between rulings. `resolution`: in the scene's frame.
+bool is_rounded(const Scene& scene, double resolution);
+
 /// Finds out how far arcs and faces of a boundary are below the supporting planes with their
 /// normals (ArcPiece::tolerant, HullFace::tolerant), by support queries: at the rulings that are
 /// stored, and where these are farther than rounding makes them between them, too; at the corners
