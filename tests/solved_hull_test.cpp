@@ -8,8 +8,10 @@
 #include "freeform.h"
 #include "judge/families.h"
 #include "models.h"
+#include "sound_hull.h"
 #include "taut/hull/precise_hull.h"
 #include "taut/hull/result/region_outline.h"
+#include "taut/io/document/boundary_document.h"
 
 namespace taut {
 namespace {
@@ -53,6 +55,66 @@ TEST(SolvedHull, OfCopiesAllButInPlaceIsThatOfOne) {
     ASSERT_TRUE(hull.boundary);
     EXPECT_TRUE(hull.boundary->unresolved.empty());
     EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{8, 12, 6}));
+  }
+}
+
+struct Ruled {
+  const char* name;
+  Shape shape;
+  FaceCounts counts;
+};
+
+std::vector<Ruled> ruled_shapes() {
+  return {{"box", box(3, 2, 1), {0, 0, 6}},
+          {"cylinder", solid_cylinder(1, 2), {0, 1, 2}},
+          {"cone", solid_cone(1, 2), {0, 1, 1}},
+          {"filleted box", filleted_box(3, 2, 1, 0.25), {8, 12, 6}},
+          {"torus", torus(2, 0.5), {1, 0, 2}}};
+}
+
+void expect_counts(const Shape& shape, const FaceCounts& counts) {
+  const Scene scene = make_scene(shape);
+  const Hull hull = solved_hull_of(scene);
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_TRUE(hull.boundary->unresolved.empty());
+  EXPECT_EQ(face_counts(*hull.boundary), counts);
+  EXPECT_LE(deepest_tolerant(*hull.boundary), scene.frame().length_to_frame(hull.resolution.rho));
+  HullDocument document = hull_document(scene, *hull.boundary);
+  const auto tolerant = std::count_if(document.faces.begin(), document.faces.end(),
+                                      [](const auto& face) { return face.tolerant > 0; });
+  state(document, hull.resolution.rho, int(tolerant),
+        scene.frame().length_to_model(deepest_tolerant(*hull.boundary)));
+  const HullVerification found = verified(document, scene);
+  // Borders of other degrees miss each other by what rounding has made of them.
+  const double tolerance = std::max(1e-9, hull.resolution.rho / scene.diagonal());
+  EXPECT_TRUE(found.is_hull(tolerance)) << text_of(found);
+}
+
+/// Planes, cylinders, cones and crests of patches whose inner control points rounding has moved are
+/// what they were.
+TEST(SolvedHull, OfHigherDegreesIsTheSameWhenRounded) {
+  for (const Ruled& ruled : ruled_shapes()) {
+    for (const Variant variant : all_variants) {
+      SCOPED_TRACE(std::string(ruled.name) + " " + name_of(variant));
+      taut_test::Random random(1);
+      Natural natural;
+      natural.shape = with_higher_degrees(ruled.shape);
+      expect_counts(placed(natural, variant, random).shape, ruled.counts);
+    }
+  }
+}
+
+/// Rulings go on from one patch to the next, though rounding has turned them.
+TEST(SolvedHull, OfSplitPatchesIsTheSameWhenRounded) {
+  for (const Ruled& ruled : ruled_shapes()) {
+    if (ruled.counts == FaceCounts{8, 12, 6}) continue;  // its edges are cut where others are not
+    for (const Variant variant : all_variants) {
+      SCOPED_TRACE(std::string(ruled.name) + " " + name_of(variant));
+      taut_test::Random random(1);
+      Natural natural;
+      natural.shape = split(ruled.shape, 0.37, 0.61);
+      expect_counts(placed(natural, variant, random).shape, ruled.counts);
+    }
   }
 }
 

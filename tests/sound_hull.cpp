@@ -51,6 +51,13 @@ Sound sound_hull(const Shape& shape) {
   return sound;
 }
 
+void state(HullDocument& hull, double resolution, int tolerant, double bound) {
+  Report report;
+  report.hull.resolution.emplace().rho = resolution;
+  report.hull.tolerant = {tolerant, bound};
+  hull.report = to_json(report);
+}
+
 HullVerification verified(const HullDocument& hull, const Scene& scene) {
   VerifyOptions options;
   options.random_directions = 2000;

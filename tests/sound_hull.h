@@ -19,6 +19,9 @@ struct Sound {
 
 Sound sound_hull(const Shape& shape);
 
+/// Makes a report of these: the resolution, the tolerant faces and the largest of their bounds.
+void state(taut::HullDocument& hull, double resolution, int tolerant, double bound);
+
 taut::HullVerification verified(const taut::HullDocument& hull, const taut::Scene& scene);
 
 /// Names of all checks that fail.

@@ -37,13 +37,6 @@ int tolerant_faces(const HullDocument& hull) {
                            [](const HullDocument::Face& face) { return face.tolerant > 0; }));
 }
 
-void state(HullDocument& hull, double resolution, int tolerant, double bound) {
-  Report report;
-  report.hull.resolution.emplace().rho = resolution;
-  report.hull.tolerant = {tolerant, bound};
-  hull.report = to_json(report);
-}
-
 /// A natural model's hull, solved, with a report.
 Sound solved(const std::string& name, Variant variant) {
   for (const FamilyGroup& group : family_groups()) {

@@ -252,7 +252,7 @@ std::optional<RulingDirection> ruling_at(const Patch& patch, const dvec2& uv, do
   const auto at = [&](const dvec2& end) { return point(patch.bezier, end.x, end.y); };
   const dvec3 way = at(all[0][1]) - at(all[0][0]);
   if (unit(way) == dvec3(0.0)) return std::nullopt;
-  return RulingDirection{unit(way), patch.ruled() ? 0 : 2 * bent / glm::length(way)};
+  return RulingDirection{unit(way), 2 * bent / glm::length(way)};
 }
 
 std::optional<dvec3> ruling_direction(const Patch& patch, const dvec2& uv) {

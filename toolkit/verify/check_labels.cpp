@@ -47,12 +47,14 @@ HullDocument ruled_faces(const Scene& scene) {
 /// Checks one document.
 class LabelCheck {
  public:
-  LabelCheck(const DocumentGeometry& geometry, const Scene& scene, HullFaults& faults)
+  LabelCheck(const DocumentGeometry& geometry, const Scene& scene, double resolution,
+             HullFaults& faults)
       : hull_(geometry.hull()),
         geometry_(geometry),
         ruled_(ruled_faces(scene)),
         ruled_geometry_(ruled_, geometry.origin(), 0),
         near_(std::max(near_face, geometry.noise()) * hull_.diagonal),
+        resolution_(resolution),
         faults_(faults) {}
   void run();
 
@@ -72,6 +74,7 @@ class LabelCheck {
   HullDocument ruled_;
   DocumentGeometry ruled_geometry_;
   double near_;
+  double resolution_;
   HullFaults& faults_;
 };
 
@@ -91,7 +94,7 @@ void LabelCheck::check_told(std::size_t f) {
   const HullDocument::Source& source = geometry_.source(face.source);
   if (source.kind != SourceKind::face) return wrong(f, "its source is no face");
   if (source.patches.empty()) return;
-  const double near = near_ + face.tolerant;
+  const double near = near_ + std::max(face.tolerant, resolution_);
   if (face.kind == FaceKind::facet) {
     if (!in_plane(source, face, near)) wrong(f, "its source is not in its plane");
     return;
@@ -159,8 +162,9 @@ bool LabelCheck::runs_along(int source, const Face& scroll) const {
 
 }  // namespace
 
-void check_labels(const DocumentGeometry& geometry, const Scene& scene, HullFaults& faults) {
-  LabelCheck(geometry, scene, faults).run();
+void check_labels(const DocumentGeometry& geometry, const Scene& scene, double resolution,
+                  HullFaults& faults) {
+  LabelCheck(geometry, scene, resolution, faults).run();
 }
 
 }  // namespace taut

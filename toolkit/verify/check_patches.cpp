@@ -45,12 +45,13 @@ Contact scene_contact(const DocumentGeometry& geometry, const Scene& scene, int 
 class PatchCheck {
  public:
   PatchCheck(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-             const Coverage& coverage, const Scene& scene, const VerifyOptions& options,
-             HullFaults& faults)
+             const Coverage& coverage, const Scene& scene, double resolution,
+             const VerifyOptions& options, HullFaults& faults)
       : geometry_(geometry),
         outlines_(outlines),
         coverage_(coverage),
         scene_(scene),
+        resolution_(resolution),
         options_(options),
         faults_(faults),
         random_(options.seed) {}
@@ -62,6 +63,7 @@ class PatchCheck {
   void add_beside(const RegionOutline& outline);
   void add(int source, int patch, const dvec2& uv);
   double gap(SupportQuery& query, const Sample& sample, int sign) const;
+  bool is_nearly_ruled(const Sample& sample) const;
   bool strictly_convex(const SourceJet& j, const dvec3& n) const;
   std::string name(const Sample& sample) const;
   dvec3 point(const Sample& sample) const {
@@ -72,6 +74,7 @@ class PatchCheck {
   const DocumentOutlines& outlines_;
   const Coverage& coverage_;
   const Scene& scene_;
+  double resolution_;
   const VerifyOptions& options_;
   HullFaults& faults_;
   std::mt19937_64 random_;
@@ -172,6 +175,14 @@ double PatchCheck::gap(SupportQuery& query, const Sample& sample, int sign) cons
   return (h - glm::dot(j.x + (geometry_.origin() - frame.center), n)) / scene_.diagonal();
 }
 
+bool PatchCheck::is_nearly_ruled(const Sample& sample) const {
+  const Contact c = scene_contact(geometry_, scene_, sample.source, sample.place);
+  if (c.kind != SourceKind::face) return false;
+  const Model& model = scene_.model();
+  const Part& part = model.parts()[to_size(model.instances()[to_size(c.instance)].part)];
+  return part.patches()[to_size(c.element)].lines(resolution_).any();
+}
+
 bool PatchCheck::strictly_convex(const SourceJet& j, const dvec3& n) const {
   const double L = -glm::dot(j.dxx, n);
   const double M = -glm::dot(j.dxy, n);
@@ -196,6 +207,7 @@ double PatchCheck::run() {
         continue;
       }
       gaps[i] = 1;
+      if (is_nearly_ruled(sample)) continue;
       const SourceJet j = geometry_.jet(sample.source, sample.place);
       for (const int sign : {-1, 1}) {
         const dvec3 n = geometry_.normal(sample.source, sample.place, sign);
@@ -222,9 +234,9 @@ double PatchCheck::run() {
 }  // namespace
 
 double check_patches(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                     const Coverage& coverage, const Scene& scene, const VerifyOptions& options,
-                     HullFaults& faults) {
-  return PatchCheck(geometry, outlines, coverage, scene, options, faults).run();
+                     const Coverage& coverage, const Scene& scene, double resolution,
+                     const VerifyOptions& options, HullFaults& faults) {
+  return PatchCheck(geometry, outlines, coverage, scene, resolution, options, faults).run();
 }
 
 }  // namespace taut

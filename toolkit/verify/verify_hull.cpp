@@ -282,7 +282,7 @@ void HullVerifier::check_faces() {
   if (hull_.dimension >= 2) {
     const double tolerance = (same_point + rounding_) * diagonal_;
     raise(result_.off_outline, relative(check_outlines(geometry_, outlines, tolerance, faults_)));
-    check_labels(geometry_, scene_, faults_);
+    check_labels(geometry_, scene_, resolution_, faults_);
   }
   if (hull_.dimension == 3) {
     measures = measure(geometry_, outlines, options_.progress);
@@ -294,7 +294,7 @@ void HullVerifier::check_faces() {
     if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
     const Coverage coverage(geometry_, outlines, scene_, promised_length());
     raise(result_.patch_outside,
-          check_patches(geometry_, outlines, coverage, scene_, options_, faults_));
+          check_patches(geometry_, outlines, coverage, scene_, resolution_, options_, faults_));
     options_.progress.update("verify", 0.8);
     check_even_directions(coverage, measures);
   } else {

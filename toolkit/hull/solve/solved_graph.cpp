@@ -43,12 +43,12 @@ class GraphSolver {
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     drop_arcs();
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
+    const bool rounded = is_rounded(geometry_.scene(), map_.resolution);
+    const double extent = rounded ? map_.contact_extent() : 0;
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
-      drop_empty_pieces(geometry_, arc.pieces, place_depths * map_.resolution,
-                        map_.bent > 0 ? map_.contact_extent() : 0);
-      if (!is_rounded(geometry_.scene(), map_.resolution)) continue;
-      for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, map_.contact_extent());
+      drop_empty_pieces(geometry_, arc.pieces, place_depths * map_.resolution, extent);
+      for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, extent);
     }
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);
