@@ -33,6 +33,9 @@ struct CommonSupport {
   Ruling ruling() const;
 };
 
+/// Kinks, in radians, between patches that go on into each other but for rounding, are no larger.
+inline constexpr double largest_kink = 1e-5;
+
 /// The parameter that is at the same end of [0, 1] for both of two contacts of one patch, or
 /// CommonSupport::free: they lie on one side.
 int kept_parameter(const Contact& a, const Contact& b);

@@ -26,8 +26,6 @@ constexpr double merging_share = 0.25;
 /// Rates per share of the length, relative to the chord, below which the length falls with the
 /// square of the way: one half, where others are one.
 constexpr double touching_share = 0.6;
-/// Kinks, in radians, between patches that go on into each other but for rounding.
-constexpr double largest_kink = 1e-6;
 /// An arc that is so many times its chord is none that was solved.
 constexpr double longest_arc = 10;
 

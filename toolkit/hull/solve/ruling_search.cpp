@@ -117,7 +117,7 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
       // On a join with a kink, which neither side rises from: there it stays.
       s.contact[i] = clamped(s.contact[i]);
       s.kept[i] = kept_parameter(s.contact[i], s.contact[i]);
-      s.slope_kept = map_.contact_extent();
+      s.slope_kept = largest_kink;
     }
     if (!moved) {
       for (Contact& c : s.contact) c = clamped(c);

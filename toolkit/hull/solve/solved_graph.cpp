@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "taut/bounds/contact_climb.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/solve/arc_ends.h"
@@ -43,11 +44,15 @@ class GraphSolver {
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     drop_arcs();
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
-    const bool rounded = is_rounded(geometry_.scene(), map_.resolution);
+    // A resolution that is asked for does not tell how far places that are one are from each other.
+    const Scene& scene = geometry_.scene();
+    const double coarsest = scene.frame().length_to_frame(coarsest_resolution * scene.diagonal());
+    const double resolution = std::min(map_.resolution, coarsest);
+    const bool rounded = is_rounded(scene, map_.resolution) && map_.resolution <= coarsest;
     const double extent = rounded ? map_.contact_extent() : 0;
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
-      drop_empty_pieces(geometry_, arc.pieces, place_depths * map_.resolution, extent);
+      drop_empty_pieces(geometry_, arc.pieces, place_depths * resolution, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, extent);
     }
     graph_.newton_iterations = system_.iterations();
