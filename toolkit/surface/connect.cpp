@@ -6,6 +6,7 @@
 #include "taut/core/disjoint_sets.h"
 #include "taut/core/error.h"
 #include "taut/core/integers.h"
+#include "taut/core/tolerances.h"
 #include "taut/surface/flatness.h"
 #include "taut/surface/join_smoothness.h"
 #include "taut/surface/model.h"
