@@ -39,8 +39,8 @@ double largest_coordinate(const std::vector<dvec4>& points);
 
 /// Of a patch's points from the segments between the ends, for the same value of the other
 /// parameter, of its lines along this one: its control points are off points that divide these
-/// segments all alike by no more. Infinity if the weights are no products of two factors, up to
-/// ruled_rounding.
+/// segments all alike by no more. By how much weights miss being products of two factors counts as
+/// well; infinity where that is all of one.
 double distance_from_ruled(const BezierPatch& patch, Direction direction);
 
 /// Mean square of the lengths of these segments, over the control points of the sides.

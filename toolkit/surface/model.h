@@ -69,9 +69,10 @@ struct Patch {
   bool ruled_obliquely = false;
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
   /// By how much the patch misses being ruled along u and along v: what the rounding of its control
-  /// points has left of one that was. Zero where it is ruled, infinity where nothing tells so.
+  /// points has left of one that was. Infinity where nothing tells so, as where they were not
+  /// rounded.
   std::array<double, 2> off_ruled = {infinity, infinity};
-  /// Or was before its control points were rounded.
+  /// It is, or was before its control points were rounded.
   bool may_be_ruled() const {
     return ruled() || off_ruled[0] < infinity || off_ruled[1] < infinity;
   }

@@ -173,9 +173,7 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
   }
-  for (ArcPiece& piece : pieces) {
-    tell_along_joins(geometry, piece);
-  }
+  for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
   turn_ends(geometry, pieces);
 }
 
