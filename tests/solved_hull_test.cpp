@@ -104,6 +104,18 @@ TEST(SolvedHull, OfHigherDegreesIsTheSameWhenRounded) {
   }
 }
 
+/// Arcs run along joins of a sphere's patches, which rounding has given kinks: contacts stay there.
+TEST(SolvedHull, OfSpheresIsTheSameWhenRounded) {
+  const Shape spheres = sphere(1) + shifted(sphere(1), {3, 0, 0}) + shifted(sphere(1), {1, 2.5, 0});
+  for (const Variant variant : all_variants) {
+    SCOPED_TRACE(name_of(variant));
+    taut_test::Random random(1);
+    Natural natural;
+    natural.shape = spheres;
+    expect_counts(placed(natural, variant, random).shape, {3, 3, 2});
+  }
+}
+
 /// Rulings go on from one patch to the next, though rounding has turned them.
 TEST(SolvedHull, OfSplitPatchesIsTheSameWhenRounded) {
   for (const Ruled& ruled : ruled_shapes()) {
