@@ -10,6 +10,7 @@
 #include "judge/families.h"
 #include "models.h"
 #include "sound_hull.h"
+#include "taut/bounds/support_query.h"
 #include "taut/hull/precise_hull.h"
 #include "taut/hull/result/region_outline.h"
 #include "taut/io/document/boundary_document.h"
