@@ -185,9 +185,7 @@ double ContactSystem::residual(const CommonSupport& s) const {
     for (std::size_t a = 0; a < std::size_t(j.dimension); ++a) {
       // About a pole tangents are as short as they like, their rounding is not.
       const double length = std::max(glm::length(j.dx[a]), small_tangent);
-      const double slope = std::abs(glm::dot(j.dx[a], s.n)) / length;
-      if (s.kept[i] == int(a) && slope <= s.slope_kept) continue;
-      largest = std::max(largest, slope);
+      largest = std::max(largest, std::abs(glm::dot(j.dx[a], s.n)) / length);
     }
   }
   return largest;

@@ -21,8 +21,6 @@ struct CommonSupport {
   /// direction does not tell how far off it is. It supports all the same, or is no solution.
   std::array<int, capacity> kept = {free, free, free};
   static constexpr int free = -1;
-  /// The slope of x . n across such a side that is none: rounded patches meet with kinks.
-  double slope_kept = 0;
 
   CommonSupport() = default;
   CommonSupport(const ContactGeometry& geometry, const Ruling& ruling);
@@ -32,9 +30,6 @@ struct CommonSupport {
   dvec3 d() const { return jet[0].x - jet[1].x; }
   Ruling ruling() const;
 };
-
-/// Kinks, in radians, between patches that go on into each other but for rounding, are no larger.
-inline constexpr double largest_kink = 1e-5;
 
 /// The parameter that is at the same end of [0, 1] for both of two contacts of one patch, or
 /// CommonSupport::free: they lie on one side.

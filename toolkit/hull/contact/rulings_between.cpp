@@ -190,7 +190,6 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
              kept_parameter(from.contact[1], to.contact[1])}),
       square_(square(to.n - from.n) + square(to.point[0] - from.point[0]) +
               square(to.point[1] - from.point[1])) {
-  slope_kept_ = std::min(largest_kink, 2 * std::max(slope_kept(from), slope_kept(to)));
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
@@ -345,20 +344,18 @@ bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
 }
 
 /// Contacts that lie on sides at both ends stay there; or where they do not support there, they are
-/// free; or, where they would leave their patches by that, on sides that are kinks.
+/// free.
 template <class Equation>
 bool RulingsBetween::solve(MovingRuling& m, const Equation& equation) const {
   const MovingRuling start = m;
-  const auto solved = [&](const std::array<int, CommonSupport::capacity>& kept, double slope) {
+  const auto solved = [&](const std::array<int, CommonSupport::capacity>& kept) {
     m = start;
     m.at.kept = kept;
-    m.at.slope_kept = slope;
     return system_.solve(m.at, equation) && is_near(start, m);
   };
   const auto& all_free = CommonSupport().kept;
-  if (solved(start.at.kept, 0)) return true;
-  if (start.at.kept != all_free && solved(all_free, 0)) return true;
-  if (slope_kept_ > 0 && solved(start.at.kept, slope_kept_)) return true;
+  if (solved(start.at.kept)) return true;
+  if (start.at.kept != all_free && solved(all_free)) return true;
   m = start;
   m.at.kept = all_free;
   return system_.settle(m.at, equation) && is_near(start, m);
@@ -368,17 +365,6 @@ CommonSupport RulingsBetween::support(const Ruling& r) const {
   CommonSupport s(system_.geometry(), r);
   for (std::size_t i = 0; i < 2; ++i) s.kept[i] = kept_[i];
   return s;
-}
-
-/// The larger slope of x . n across the sides that contacts stay on.
-double RulingsBetween::slope_kept(const Ruling& r) const {
-  double largest = 0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (kept_[i] == CommonSupport::free) continue;
-    const dvec3 across = system_.geometry().jet(r.contact[i]).dx[std::size_t(kept_[i])];
-    largest = std::max(largest, std::abs(glm::dot(unit(across), r.n)));
-  }
-  return largest;
 }
 
 /// The rounding of the system's answer, a rounding unit over the cube of the length, is less than

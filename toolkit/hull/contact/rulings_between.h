@@ -108,7 +108,6 @@ class RulingsBetween {
   bool is_near(const MovingRuling& start, const MovingRuling& m) const;
   MovingRuling moving(double r, double sense) const;
   CommonSupport support(const Ruling& r) const;
-  double slope_kept(const Ruling& r) const;
   template <class Equation>
   bool solve(MovingRuling& m, const Equation& equation) const;
 
@@ -116,7 +115,6 @@ class RulingsBetween {
   const Ruling& from_;
   const Ruling& to_;
   std::array<int, 2> kept_;  // of the contacts' parameters (CommonSupport::kept)
-  double slope_kept_ = 0;    // across the sides that contacts stay on
   double square_ = 0;        // of the chord
   double shorter_ = 0;       // of the two rulings' lengths
   bool nearly_merges_ = false;

@@ -170,8 +170,7 @@ Ruling ArcSolver::told_as_last(Ruling to) const {
     if (!own || own->kind == SourceKind::vertex) continue;
     const ContactJet j = geometry_.jet(*own);
     const auto is_level = [&](const dvec3& dx) {
-      const double slope = is_exact ? largest_kink : search_.map().contact_extent();
-      return std::abs(glm::dot(dx, to.n)) <= slope * glm::length(dx);
+      return std::abs(glm::dot(dx, to.n)) <= search_.map().contact_extent() * glm::length(dx);
     };
     if (!std::all_of(j.dx.begin(), j.dx.begin() + j.dimension, is_level)) continue;
     to.contact[i] = *own;

@@ -114,10 +114,7 @@ std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Co
         s.contact[i] = geometry_.first(*there);
         continue;
       }
-      // On a join with a kink, which neither side rises from: there it stays.
-      s.contact[i] = clamped(s.contact[i]);
-      s.kept[i] = kept_parameter(s.contact[i], s.contact[i]);
-      s.slope_kept = largest_kink;
+      return std::nullopt;
     }
     if (!moved) {
       for (Contact& c : s.contact) c = clamped(c);
