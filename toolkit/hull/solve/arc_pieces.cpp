@@ -173,8 +173,8 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
   }
-  for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
   turn_ends(geometry, pieces);
+  for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
 }
 
 void reverse(std::vector<ArcPiece>& pieces) {
