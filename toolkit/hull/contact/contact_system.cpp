@@ -178,10 +178,18 @@ std::optional<double> ContactSystem::step(CommonSupport& s, const LinearEquation
 }
 
 double ContactSystem::residual(const CommonSupport& s) const {
+  double largest = largest_slope(s);
+  for (int i = 1; i < s.count; ++i) {
+    const dvec3 d = s.jet[0].x - s.jet[std::size_t(i)].x;
+    largest = std::max(largest, std::abs(glm::dot(d, s.n)));
+  }
+  return largest;
+}
+
+double ContactSystem::largest_slope(const CommonSupport& s) {
   double largest = 0;
   for (std::size_t i = 0; i < std::size_t(s.count); ++i) {
     const ContactJet& j = s.jet[i];
-    largest = std::max(largest, std::abs(glm::dot(s.jet[0].x - j.x, s.n)));
     for (std::size_t a = 0; a < std::size_t(j.dimension); ++a) {
       // About a pole tangents are as short as they like, their rounding is not.
       const double length = std::max(glm::length(j.dx[a]), small_tangent);
@@ -211,7 +219,7 @@ bool ContactSystem::solve(CommonSupport& s) const {
   return false;
 }
 
-std::optional<CommonSupport> ContactSystem::crossing(CommonSupport s) const {
+std::optional<CommonSupport> ContactSystem::crossing(CommonSupport s, double depth) const {
   double last = infinity;
   for (int k = 0; k < step_limit; ++k) {
     ++iterations_;
@@ -253,8 +261,11 @@ std::optional<CommonSupport> ContactSystem::crossing(CommonSupport s) const {
     s.n = glm::normalize(s.n + dn);
     s.evaluate(geometry_);
     if (length < converged_step || (length < noise_step && length > 0.5 * last)) {
-      if (glm::length(s.d()) < residual_limit && residual(s) < residual_limit) return s;
-      return std::nullopt;
+      const double height = glm::dot(s.d(), s.n);
+      const double off = glm::length(s.d() - height * s.n);
+      const bool touch = std::abs(height) < residual_limit + depth && off < residual_limit &&
+                         largest_slope(s) < residual_limit;
+      return touch ? std::optional(s) : std::nullopt;
     }
     last = length;
   }

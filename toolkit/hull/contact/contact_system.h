@@ -90,8 +90,9 @@ class ContactSystem {
   bool solve(CommonSupport& s) const;
 
   /// The direction near that of `s` in which its two contacts, of different surfaces or curves, are
-  /// one point: Newton's method on x_0 - x_1 as a function of n. None if it does not converge.
-  std::optional<CommonSupport> crossing(CommonSupport s) const;
+  /// one point, or the one is above the other by no more than `depth`: Newton's method on x_0 - x_1
+  /// as a function of n. None if it does not converge.
+  std::optional<CommonSupport> crossing(CommonSupport s, double depth = 0) const;
 
   /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1) or, where n turns
   /// too little to tell, on as `before` does; none where all rates vanish. Where the system is
@@ -136,6 +137,7 @@ class ContactSystem {
   std::optional<double> step(CommonSupport& s, const LinearEquation* extra,
                              Steps steps = Steps::full) const;
   double residual(const CommonSupport& s) const;
+  static double largest_slope(const CommonSupport& s);
 
   const ContactGeometry& geometry_;
   mutable long iterations_ = 0;

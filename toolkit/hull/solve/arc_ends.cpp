@@ -31,8 +31,8 @@ bool is_close(const Ruling& a, const Ruling& b) {
 
 class ArcEndSearch {
  public:
-  explicit ArcEndSearch(const RulingSearch& search)
-      : search_(search), geometry_(search.geometry()) {}
+  ArcEndSearch(const RulingSearch& search, const std::optional<Ruling>& told)
+      : search_(search), geometry_(search.geometry()), told_(told) {}
 
   /// Where they run on different surfaces or curves the system of two contacts is worse by the
   /// square of their distance, not by its third power as merging_distance() has it.
@@ -46,7 +46,7 @@ class ArcEndSearch {
   /// rulings are found all along the last part.
   bool ends(std::vector<ArcPiece>& pieces, bool surely) const {
     const Ruling last = pieces.back().rulings.back();
-    const std::optional<Ruling> end = merged_ruling(search_, last);
+    const std::optional<Ruling> end = told_ ? told_beside(last) : merged_ruling(search_, last);
     if (!end) return false;
     ArcSolver solver(search_, last);
     solver.go_on(*end);
@@ -75,6 +75,17 @@ class ArcEndSearch {
   }
 
  private:
+  /// The end that is told, in the elements of the ruling before it, as far as it lies in these.
+  Ruling told_beside(const Ruling& last) const {
+    Ruling end = *told_;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (const auto own = expressed_in(geometry_, end.contact[i], last.contact[i])) {
+        end.contact[i] = *own;
+      }
+    }
+    return end;
+  }
+
   bool is_found(const ArcPiece& piece) const {
     const std::vector<Ruling>& r = piece.rulings;
     if (r.size() < 2) return true;
@@ -128,6 +139,7 @@ class ArcEndSearch {
 
   const RulingSearch& search_;
   const ContactGeometry& geometry_;
+  const std::optional<Ruling>& told_;
 };
 
 }  // namespace
@@ -140,16 +152,17 @@ void drop_close_to_pole(const ContactGeometry& geometry, const Ruling& end_rulin
   }
 }
 
-void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces) {
-  const ArcEndSearch ends(search);
+void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces,
+           const std::optional<Ruling>& told) {
+  const ArcEndSearch ends(search, told);
   for (;;) {
     const Ruling last = pieces.back().rulings.back();
     if (ends.is_near(last) && ends.ends(pieces, true)) return;
     const std::optional<Ruling> next = ends.shorter(last);
     if (!next && ends.ends(pieces, false)) return;
     ArcSolver solver(search, last);
-    if (next) {
-      solver.go_on(*next);
+    if (next || told) {
+      solver.go_on(next ? *next : *told);
     } else {
       // How deep what is left of the arc lies is told with its pieces.
       solver.end_in_one_contact();

@@ -14,8 +14,9 @@ void drop_close_to_pole(const ContactGeometry& geometry, const Ruling& end_rulin
                         std::vector<Ruling>& known, int end);
 
 /// Leads an arc on from its last ruling to the free end in which its contacts merge: by rulings of
-/// less and less length, also where the map's resolution ends before. Where the end is not told, in
-/// one of the contacts.
-void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces);
+/// less and less length, also where the map's resolution ends before. Where the end is not `told`
+/// before nor found, in one of the contacts.
+void merge(const RulingSearch& search, std::vector<ArcPiece>& pieces,
+           const std::optional<Ruling>& told = std::nullopt);
 
 }  // namespace taut

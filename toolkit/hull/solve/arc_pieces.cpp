@@ -177,14 +177,15 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
   for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
 }
 
+Ruling reversed(const Ruling& r) {
+  return {r.n, {r.contact[1], r.contact[0]}, {r.point[1], r.point[0]}};
+}
+
 void reverse(std::vector<ArcPiece>& pieces) {
   std::reverse(pieces.begin(), pieces.end());
   for (ArcPiece& piece : pieces) {
     std::reverse(piece.rulings.begin(), piece.rulings.end());
-    for (Ruling& r : piece.rulings) {
-      std::swap(r.contact[0], r.contact[1]);
-      std::swap(r.point[0], r.point[1]);
-    }
+    for (Ruling& r : piece.rulings) r = reversed(r);
   }
 }
 

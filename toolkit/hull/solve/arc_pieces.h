@@ -28,6 +28,9 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent);
 /// leaves it along the ruling. Pieces that go on into each other then are one.
 void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
 
+/// With the order of contacts reversed.
+Ruling reversed(const Ruling& r);
+
 /// Reverses the direction, and with it the order of contacts.
 void reverse(std::vector<ArcPiece>& pieces);
 

@@ -7,8 +7,8 @@
 namespace taut {
 
 /// A direction in which separating curves meet: three or more contacts support in it, or all of a
-/// curve, which makes a facet of the hull; or two surfaces or curves touch each other (a crossing:
-/// one contact and point, and a slot for each separating curve that ends there, counter-clockwise).
+/// curve, which makes a facet of the hull; or two surfaces touch each other (a crossing:
+/// one point, with a contact and a slot for each separating curve that ends there).
 struct FacetNode {
   dvec3 n = dvec3(0.0);
   /// Counter-clockwise from outside; with their points in the scene's frame.
@@ -25,8 +25,9 @@ struct FacetNode {
   };
   std::vector<Slot> slots;
 
+  bool is_crossing = false;
+
   bool is_curved(std::size_t side) const { return !sides.empty() && sides[side].piece >= 0; }
-  bool is_crossing() const { return points.size() == 1 && sides.empty(); }
 };
 
 /// The separating curves of a scene's support function on the sphere of directions: a planar graph

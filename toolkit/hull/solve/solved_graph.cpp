@@ -11,6 +11,7 @@
 #include "taut/hull/solve/arc_ends.h"
 #include "taut/hull/solve/arc_pieces.h"
 #include "taut/hull/solve/arc_solver.h"
+#include "taut/hull/solve/crossings.h"
 #include "taut/hull/solve/edge_places.h"
 #include "taut/hull/solve/facet_corners.h"
 #include "taut/hull/solve/known_arcs.h"
@@ -54,6 +55,7 @@ class GraphSolver {
       tell_vertices(geometry_, arc.pieces);
       drop_empty_pieces(geometry_, arc.pieces, place_depths * resolution, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, extent);
+      join_in_crossings(arc);
     }
     graph_.newton_iterations = system_.iterations();
     return std::move(graph_);
@@ -62,6 +64,7 @@ class GraphSolver {
  private:
   static KnownArcs with_ears_cut(const RulingSearch& search, const Progress& progress) {
     KnownArcs known = known_arcs(search, progress);
+    join_crossings(search, known);
     cut_ears(search, known);
     return known;
   }
@@ -75,7 +78,13 @@ class GraphSolver {
 
   /// A node of the map is a facet, or a free end.
   void add(const MapGraph::Node& node) {
-    std::optional<FacetNode> facet = with_curved_sides(node);
+    std::optional<FacetNode> facet = crossing_of(search_, known_, node);
+    if (facet) {
+      number_.push_back(int(graph_.nodes.size()));
+      graph_.nodes.push_back(std::move(*facet));
+      return;
+    }
+    facet = with_curved_sides(node);
     if (!facet && node.ends.size() > 2) facet = of_corners(node);
     if (!facet) {
       number_.push_back(-1);
@@ -266,13 +275,16 @@ class GraphSolver {
     SeparatingArc arc;
     arc.closed = told.is_closed();
     std::array<bool, 2> merges = {false, false};
+    std::array<std::optional<Ruling>, 2> plugs;
     for (const int end : {0, 1}) {
       if (arc.closed) break;
       arc.facet[std::size_t(end)] = number_[std::size_t(told.node[std::size_t(end)])];
       if (arc.facet[std::size_t(end)] >= 0) drop_beyond_node(known, end);
       const Ruling& next = end == 0 ? known.front() : known.back();
-      const std::optional<Ruling> r = plug(int(k), end, next);
-      merges[std::size_t(end)] = !r;
+      std::optional<Ruling> r = plug(int(k), end, next);
+      const bool crosses = r && graph_.nodes[std::size_t(arc.facet[std::size_t(end)])].is_crossing;
+      merges[std::size_t(end)] = !r || crosses;
+      if (crosses) plugs[std::size_t(end)] = std::exchange(r, std::nullopt);
       if (r) drop_close_to_pole(geometry_, *r, known, end);
       if (r) known.insert(end == 0 ? known.begin() : known.end(), *r);
     }
@@ -282,8 +294,10 @@ class GraphSolver {
     arc.pieces = solver.take();
     for (const int end : {1, 0}) {
       if (!merges[std::size_t(end)]) continue;
+      std::optional<Ruling>& told = plugs[std::size_t(end)];
+      if (told && end == 0) *told = reversed(*told);
       if (end == 0) reverse(arc.pieces);
-      merge(search_, arc.pieces);
+      merge(search_, arc.pieces, told);
       if (end == 0) reverse(arc.pieces);
     }
     if (arc.closed && arc.pieces.size() > 1 &&
@@ -294,6 +308,16 @@ class GraphSolver {
       append(arc.pieces, std::move(first));
     }
     graph_.arcs.push_back(std::move(arc));
+  }
+
+  /// In a crossing both contacts are in one place, to within the resolution.
+  void join_in_crossings(SeparatingArc& arc) const {
+    for (const int end : {0, 1}) {
+      const int facet = arc.facet[std::size_t(end)];
+      if (facet < 0 || !graph_.nodes[std::size_t(facet)].is_crossing) continue;
+      Ruling& r = end == 0 ? arc.pieces.front().rulings.front() : arc.pieces.back().rulings.back();
+      r.point.fill(graph_.nodes[std::size_t(facet)].points.front());
+    }
   }
 
   /// Leaves out arcs that lead back.

@@ -153,7 +153,7 @@ void Stitcher::make_scrolls() {
 
 void Stitcher::make_facets() {
   for (const FacetNode& node : graph_.nodes) {
-    if (node.is_crossing()) {
+    if (node.is_crossing) {
       facet_of_.push_back(-1);
       continue;
     }

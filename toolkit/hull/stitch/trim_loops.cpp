@@ -18,7 +18,9 @@ struct TrimArc {
   TrimStretch stretch;
   dvec2 from = dvec2(0.0);
   dvec2 to = dvec2(0.0);
-  dvec3 n = dvec3(0.0);  ///< where the trim arc begins
+  dvec2 after = dvec2(0.0);   ///< next to where it begins
+  dvec2 before = dvec2(0.0);  ///< next to where it ends
+  dvec3 n = dvec3(0.0);       ///< where the trim arc begins
   int patch = -1;        ///< number of the oriented patch that it lies on
   int next = -1;         ///< trim arc of the same oriented patch that it runs into; -1: the border
 };
@@ -27,11 +29,13 @@ struct TrimArc {
 struct OrientedPatch {
   int instance, patch, sign;
   std::vector<int> trim_arcs;
-  /// Where trim arcs meet the border, by position around it.
+  /// Where trim arcs meet the border, by position around it; with the way on which they leave it,
+  /// or come to it, in the parameters.
   struct Meeting {
     double position;
     int trim_arc;
     bool arrives;
+    dvec2 inward;
   };
   std::vector<Meeting> meetings;
 };
@@ -56,6 +60,15 @@ void join_places(std::vector<OrientedPatch::Meeting>& meetings) {
     const double before = meetings[k - 1].position;
     if (meetings[k].position - before < same_border_parameter) meetings[k].position = before;
   }
+}
+
+/// The angle of a way into the unit square with the way along the border from a position on, walked
+/// counter-clockwise (sense 1) or clockwise (-1).
+double angle_at(double position, double sense, const dvec2& inward) {
+  constexpr std::array<dvec2, 4> along = {dvec2(1, 0), dvec2(0, 1), dvec2(-1, 0), dvec2(0, -1)};
+  const double side = sense > 0 ? std::floor(position) : std::ceil(position) - 1;
+  const dvec2 way = sense * along[std::size_t(side + 4) % 4];
+  return std::atan2(sense * (way.x * inward.y - way.y * inward.x), glm::dot(way, inward));
 }
 
 constexpr std::array<Side, 4> sides_around = {Side::v0, Side::u1, Side::v1, Side::u0};
@@ -139,6 +152,9 @@ void Trimmer::add_trim_arcs(const HalfArc& half) {
     trim_arc.from = parameters(first.contact[i]);
     trim_arc.to = parameters(last.contact[i]);
     trim_arc.n = first.n;
+    const std::size_t last_but_one = rulings.size() < 2 ? 0 : rulings.size() - 2;
+    trim_arc.after = parameters(rulings[backward ? last_but_one : 1 % rulings.size()].contact[i]);
+    trim_arc.before = parameters(rulings[backward ? 1 % rulings.size() : last_but_one].contact[i]);
     const Ruling& middle = rulings[rulings.size() / 2];
     Contact inside = middle.contact[i];
     if (rulings.size() == 2) {
@@ -157,7 +173,8 @@ void Trimmer::meet(int trim_arc, bool arrives) {
   const dvec2& p = arrives ? s.to : s.from;
   const double off = std::min({p.x, 1 - p.x, p.y, 1 - p.y});
   if (off > same_border_parameter) fail(s.n, "a trim curve ends inside a patch");
-  patches_[std::size_t(s.patch)].meetings.push_back({position(p), trim_arc, arrives});
+  patches_[std::size_t(s.patch)].meetings.push_back(
+      {position(p), trim_arc, arrives, (arrives ? s.before : s.after) - p});
 }
 
 /// Lets each trim arc run into the next, or into the border.
@@ -222,8 +239,12 @@ void Trimmer::trim(OrientedPatch& oriented) {
   auto& meetings = oriented.meetings;
   join_places(meetings);
   const double sense = oriented.sign;
+  // In one place those come first between which and the border before it a region may lie.
   std::sort(meetings.begin(), meetings.end(), [&](const auto& a, const auto& b) {
-    return a.position != b.position ? sense * a.position < sense * b.position
+    if (a.position != b.position) return sense * a.position < sense * b.position;
+    const double angle = angle_at(a.position, sense, a.inward);
+    const double other = angle_at(b.position, sense, b.inward);
+    return angle != other         ? angle > other
            : a.arrives != b.arrives ? a.arrives
                                     : a.trim_arc < b.trim_arc;
   });

@@ -73,7 +73,7 @@ class WholePatches {
   /// side that n tells.
   bool is_in_facet(const Sided& s, const dvec3& n) const {
     return std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const FacetNode& node) {
-      if (node.is_crossing() || glm::dot(node.n, n) <= 0) return false;
+      if (node.is_crossing || glm::dot(node.n, n) <= 0) return false;
       const double least = glm::dot(node.points.front(), node.n) - geometry_.tie() - depth_;
       if (glm::dot(geometry_.point(s.middle), node.n) < least) return false;
       const std::vector<dvec4> points = geometry_.placed(s.middle).points;
