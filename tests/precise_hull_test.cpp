@@ -104,6 +104,7 @@ const std::vector<ExactCase>& exact_cases() {
       {"perpendicular circles", {0, 4, 0, 4}, 4},
       {"tori like an oloid", {2, 1, 0, 2}},
       {"tori about one centre", {4, 4, 0, 8}},
+      {"tori about one centre, one turned", {4, 4, 0, 8}},
       {"three spheres", {3, 3, 2, 12}, 0, 6},
       {"four spheres", {4, 6, 4, 24}, 0, 12},
       {"eight spheres", {8, 12, 6, 48}, 0, 24},

@@ -11,9 +11,11 @@
 #include "models.h"
 #include "sound_hull.h"
 #include "taut/bounds/support_query.h"
+#include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/precise_hull.h"
 #include "taut/hull/result/region_outline.h"
 #include "taut/io/document/boundary_document.h"
+#include "truths.h"
 
 namespace taut {
 namespace {
@@ -105,6 +107,33 @@ TEST(SolvedHull, OfHigherDegreesIsTheSameWhenRounded) {
     }
   }
 }
+
+/// Whatever rounding does to a truth, its boundary is closed and as near as it says.
+class RoundedTruths : public testing::TestWithParam<Truth> {};
+
+TEST_P(RoundedTruths, AreClosedAndNear) {
+  const Truth& truth = GetParam();
+  for (const bool elevated : {false, true}) {
+    for (const Variant variant : {Variant::float32, Variant::decimals}) {
+      SCOPED_TRACE(std::string(elevated ? "elevated " : "") + name_of(variant));
+      taut_test::Random random(1);
+      Natural natural;
+      natural.shape = elevated ? with_higher_degrees(truth.shape) : truth.shape;
+      const Scene scene = make_scene(placed(natural, variant, random).shape);
+      const Hull hull = solved_hull_of(scene);
+      ASSERT_TRUE(hull.boundary);
+      EXPECT_TRUE(hull.boundary->unresolved.empty());
+      const double rho = hull.resolution.rho;
+      EXPECT_LE(deepest_tolerant(*hull.boundary), scene.frame().length_to_frame(rho));
+      const BoundaryMeasures measured = measure(scene, ContactGeometry(scene), *hull.boundary);
+      EXPECT_NEAR(double(measured.volume), double(truth.volume),
+                  rho * measured.area + double(truth.uncertainty));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SolvedHull, RoundedTruths, testing::ValuesIn(truths()),
+                         [](const auto& info) { return test_name(info.param); });
 
 /// Arcs run along joins of a sphere's patches, which rounding has given kinks: contacts stay there.
 TEST(SolvedHull, OfSpheresIsTheSameWhenRounded) {

@@ -224,10 +224,10 @@ TEST(HalfArcs, AtCrossings) {
   SeparatingGraph graph;
   graph.arcs.resize(4);
   FacetNode node;
-  node.contacts.resize(1);
-  node.points.resize(1);
+  node.contacts.resize(4);
+  node.points.resize(4);
+  node.is_crossing = true;
   node.slots = {{0, 0}, {1, 1}, {2, 0}, {3, 1}};
-  EXPECT_TRUE(node.is_crossing());
   graph.nodes = {node};
   for (const int k : {0, 2}) graph.arcs[std::size_t(k)].facet = {0, -1};
   for (const int k : {1, 3}) graph.arcs[std::size_t(k)].facet = {-1, 0};

@@ -1,5 +1,6 @@
 #include "truths.h"
 
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -135,6 +136,12 @@ dmat3 quarter_turn() { return {1, 0, 0, 0, 0, -1, 0, 1, 0}; }
 
 }  // namespace
 
+std::string test_name(const Truth& truth) {
+  std::string name;
+  for (const char c : truth.name) name += std::isalnum(c) != 0 ? c : '_';
+  return name;
+}
+
 std::vector<Truth> truths() {
   std::vector<Truth> all;
   const auto add = [&](const std::string& name, const Shape& shape, const Body& body,
@@ -152,6 +159,11 @@ std::vector<Truth> truths() {
   const Shape ring = torus(1, 0.25);
   add("tori like an oloid", ring + mapped(ring, quarter_turn(), {1, 0, 0}), of_oloid().grown(0.25));
   add("tori about one centre", ring + mapped(ring, quarter_turn()),
+      of_perpendicular_circles().grown(0.25));
+  // They touch inside patches of one of them, or of both.
+  const dmat3 about_itself = {0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1};
+  const Shape turned = mapped(ring, about_itself);
+  add("tori about one centre, one turned", ring + mapped(turned, quarter_turn()),
       of_perpendicular_circles().grown(0.25));
   const double root3 = std::sqrt(3.0);
   add("three spheres", spheres(0.5, {{0, 0, 0}, {2, 0, 0}, {1, root3, 0}}),

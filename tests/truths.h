@@ -25,6 +25,9 @@ struct Truth {
 /// For messages of GoogleTest.
 inline void PrintTo(const Truth& truth, std::ostream* stream) { *stream << truth.name; }
 
+/// Of letters and digits, for names of GoogleTest.
+std::string test_name(const Truth& truth);
+
 /// All of them, with their closed forms evaluated in `real`.
 std::vector<Truth> truths();
 

@@ -173,13 +173,8 @@ TEST_P(Truths, CopiesAndWhatLiesInsideChangeNothing) {
   expect_as_good(expect_true(filled, truth, 1e-3), alone, truth);
 }
 
-std::string test_name(const testing::TestParamInfo<Truth>& info) {
-  std::string name;
-  for (const char c : info.param.name) name += std::isalnum(c) != 0 ? c : '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Hulls, Truths, testing::ValuesIn(truths()), test_name);
+INSTANTIATE_TEST_SUITE_P(Hulls, Truths, testing::ValuesIn(truths()),
+                         [](const auto& info) { return test_name(info.param); });
 
 TEST(TruthsOfNeedles, SampledHullsConverge) {
   const real a = 1e6L;

@@ -152,13 +152,8 @@ TEST_P(VerifyTruths, TurnedPass) {
   expect_written_hull_passes(mapped(GetParam().shape, skew_rotation(), {0.1, -0.2, 0.3}));
 }
 
-std::string test_name(const testing::TestParamInfo<Truth>& info) {
-  std::string name;
-  for (const char c : info.param.name) name += std::isalnum(c) != 0 ? c : '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Hulls, VerifyTruths, testing::ValuesIn(truths()), test_name);
+INSTANTIATE_TEST_SUITE_P(Hulls, VerifyTruths, testing::ValuesIn(truths()),
+                         [](const auto& info) { return test_name(info.param); });
 
 /// A quarter of a cylinder of radius 1 and height 2.
 TEST(VerifyHull, DistancesFromSurfaces) {

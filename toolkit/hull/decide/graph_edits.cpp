@@ -75,12 +75,12 @@ class GraphEdit {
     return pairs;
   }
 
-  void join_arcs_that_pass() {
+  void join_arcs_that_pass(const IsCrossing& is_crossing) {
     std::map<std::pair<int, int>, MapGraph::End> on;
     std::set<int> passed;
     for (std::size_t k = 0; k < graph_.nodes.size(); ++k) {
       const MapGraph::Node& node = graph_.nodes[k];
-      if (node.is_facet) continue;
+      if (node.is_facet || (may_be_crossing(node) && is_crossing(node))) continue;
       const auto pairs = pairs_that_pass(node);
       if (pairs.size() * 2 < node.ends.size()) continue;
       passed.insert(int(k));
@@ -93,6 +93,14 @@ class GraphEdit {
   }
 
  private:
+  bool may_be_crossing(const MapGraph::Node& node) const {
+    const std::vector<MapGraph::End>& ends = node.ends;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (!go_on(ends[i], ends[(i + 1) % ends.size()])) return false;
+    }
+    return ends.size() > 2;
+  }
+
   /// Between the same contacts: what is to the right of the way out along the one is to the left of
   /// that along the other.
   bool go_on(const MapGraph::End& a, const MapGraph::End& b) const {
@@ -185,23 +193,78 @@ class GraphEdit {
   const DirectionMap& map_;
 };
 
+/// The parts of an arc between what is none of it, in order: no part where it is all its own. Of an
+/// open one its first and its last crossing are.
+std::vector<std::vector<MapCrossing>> parts_of(
+    const MapGraph::Arc& arc, const std::function<bool(const MapCrossing&)>& is_none) {
+  std::vector<MapCrossing> all = arc.crossings;
+  std::vector<bool> none(all.size(), false);
+  std::transform(all.begin(), all.end(), none.begin(), is_none);
+  if (!arc.is_closed()) none.front() = none.back() = false;
+  if (std::count(none.begin(), none.end(), true) == 0) return {};
+  if (arc.is_closed()) {
+    // From behind what is none of it on.
+    const auto first = std::find(none.begin(), none.end(), true) - none.begin();
+    std::rotate(none.begin(), none.begin() + first, none.end());
+    std::rotate(all.begin(), all.begin() + first, all.end());
+  }
+  std::vector<std::vector<MapCrossing>> parts;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (none[k]) continue;
+    if (k == 0 || none[k - 1]) parts.emplace_back();
+    parts.back().push_back(all[k]);
+  }
+  return parts;
+}
+
 }  // namespace
 
-void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs) {
+void cut_arcs(MapGraph& graph, const std::function<bool(const MapCrossing&)>& is_none) {
+  const auto node_at = [&](int arc, int end) {
+    MapGraph::Node node;
+    node.ends = {{arc, end}};
+    graph.nodes.push_back(std::move(node));
+    return int(graph.nodes.size()) - 1;
+  };
+  for (int k = 0, count = int(graph.arcs.size()); k < count; ++k) {
+    const bool closed = graph.arcs[std::size_t(k)].is_closed();
+    std::vector<std::vector<MapCrossing>> parts = parts_of(graph.arcs[std::size_t(k)], is_none);
+    const std::array<int, 2> node = graph.arcs[std::size_t(k)].node;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const int own = p == 0 ? k : int(graph.arcs.size());
+      if (p > 0) graph.arcs.emplace_back();
+      MapGraph::Arc part;
+      part.crossings = std::move(parts[p]);
+      part.node[0] = p == 0 && !closed ? node[0] : node_at(own, 0);
+      const bool ends = p + 1 == parts.size() && !closed;
+      part.node[1] = ends ? node[1] : node_at(own, 1);
+      if (ends) {
+        for (MapGraph::End& e : graph.nodes[std::size_t(node[1])].ends) {
+          if (e.arc == k && e.end == 1) e.arc = own;
+        }
+      }
+      graph.arcs[std::size_t(own)] = std::move(part);
+    }
+  }
+}
+
+void remove_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs,
+                 const IsCrossing& is_crossing) {
   GraphEdit edit(graph, map);
   if (!arcs.empty()) edit.drop(arcs);
-  edit.join_arcs_that_pass();
+  edit.join_arcs_that_pass(is_crossing);
 }
 
 bool arcs_pass(MapGraph& graph, const DirectionMap& map, const MapGraph::Node& node) {
   return GraphEdit(graph, map).pairs_that_pass(node).size() * 2 == node.ends.size();
 }
 
-void contract_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs) {
+void contract_arcs(MapGraph& graph, const DirectionMap& map, const std::set<int>& arcs,
+                   const IsCrossing& is_crossing) {
   GraphEdit edit(graph, map);
   for (const int k : arcs) edit.contract(k);
   edit.drop(arcs);
-  edit.join_arcs_that_pass();
+  edit.join_arcs_that_pass(is_crossing);
 }
 
 }  // namespace taut

@@ -54,7 +54,7 @@ class Weaving {
     join_facets();
     make_nodes();
     make_arcs();
-    remove_arcs(graph_, map_, arcs_within_nodes());
+    remove_arcs(graph_, map_, arcs_within_nodes(), [](const auto&) { return true; });
     return std::move(graph_);
   }
 

@@ -18,16 +18,21 @@ namespace {
 constexpr int most_moves = 4;
 /// How much farther away the point may be than the contacts beside it are from each other.
 constexpr double farthest_crossing = 32;
-/// Contacts are on a border where rounding moves them off it.
+/// Contacts are on a border where rounding moves them off it by no more.
 constexpr double on_border = 1e-9;
+
+double border_reach(const RulingSearch& search) {
+  const bool rounded = is_rounded(search.geometry().scene(), search.map().resolution);
+  return rounded ? search.map().contact_extent() : on_border;
+}
 
 /// Where the two surfaces of a ruling touch, next to it: no farther off each other than the
 /// resolution.
-std::optional<Ruling> touching_beside(const RulingSearch& search, const Ruling& beside) {
+std::optional<Ruling> touching_next_to(const RulingSearch& search, const Ruling& beside) {
   const ContactGeometry& geometry = search.geometry();
   const double length = glm::distance(beside.point[0], beside.point[1]);
-  const bool on_face = beside.contact[0].kind == SourceKind::face ||
-                       beside.contact[1].kind == SourceKind::face;
+  const bool on_face =
+      beside.contact[0].kind == SourceKind::face || beside.contact[1].kind == SourceKind::face;
   if (!on_face || length > merging_distance(geometry) ||
       continues(geometry, beside.contact[0], beside.contact[1])) {
     return std::nullopt;
@@ -41,7 +46,7 @@ std::optional<Ruling> touching_beside(const RulingSearch& search, const Ruling& 
     for (const std::size_t i : {0u, 1u}) {
       Contact& c = at.contact[i];
       const Contact inside = clamped(c);
-      if (glm::distance(geometry.point(inside), geometry.point(c)) <= same_contact) {
+      if (glm::distance(geometry.point(inside), geometry.point(c)) <= border_reach(search)) {
         c = inside;
         continue;
       }
@@ -67,19 +72,12 @@ bool are_one(const Ruling& a, const Ruling& b, double extent) {
   return glm::distance(a.n, b.n) <= extent && glm::distance(a.point[0], b.point[0]) <= extent;
 }
 
-/// Where the surfaces between which arcs end in a node touch; none if not all of them end in one
-/// such point.
 std::vector<Ruling> touching_in(const RulingSearch& search, const KnownArcs& known,
                                 const MapGraph::Node& node) {
-  std::vector<Ruling> found;
-  if (node.is_facet) return found;
-  for (const MapGraph::End& end : node.ends) {
-    const std::optional<Ruling> own = touching_beside(search, known.ruling_at(end));
-    if (!own || (!found.empty() && !are_one(found[0], *own, search.map().contact_extent())))
-      return {};
-    found.push_back(*own);
-  }
-  return found;
+  if (node.is_facet) return {};
+  std::vector<Ruling> beside;
+  for (const MapGraph::End& end : node.ends) beside.push_back(known.ruling_at(end));
+  return touching_beside(search, beside);
 }
 
 /// Counter-clockwise from outside, as arcs leave.
@@ -94,6 +92,18 @@ void sort_about(const dvec3& n, const KnownArcs& known, std::vector<MapGraph::En
 }
 
 }  // namespace
+
+std::vector<Ruling> touching_beside(const RulingSearch& search, const std::vector<Ruling>& beside) {
+  std::vector<Ruling> found;
+  for (const Ruling& r : beside) {
+    const std::optional<Ruling> own = touching_next_to(search, r);
+    if (!own || (!found.empty() && !are_one(found[0], *own, search.map().contact_extent()))) {
+      return {};
+    }
+    found.push_back(*own);
+  }
+  return found;
+}
 
 void join_crossings(const RulingSearch& search, KnownArcs& known) {
   const double extent = search.map().contact_extent();
@@ -136,13 +146,12 @@ std::optional<FacetNode> crossing_of(const RulingSearch& search, const KnownArcs
   const ContactGeometry& geometry = search.geometry();
   const std::vector<Ruling> found = touching_in(search, known, node);
   if (found.empty()) return std::nullopt;
-  const bool rounded = is_rounded(geometry.scene(), search.map().resolution);
-  const double reach = rounded ? search.map().contact_extent() : on_border;
   FacetNode crossing;
   crossing.is_crossing = true;
   crossing.n = found[0].n;
   for (std::size_t k = 0; k < found.size(); ++k) {
-    Contact own = moved_to_border(geometry, found[k].contact[node.ends[k].end == 0 ? 0 : 1], reach);
+    Contact own = moved_to_border(geometry, found[k].contact[node.ends[k].end == 0 ? 0 : 1],
+                                  border_reach(search));
     // One place for all that are of one surface.
     for (const Contact& before : crossing.contacts) {
       if (const auto there = expressed_in(geometry, before, own)) own = *there;

@@ -10,6 +10,7 @@
 #include "taut/hull/decide/cell_contacts.h"
 #include "taut/hull/decide/graph_edits.h"
 #include "taut/hull/decide/top_parts.h"
+#include "taut/hull/solve/crossings.h"
 #include "taut/hull/solve/level_pieces.h"
 
 namespace taut {
@@ -36,8 +37,11 @@ class ArcFinder {
   KnownArcs run() {
     known_.graph = map_graph(search_.map(), search_.query());
     pass_narrow_facets();
+    cut_arcs(known_.graph, [&](const MapCrossing& c) { return is_in_crossing(ruling_at(c)); });
     find_rulings();
     while (drop_shallow_arcs() || contract_short_arcs()) find_rulings();
+    join_crossings(search_, known_);
+    if (drop_arcs_in_crossings()) find_rulings();
     return std::move(known_);
   }
 
@@ -46,16 +50,35 @@ class ArcFinder {
   /// that is curved at least: else cells are so small that the contacts along the arcs, or between
   /// two of them that are as near to each other, are in one plane there.
   void pass_narrow_facets() {
-    bool passed = false;
     for (MapGraph::Node& node : known_.graph.nodes) {
       if (!node.is_facet || node.ends.empty() || has_curved_side(node) ||
           !arcs_pass(known_.graph, search_.map(), node)) {
         continue;
       }
       node.is_facet = false;
-      passed = true;
     }
-    if (passed) remove_arcs(known_.graph, search_.map(), {});
+    remove({});
+  }
+
+  void remove(const std::set<int>& arcs) {
+    remove_arcs(known_.graph, search_.map(), arcs,
+                [&](const MapGraph::Node& node) { return is_crossing(node); });
+  }
+
+  /// Its contacts touch each other where the model is no farther below.
+  bool is_in_crossing(const Ruling& r) const {
+    const std::vector<Ruling> found = touching_beside(search_, {r});
+    return !found.empty() && glm::dot(r.point[0] - found[0].point[0], r.n) <=
+                                 one_node_depths * search_.map().resolution;
+  }
+
+  bool is_crossing(const MapGraph::Node& node) {
+    std::vector<Ruling> beside;
+    for (const MapGraph::End& end : node.ends) {
+      const MapGraph::Arc& arc = known_.graph.arcs[std::size_t(end.arc)];
+      beside.push_back(ruling_at(end.end == 0 ? arc.crossings.front() : arc.crossings.back()));
+    }
+    return !touching_beside(search_, beside).empty();
   }
 
   bool has_curved_side(const MapGraph::Node& node) const {
@@ -125,6 +148,19 @@ class ArcFinder {
     return found->second;
   }
 
+  /// Those that lead from a crossing back to it and stay beside it. False if there are none.
+  bool drop_arcs_in_crossings() {
+    std::set<int> found;
+    for (int k = 0; k < int(known_.graph.arcs.size()); ++k) {
+      const MapGraph::Arc& arc = known_.graph.arcs[std::size_t(k)];
+      const std::vector<Ruling>& rulings = known_.rulings[std::size_t(k)];
+      const bool leads_back = !arc.is_closed() && arc.node[0] == arc.node[1];
+      if (leads_back && !touching_beside(search_, rulings).empty()) found.insert(k);
+    }
+    if (!found.empty()) remove(found);
+    return !found.empty();
+  }
+
   /// False if there are none.
   bool drop_shallow_arcs() {
     std::set<int> shallow;
@@ -137,7 +173,7 @@ class ArcFinder {
       });
       if (ends_freely && is_shallow(known_.rulings[std::size_t(k)])) shallow.insert(k);
     }
-    if (!shallow.empty()) remove_arcs(known_.graph, search_.map(), shallow);
+    if (!shallow.empty()) remove(shallow);
     return !shallow.empty();
   }
 
@@ -150,7 +186,9 @@ class ArcFinder {
       if (arc.is_closed() || !is_short(known_.rulings[std::size_t(k)])) continue;
       if (arc.node[0] == arc.node[1] || ends_are_one(k)) found.insert(k);
     }
-    if (!found.empty()) contract_arcs(known_.graph, search_.map(), found);
+    if (found.empty()) return false;
+    contract_arcs(known_.graph, search_.map(), found,
+                  [&](const MapGraph::Node& node) { return is_crossing(node); });
     return !found.empty();
   }
 

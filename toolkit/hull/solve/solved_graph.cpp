@@ -64,7 +64,6 @@ class GraphSolver {
  private:
   static KnownArcs with_ears_cut(const RulingSearch& search, const Progress& progress) {
     KnownArcs known = known_arcs(search, progress);
-    join_crossings(search, known);
     cut_ears(search, known);
     return known;
   }

@@ -21,8 +21,8 @@ struct TrimArc {
   dvec2 after = dvec2(0.0);   ///< next to where it begins
   dvec2 before = dvec2(0.0);  ///< next to where it ends
   dvec3 n = dvec3(0.0);       ///< where the trim arc begins
-  int patch = -1;        ///< number of the oriented patch that it lies on
-  int next = -1;         ///< trim arc of the same oriented patch that it runs into; -1: the border
+  int patch = -1;             ///< number of the oriented patch that it lies on
+  int next = -1;  ///< trim arc of the same oriented patch that it runs into; -1: the border
 };
 
 /// One side of a Bezier patch, by the sign of its normal.
@@ -244,7 +244,7 @@ void Trimmer::trim(OrientedPatch& oriented) {
     if (a.position != b.position) return sense * a.position < sense * b.position;
     const double angle = angle_at(a.position, sense, a.inward);
     const double other = angle_at(b.position, sense, b.inward);
-    return angle != other         ? angle > other
+    return angle != other           ? angle > other
            : a.arrives != b.arrives ? a.arrives
                                     : a.trim_arc < b.trim_arc;
   });
