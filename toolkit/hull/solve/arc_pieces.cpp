@@ -5,6 +5,7 @@
 
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
@@ -75,9 +76,10 @@ void set_contact(const ContactGeometry& geometry, Ruling& ruling, std::size_t i,
 }
 
 /// Puts contacts on borders to which they are so near that they cross them there.
-void move_to_borders(const ContactGeometry& geometry, Ruling& ruling) {
+void move_to_borders(const ContactGeometry& geometry, Ruling& ruling, double distance) {
+  distance = std::max(distance, reach(geometry, ruling));
   for (std::size_t i = 0; i < 2; ++i) {
-    const Contact c = snapped(geometry, ruling.contact[i], reach(geometry, ruling));
+    const Contact c = snapped(geometry, ruling.contact[i], distance);
     if (const auto own = in_element(geometry, c, ruling.contact[i])) {
       set_contact(geometry, ruling, i, *own);
     }
@@ -98,35 +100,69 @@ void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   }
 }
 
-/// The smooth join along which all of the piece's contacts i run.
-std::optional<Side> join_along(const ContactGeometry& geometry, const ArcPiece& piece,
-                               std::size_t i) {
+/// Pieces that go on into each other in the same elements are one.
+void join_pieces(std::vector<ArcPiece>& pieces) {
+  std::vector<ArcPiece> joined;
+  for (ArcPiece& piece : pieces) {
+    std::vector<ArcPiece> own;
+    own.push_back(std::move(piece));
+    append(joined, std::move(own));
+  }
+  pieces = std::move(joined);
+}
+
+/// The smooth join along which all of the piece's contacts i run: on it, or no farther than
+/// `extent` from it where heights tie.
+std::optional<ContactExit> join_along(const ContactGeometry& geometry, const ArcPiece& piece,
+                                      std::size_t i, double extent) {
   const Contact& any = piece.rulings.front().contact[i];
   if (any.kind != SourceKind::face) return std::nullopt;
   for (const Side side : all_sides) {
     if (geometry.patch(any).borders[std::size_t(side)].kind != BorderKind::smooth) continue;
+    const ContactExit exit{ContactExit::Kind::side, int(side)};
     const bool along = std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
-      const Contact& c = r.contact[i];
-      return (along_v(side) ? c.u : c.v) == (at_upper_end(side) ? 1 : 0);
+      if (stands_at(r.contact[i], exit)) return true;
+      const dvec3 off = geometry.point(at_exit(r.contact[i], exit)) - r.point[i];
+      return glm::length(off) <= extent && glm::dot(off, r.n) >= -geometry.tie();
     });
-    if (along) return side;
+    if (along) return exit;
   }
   return std::nullopt;
 }
 
+/// Most of the piece's rulings tell so; about poles they do not tell.
+bool extends_over(const ContactGeometry& geometry, const ArcPiece& piece, std::size_t i,
+                  const ContactExit& exit) {
+  int votes = 0;
+  for (const Ruling& r : piece.rulings) {
+    if (collapsed_side(geometry, r.contact[i])) continue;
+    votes += extends_over(geometry, CommonSupport(geometry, r), int(i), exit) ? 1 : -1;
+  }
+  return votes > 0;
+}
+
 /// A contact that has come to run along a smooth join is told as one of the patch into which its
 /// region extends.
-void tell_along_joins(const ContactGeometry& geometry, ArcPiece& piece) {
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<Side> side = join_along(geometry, piece, i);
-    if (!side) continue;
-    const ContactExit exit{ContactExit::Kind::side, int(*side)};
-    const Ruling& middle = piece.rulings[piece.rulings.size() / 2];
-    if (!extends_over(geometry, CommonSupport(geometry, middle), int(i), exit)) continue;
-    for (Ruling& r : piece.rulings) {
-      if (const auto over = beyond(geometry, r.contact[i], exit)) r.contact[i] = *over;
+void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+                      double extent) {
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    ArcPiece& piece = pieces[k];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::optional<ContactExit> exit = join_along(geometry, piece, i, extent);
+      if (!exit) continue;
+      for (Ruling& r : piece.rulings) set_contact(geometry, r, i, at_exit(r.contact[i], *exit));
+      if (extends_over(geometry, piece, i, *exit)) {
+        for (Ruling& r : piece.rulings) {
+          if (const auto over = beyond(geometry, r.contact[i], *exit)) r.contact[i] = *over;
+        }
+      }
+      if (k > 0) set_places(geometry, pieces[k - 1].rulings.back(), piece.rulings.front());
+      if (k + 1 < pieces.size()) {
+        set_places(geometry, pieces[k + 1].rulings.front(), piece.rulings.back());
+      }
     }
   }
+  join_pieces(pieces);
 }
 
 /// Rounding may make any shorter piece of nothing.
@@ -166,15 +202,15 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
         // One contact crosses its border here, the other one in the piece's other end.
         Ruling& before = pieces[k - 1].rulings.back();
         Ruling& after = pieces[k + 1].rulings.front();
-        move_to_borders(geometry, before);
-        move_to_borders(geometry, after);
+        move_to_borders(geometry, before, extent > 0 ? reach : 0);
+        move_to_borders(geometry, after, extent > 0 ? reach : 0);
         set_places(geometry, after, before);
       }
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
   }
   turn_ends(geometry, pieces);
-  for (ArcPiece& piece : pieces) tell_along_joins(geometry, piece);
+  tell_along_joins(geometry, pieces, extent);
 }
 
 Ruling reversed(const Ruling& r) {
@@ -217,7 +253,6 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent) {
 }
 
 void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
-  std::vector<ArcPiece> told;
   for (ArcPiece& piece : pieces) {
     for (const std::size_t i : {0u, 1u}) {
       const Ruling first = piece.rulings.front();
@@ -235,11 +270,8 @@ void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& piece
         r.point[i] = first.point[i];
       }
     }
-    std::vector<ArcPiece> own;
-    own.push_back(std::move(piece));
-    append(told, std::move(own));
   }
-  pieces = std::move(told);
+  join_pieces(pieces);
 }
 
 void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {

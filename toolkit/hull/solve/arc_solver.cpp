@@ -22,8 +22,6 @@ constexpr int division_limit = 40;
 constexpr int most_divisions = 100;
 /// Borders that a contact passes at once.
 constexpr int most_hops = 3;
-/// Ways that are not divided.
-constexpr double least_way = 1e-6;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
 constexpr double middle_share = 0.05;
 /// Largest turn between neighbours, in radians.
@@ -240,8 +238,9 @@ Ruling ArcSolver::inside(Ruling r) const {
 void ArcSolver::divide(const Ruling& to, int depth) {
   ++divisions_;
   const double way = gap(last(), to);
+  if (!(way > search_.least_way())) return jump(to);
   const std::optional<Ruling> middle = search_.between(last(), to);
-  if (!middle || !(way > least_way) || divisions_ > most_divisions || gap(last(), *middle) >= way ||
+  if (!middle || divisions_ > most_divisions || gap(last(), *middle) >= way ||
       gap(*middle, to) >= way) {
     return jump(to);
   }

@@ -9,7 +9,6 @@
 #include "taut/core/geometry.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/solve/merged_ends.h"
-#include "taut/hull/solve/tolerant_places.h"
 
 namespace taut {
 namespace {
@@ -22,8 +21,7 @@ constexpr double farthest_crossing = 32;
 constexpr double on_border = 1e-9;
 
 double border_reach(const RulingSearch& search) {
-  const bool rounded = is_rounded(search.geometry().scene(), search.map().resolution);
-  return rounded ? search.map().contact_extent() : on_border;
+  return std::max(on_border, search.place_extent());
 }
 
 /// Where the two surfaces of a ruling touch, next to it: no farther off each other than the

@@ -7,7 +7,9 @@
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/solve/tolerant_places.h"
 
 namespace taut {
 namespace {
@@ -32,6 +34,12 @@ constexpr double widest_bracket = 8;
 /// Halvings of such a bracket that has others than these contacts in it.
 constexpr int narrow_halvings = 16;
 
+/// Ways that are not divided: of what is not rounded; and as a share of how far places may be from
+/// each other that rounding makes one. (Between the two nothing is lower by more than the square of
+/// it, of what makes them one.)
+constexpr double least_exact_way = 1e-6;
+constexpr double one_place = 0.01;
+
 bool is_in_element(const Contact& c) {
   const auto within = [](double t) {
     return t >= -parameter_rounding && t <= 1 + parameter_rounding;
@@ -54,6 +62,12 @@ bool is_between(const Ruling& from, const Ruling& to, const Ruling& r) {
   return std::max(square(from, r), square(r, to)) < square(from, to);
 }
 
+/// A resolution that is asked for does not tell how far places that are one are from each other.
+double place_extent_of(const Scene& scene, const DirectionMap& map) {
+  const double coarsest = scene.frame().length_to_frame(coarsest_resolution * scene.diagonal());
+  return is_rounded(scene, map.resolution) && map.resolution <= coarsest ? map.contact_extent() : 0;
+}
+
 /// Where the great arc between two directions passes the plane in which both points are as high;
 /// in the middle, where it does not.
 dvec3 exchange(const SupportingContact& a, const SupportingContact& b) {
@@ -66,6 +80,18 @@ dvec3 exchange(const SupportingContact& a, const SupportingContact& b) {
 }
 
 }  // namespace
+
+RulingSearch::RulingSearch(const ContactSystem& system, SupportQuery& query,
+                           const DirectionMap& map)
+    : system_(system),
+      geometry_(system.geometry()),
+      query_(query),
+      map_(map),
+      place_extent_(place_extent_of(geometry_.scene(), map)) {}
+
+double RulingSearch::least_way() const {
+  return std::max(least_exact_way, one_place * place_extent_);
+}
 
 SupportingContact RulingSearch::supporting(const dvec3& n, const Contact& hint) const {
   const Support s = query_(n, hint);
@@ -313,15 +339,9 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
     const bool go_on = !has_left && glm::dot(own[higher].x, n) >= h - geometry_.tie() &&
                        glm::distance(own[0].x, own[1].x) > map_.contact_extent();
     const bool tells = !go_on && like.side != Likeness::unknown;
-    SupportingContact& moved = (tells ? like.side == 0 : higher == 0) ? right : left;
+    const std::size_t side = tells ? std::size_t(like.side) : higher;
     // What is like neither is above both by no more than the resolution.
-    if (go_on) {
-      moved = own[higher];
-    } else if (like.is_like) {
-      moved = top;
-    } else {
-      moved.n = n;
-    }
+    (side == 0 ? right : left) = !go_on && like.is_like ? top : own[side];
   }
   const dvec3 n = unit(right.n + left.n);
   if (const auto found = polished(n, {right.contact, left.contact}, across, map_.resolution)) {

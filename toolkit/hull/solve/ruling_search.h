@@ -23,13 +23,17 @@ struct SupportingContact {
 class RulingSearch {
  public:
   /// All must outlive it.
-  RulingSearch(const ContactSystem& system, SupportQuery& query, const DirectionMap& map)
-      : system_(system), geometry_(system.geometry()), query_(query), map_(map) {}
+  RulingSearch(const ContactSystem& system, SupportQuery& query, const DirectionMap& map);
 
   const ContactSystem& system() const { return system_; }
   const ContactGeometry& geometry() const { return geometry_; }
   const DirectionMap& map() const { return map_; }
   SupportQuery& query() const { return query_; }
+  /// How far from each other places may be that rounding of the model makes one: as far as a
+  /// contact extends. 0 where it is not rounded.
+  double place_extent() const { return place_extent_; }
+  /// What way from one ruling to another is none: the two are next to each other.
+  double least_way() const;
 
   SupportingContact supporting(const dvec3& n, const Contact& hint) const;
 
@@ -81,6 +85,7 @@ class RulingSearch {
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   const DirectionMap& map_;
+  const double place_extent_;
 };
 
 }  // namespace taut

@@ -27,6 +27,8 @@ namespace {
 constexpr double first_corner_depths = 8;
 /// Places on edges that are one, in units of the resolution.
 constexpr double place_depths = 8;
+/// Pieces of rounded models that may be none, in units of the way from one ruling to the next.
+constexpr double piece_ways = 4;
 
 class GraphSolver {
  public:
@@ -45,15 +47,15 @@ class GraphSolver {
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     drop_arcs();
     unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
-    // A resolution that is asked for does not tell how far places that are one are from each other.
     const Scene& scene = geometry_.scene();
     const double coarsest = scene.frame().length_to_frame(coarsest_resolution * scene.diagonal());
     const double resolution = std::min(map_.resolution, coarsest);
-    const bool rounded = is_rounded(scene, map_.resolution) && map_.resolution <= coarsest;
-    const double extent = rounded ? map_.contact_extent() : 0;
+    const double extent = search_.place_extent();
+    const double reach =
+        std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
-      drop_empty_pieces(geometry_, arc.pieces, place_depths * resolution, extent);
+      drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, extent);
       join_in_crossings(arc);
     }
