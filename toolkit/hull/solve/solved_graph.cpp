@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "taut/bounds/contact_climb.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
@@ -183,6 +184,18 @@ class GraphSolver {
     return false;
   }
 
+  /// The corner of a facet, or the place where the arcs beside it have theirs if that is another one
+  /// which touches the plane as well: anywhere on a straight edge.
+  ClimbedContact corner_beside(const Contact& beside, const ClimbedContact& corner,
+                               const dvec3& n) const {
+    const Contact own =
+        geometry_.canonical(moved_to_border(geometry_, beside, map_.contact_extent()));
+    const dvec3 x = geometry_.point(own);
+    const double h = glm::dot(x, n);
+    const bool is_other = glm::distance(x, corner.x) > map_.contact_extent();
+    return is_other && h >= corner.h - map_.resolution ? ClimbedContact{own, x, h} : corner;
+  }
+
   /// Contacts between arcs that follow each other are its corners.
   std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
     const NodeCorners corners = corners_of(known_, node, map_);
@@ -196,7 +209,8 @@ class GraphSolver {
     }
     FacetNode facet;
     facet.n = plane.n;
-    for (const ClimbedContact& c : plane.contacts) {
+    for (std::size_t k = 0; k < plane.contacts.size(); ++k) {
+      const ClimbedContact c = corner_beside(corners.contacts[k], plane.contacts[k], plane.n);
       facet.contacts.push_back(c.contact);
       facet.points.push_back(c.x);
     }
