@@ -1111,6 +1111,21 @@ TEST(DirectionMap, HoldsWhatSupports) {
   expect_holds(filleted_box(4, 3, 2, 0.5));
 }
 
+/// Of three equal spheres in a row the middle one is covered, with all of its patches; a
+/// larger one is not.
+TEST(DirectionMap, TellsWhatIsCovered) {
+  const auto row = [](double middle) {
+    return sphere(1) + shifted(sphere(middle), {3, 0, 0}) + shifted(sphere(1), {6, 0, 0});
+  };
+  const Mapped equal(row(1));
+  ASSERT_EQ(equal.map.covered.size(), 8u);
+  for (const taut::Contact& c : equal.map.covered) {
+    const dvec3 x = equal.scene.frame().to_model(equal.geometry.point(c));
+    EXPECT_NEAR(glm::distance(x, dvec3(3, 0, 0)), 1, 1e-12);
+  }
+  EXPECT_TRUE(Mapped(row(1.001)).map.covered.empty());
+}
+
 class Families : public testing::TestWithParam<FamilyGroup> {};
 
 /// Of all families, as files have them. Cages have no support reference of this kind.

@@ -94,6 +94,26 @@ void expect_counts(const Shape& shape, const FaceCounts& counts) {
   EXPECT_TRUE(found.is_hull(tolerance)) << text_of(found);
 }
 
+/// Three equal shapes in a row, of which the middle one touches planes with the two others.
+TEST(SolvedHull, OfThreeInARowIsThatOfTwo) {
+  const std::vector<std::pair<std::string, FaceCounts>> families = {{"balls_in_a_row", {2, 1, 0}},
+                                                                    {"domes_in_a_row", {2, 5, 5}}};
+  for (const auto& [family, counts] : families) {
+    for (const unsigned long seed : {1UL, 2UL, 3UL}) {
+      for (const Variant variant : {Variant::clean, Variant::turned, Variant::float32}) {
+        SCOPED_TRACE(family + " " + std::to_string(seed) + " " + name_of(variant));
+        const Scene scene = scene_of(family, variant, seed);
+        const Hull hull = solved_hull_of(scene);
+        ASSERT_TRUE(hull.boundary);
+        EXPECT_TRUE(hull.boundary->unresolved.empty());
+        EXPECT_EQ(face_counts(*hull.boundary), counts);
+        EXPECT_LE(deepest_tolerant(*hull.boundary),
+                  scene.frame().length_to_frame(hull.resolution.rho));
+      }
+    }
+  }
+}
+
 /// Planes, cylinders, cones and crests of patches whose inner control points rounding has moved are
 /// what they were.
 TEST(SolvedHull, OfHigherDegreesIsTheSameWhenRounded) {

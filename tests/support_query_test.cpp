@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "freeform.h"
 #include "support_checks.h"
+#include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/model_support.h"
 #include "taut/core/error.h"
 
@@ -37,6 +39,26 @@ TEST(SupportQuery, Ellipsoid) {
   const auto truth =
       closed_form(scene, [](const rvec3& n) { return glm::length(rvec3(3 * n.x, 2 * n.y, n.z)); });
   expect_support(scene, truth, directions(2, 300), "ellipsoid", circle_rounding);
+}
+
+/// What is left out does not count: of three spheres in a row of which the last is the largest.
+TEST(SupportQuery, LeavesOutPatches) {
+  const Scene all =
+      make_scene(sphere(1) + shifted(sphere(1), {3, 0, 0}) + shifted(sphere(2), {6, 0, 0}));
+  SupportQuery query(all);
+  const ContactGeometry geometry(all);
+  std::vector<Contact> last;
+  for (int k = 0; k < int(geometry.part({0, SourceKind::face, 0, 0, 0}).patches().size()); ++k) {
+    const Contact c{0, SourceKind::face, k, 0.5, 0.5};
+    if (all.frame().to_model(geometry.point(c)).x > 3.9) last.push_back(c);
+  }
+  ASSERT_FALSE(last.empty());
+  query.leave_out(last);
+  for (const dvec3& n : directions(4, 300)) {
+    const double h = std::max(0.0, 3 * n.x) + 1;
+    const Support found = query(n, last.front());
+    EXPECT_NEAR(glm::dot(all.frame().to_model(found.point), n), h, 1e-12);
+  }
 }
 
 TEST(SupportQuery, Torus) {

@@ -50,11 +50,11 @@ const std::vector<FamilyGroup>& family_groups() {
   return all;
 }
 
-taut::Scene scene_of(const std::string& family, Variant variant) {
+taut::Scene scene_of(const std::string& family, Variant variant, unsigned long seed) {
   for (const FamilyGroup& group : family_groups()) {
     for (const Family& own : group.families) {
       if (own.name != family) continue;
-      Random random(1);
+      Random random(seed);
       const Natural drawn = own.make(random);
       return make_scene(placed(drawn, variant, random).shape);
     }

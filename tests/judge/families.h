@@ -41,8 +41,8 @@ struct FamilyGroup {
 
 /// Natural models, exactly as drawn: sizes at random, about ten to a hundred units.
 const std::vector<FamilyGroup>& family_groups();
-/// The model of a family of that name, not a cage, with the first random numbers.
-taut::Scene scene_of(const std::string& family, Variant variant);
+/// The model of a family of that name, not a cage, with the first random numbers of a seed.
+taut::Scene scene_of(const std::string& family, Variant variant, unsigned long seed = 1);
 
 /// @name The groups' families
 /// @{

@@ -49,6 +49,7 @@ class SupportQuery::Search {
         directions_(scene.instances.size()) {}
 
   Support run(const dvec3& n, const Contact& hint);
+  void leave_out(const Contact& patch);
   void check_stop() const { stop_.check(); }
 
   long queries = 0;
@@ -103,6 +104,11 @@ class SupportQuery::Search {
   }
   const SceneElement& element(int instance, int index) const {
     return scene_.part_of(instance).elements[std::size_t(index)];
+  }
+  bool is_left_out(int instance, int element) const {
+    if (left_out_.empty()) return false;
+    const std::vector<bool>& own = left_out_[std::size_t(instance)];
+    return !own.empty() && own[std::size_t(element)];
   }
   /// Nothing at or below this can change the answer.
   double threshold() const { return best_h_ + support_slack; }
@@ -166,6 +172,7 @@ class SupportQuery::Search {
   dvec3 n_ = dvec3(0.0);
   dvec3 abs_n_ = dvec3(0.0);
   std::vector<LocalDirection> directions_;
+  std::vector<std::vector<bool>> left_out_;  // by instance and element; empty where none is
 
   double best_h_ = -infinity;
   Contact best_;
@@ -243,6 +250,7 @@ void SupportQuery::Search::take_point(int instance, int vertex, double h) {
 
 void SupportQuery::Search::open_cell(int instance, int index) {
   const SceneCell& cell = scene_.part_of(instance).cells[std::size_t(index)];
+  if (is_left_out(instance, cell.element)) return;
   const SceneElement& e = element(instance, cell.element);
   if (bounds_ == SupportBounds::coons) {
     push_coons(instance, {cell.element, cell.coons}, e);
@@ -516,7 +524,8 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   if (hint.instance >= 0 && scene_.can_support(hint)) {
     Contact first = hint;
     first.instance = scene_.instances[std::size_t(hint.instance)].first;
-    polish_from(first);
+    const int index = scene_.element(first);
+    if (index < 0 || !is_left_out(first.instance, index)) polish_from(first);
   }
 
   stack_.push({infinity, Kind::instance_node, -1, 0});
@@ -547,6 +556,13 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
           scene_.frame_point(best_)};
 }
 
+void SupportQuery::Search::leave_out(const Contact& patch) {
+  left_out_.resize(scene_.instances.size());
+  std::vector<bool>& own = left_out_[std::size_t(patch.instance)];
+  own.resize(scene_.part_of(patch.instance).elements.size());
+  own[std::size_t(scene_.element(patch))] = true;
+}
+
 SupportQuery::SupportQuery(const SceneContent& scene, Stop stop, SupportBounds bounds)
     : search_(std::make_unique<Search>(scene, std::move(stop), bounds)) {}
 SupportQuery::~SupportQuery() = default;
@@ -554,6 +570,10 @@ SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;
 
 Support SupportQuery::operator()(const dvec3& n, const Contact& hint) {
   return search_->run(n, hint);
+}
+
+void SupportQuery::leave_out(const std::vector<Contact>& patches) {
+  for (const Contact& c : patches) search_->leave_out(c);
 }
 
 void SupportQuery::check_stop() const { search_->check_stop(); }

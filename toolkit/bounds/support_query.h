@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "taut/bounds/contact.h"
 #include "taut/core/stop.h"
@@ -48,6 +49,9 @@ class SupportQuery {
   /// never different in h beyond h_bound - h.
   /// @pre |n| = 1 within rounding @throws Cancelled
   Support operator()(const dvec3& n, const Contact& hint = {});
+
+  /// Patches that do not count, with their borders, from now on: the answers are those of the rest.
+  void leave_out(const std::vector<Contact>& patches);
 
   /// What works long on the same and asks for no support asks now and then. @throws Cancelled
   void check_stop() const;

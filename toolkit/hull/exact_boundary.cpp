@@ -60,11 +60,14 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
                     const HullOptions& options, HullStatistics& statistics) {
   Stopwatch watch;
   options.progress.update("trace", 0);
-  SupportQuery query(geometry.scene(), options.progress.stop);
-  SeparatingGraph graph = solved_graph(geometry, query, directions, options.progress);
-  statistics.newton_iterations += graph.newton_iterations;
+  SupportQuery uncovered(geometry.scene(), options.progress.stop);
+  uncovered.leave_out(directions.covered);
+  SeparatingGraph graph = solved_graph(geometry, uncovered, directions, options.progress);
+  statistics.support_queries += uncovered.queries();
+  statistics.newton_iterations += graph.newton_iterations + uncovered.newton_iterations();
   statistics.seconds_trace += watch.lap();
   options.progress.update("stitch", 0);
+  SupportQuery query(geometry.scene(), options.progress.stop);
   HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
   boundary.gap = directions.resolution;
   find_tolerant_places(ContactSystem(geometry), query, boundary, directions.resolution);

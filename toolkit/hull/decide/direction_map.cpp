@@ -49,6 +49,7 @@ class MapMaker {
     std::sort(map_.cells.begin(), map_.cells.end(), comes_before);
     map_.resolution = options_.resolution;
     map_.bent = pieces_.bent_above();
+    map_.covered = pieces_.covered_patches();
     return std::move(map_);
   }
 

@@ -25,6 +25,8 @@ struct DirectionMap {
   std::vector<MapCell> cells;
   DirectionMapStatistics statistics;
   double resolution = 0;  ///< at which it is decided, in the scene's frame
+  /// Patches, with their borders, that are in the convex hull of the rest to within the resolution.
+  std::vector<Contact> covered;
   /// By how much ruled patches that are bent may be above the ends of their lines.
   double bent = 0;
 

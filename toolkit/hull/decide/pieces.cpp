@@ -135,6 +135,28 @@ void MapPieces::let_ends_stand() {
   }
 }
 
+std::vector<Contact> MapPieces::covered_patches() const {
+  std::vector<Contact> found;
+  for (const MapElement& e : elements_) {
+    const Contact& c = e.contact;
+    if (c.kind != SourceKind::face || !e.likeness.covered) continue;
+    const auto is_covered = [&](SourceKind kind, int index) {
+      const int own = index < 0 ? -1 : find({c.instance, kind, index, 0, 0});
+      return own < 0 || element(own).likeness.covered;
+    };
+    const Patch& patch = geometry_.patch(c);
+    const bool all = std::all_of(patch.borders.begin(), patch.borders.end(), [&](const Border& b) {
+      return is_covered(SourceKind::edge, b.piece) && is_covered(SourceKind::vertex, b.vertex);
+    });
+    const auto& corners = patch.corner_vertex;
+    if (all && std::all_of(corners.begin(), corners.end(),
+                           [&](int v) { return is_covered(SourceKind::vertex, v); })) {
+      found.push_back(c);
+    }
+  }
+  return found;
+}
+
 double MapPieces::budget_left() const { return any_covered_ ? 1 - cover_share : cover_share; }
 
 void MapPieces::find_beside() {

@@ -89,6 +89,9 @@ class MapPieces {
   /// By how much points may be above all that is not covered, in the scene's frame.
   double covered_above() const { return any_covered_ ? resolution_ : 0; }
 
+  /// Patches that are covered with all their borders and corners.
+  std::vector<Contact> covered_patches() const;
+
   /// And by how much those of ruled patches that are bent.
   double bent_above() const { return any_bent_ ? resolution_ : 0; }
 
