@@ -19,6 +19,9 @@ constexpr double least_piece = 1e-12;
 /// on a join that it runs along, where rounding moves it far along the one while hardly off it.
 constexpr double least_piece_at_corner = 1e-10;
 
+/// How far rounding moves parameters about a pole.
+constexpr double corner_rounding = 1e-8;
+
 /// The same contacts, and with them the same direction: that of a patch tells it.
 bool has_contacts(const Ruling& a, const Ruling& b) {
   const auto same = [](const Contact& c, const Contact& d) {
@@ -86,6 +89,18 @@ void move_to_borders(const ContactGeometry& geometry, Ruling& ruling, double dis
   }
 }
 
+/// A contact at a pole beside a corner of its patch is in the corner, as far as rounding moves the
+/// contact that it is turned to.
+Contact turned(const ContactGeometry& geometry, const Contact& c, const Contact& beside) {
+  Contact t = turned_to(geometry, c, beside);
+  if (!collapsed_side(geometry, t)) return t;
+  for (double* parameter : {&t.u, &t.v}) {
+    const double corner = std::round(*parameter);
+    if (std::abs(*parameter - corner) <= corner_rounding) *parameter = corner;
+  }
+  return t;
+}
+
 /// Contacts with which pieces begin and end in their normal form: turned to the next ones.
 void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   for (ArcPiece& piece : pieces) {
@@ -94,8 +109,8 @@ void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
     for (std::size_t i = 0; i < 2; ++i) {
       Contact& first = rulings.front().contact[i];
       Contact& last = rulings.back().contact[i];
-      first = turned_to(geometry, first, rulings[1].contact[i]);
-      last = turned_to(geometry, last, rulings[rulings.size() - 2].contact[i]);
+      first = turned(geometry, first, rulings[1].contact[i]);
+      last = turned(geometry, last, rulings[rulings.size() - 2].contact[i]);
     }
   }
 }
@@ -156,6 +171,7 @@ void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pi
           if (const auto over = beyond(geometry, r.contact[i], *exit)) r.contact[i] = *over;
         }
       }
+      if (extent == 0) continue;
       if (k > 0) set_places(geometry, pieces[k - 1].rulings.back(), piece.rulings.front());
       if (k + 1 < pieces.size()) {
         set_places(geometry, pieces[k + 1].rulings.front(), piece.rulings.back());
@@ -211,6 +227,7 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
   }
   turn_ends(geometry, pieces);
   tell_along_joins(geometry, pieces, extent);
+  turn_ends(geometry, pieces);
 }
 
 Ruling reversed(const Ruling& r) {

@@ -31,6 +31,9 @@ constexpr double place_depths = 8;
 /// Pieces of rounded models that may be none, in units of the way from one ruling to the next.
 constexpr double piece_ways = 4;
 
+/// Places between two on an edge at which it is seen whether it touches a plane.
+constexpr int places_along = 4;
+
 class GraphSolver {
  public:
   GraphSolver(const ContactGeometry& geometry, SupportQuery& query, const DirectionMap& map,
@@ -184,16 +187,36 @@ class GraphSolver {
     return false;
   }
 
-  /// The corner of a facet, or the place where the arcs beside it have theirs if that is another one
-  /// which touches the plane as well: anywhere on a straight edge.
+  /// The corner of a facet, or the place on the same straight edge where the arcs beside it have
+  /// theirs, if all between the two touches the plane, too.
   ClimbedContact corner_beside(const Contact& beside, const ClimbedContact& corner,
                                const dvec3& n) const {
-    const Contact own =
-        geometry_.canonical(moved_to_border(geometry_, beside, map_.contact_extent()));
+    const double extent = map_.contact_extent();
+    const Contact own = geometry_.canonical(moved_to_border(geometry_, beside, extent));
+    const std::optional<double> end = place_on(own, geometry_.canonical(corner.contact));
+    if (!end || glm::distance(geometry_.point(own), corner.x) <= extent) return corner;
+    const double depth = search_.place_extent() > 0 ? map_.resolution : geometry_.tie();
+    for (int k = 0; k < places_along; ++k) {
+      Contact between = own;
+      between.u = glm::mix(own.u, *end, double(k) / places_along);
+      if (glm::dot(geometry_.point(between), n) < corner.h - depth) return corner;
+    }
     const dvec3 x = geometry_.point(own);
-    const double h = glm::dot(x, n);
-    const bool is_other = glm::distance(x, corner.x) > map_.contact_extent();
-    return is_other && h >= corner.h - map_.resolution ? ClimbedContact{own, x, h} : corner;
+    return {own, x, glm::dot(x, n)};
+  }
+
+  /// The parameter of a contact on a straight edge's piece. Of what is rounded its vertices are
+  /// apart: sides of facets that are level to within the resolution end there.
+  std::optional<double> place_on(const Contact& edge, const Contact& c) const {
+    const bool is_straight = edge.kind == SourceKind::edge && geometry_.is_straight(edge);
+    if (!is_straight || c.instance != edge.instance) return std::nullopt;
+    if (same_element(edge, c)) return c.u;
+    if (search_.place_extent() > 0) return std::nullopt;
+    const std::array<int, 2>& ends = geometry_.piece(edge).end_vertex;
+    for (const int end : {0, 1}) {
+      if (c.kind == SourceKind::vertex && c.element == ends[std::size_t(end)]) return end;
+    }
+    return std::nullopt;
   }
 
   /// Contacts between arcs that follow each other are its corners.
