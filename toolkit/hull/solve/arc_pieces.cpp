@@ -19,9 +19,6 @@ constexpr double least_piece = 1e-12;
 /// on a join that it runs along, where rounding moves it far along the one while hardly off it.
 constexpr double least_piece_at_corner = 1e-10;
 
-/// How far rounding moves parameters about a pole.
-constexpr double corner_rounding = 1e-8;
-
 /// The same contacts, and with them the same direction: that of a patch tells it.
 bool has_contacts(const Ruling& a, const Ruling& b) {
   const auto same = [](const Contact& c, const Contact& d) {
@@ -89,18 +86,6 @@ void move_to_borders(const ContactGeometry& geometry, Ruling& ruling, double dis
   }
 }
 
-/// A contact at a pole beside a corner of its patch is in the corner, as far as rounding moves the
-/// contact that it is turned to.
-Contact turned(const ContactGeometry& geometry, const Contact& c, const Contact& beside) {
-  Contact t = turned_to(geometry, c, beside);
-  if (!collapsed_side(geometry, t)) return t;
-  for (double* parameter : {&t.u, &t.v}) {
-    const double corner = std::round(*parameter);
-    if (std::abs(*parameter - corner) <= corner_rounding) *parameter = corner;
-  }
-  return t;
-}
-
 /// Contacts with which pieces begin and end in their normal form: turned to the next ones.
 void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   for (ArcPiece& piece : pieces) {
@@ -109,8 +94,8 @@ void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
     for (std::size_t i = 0; i < 2; ++i) {
       Contact& first = rulings.front().contact[i];
       Contact& last = rulings.back().contact[i];
-      first = turned(geometry, first, rulings[1].contact[i]);
-      last = turned(geometry, last, rulings[rulings.size() - 2].contact[i]);
+      first = turned_to(geometry, first, rulings[1].contact[i]);
+      last = turned_to(geometry, last, rulings[rulings.size() - 2].contact[i]);
     }
   }
 }
@@ -137,6 +122,7 @@ std::optional<ContactExit> join_along(const ContactGeometry& geometry, const Arc
     const ContactExit exit{ContactExit::Kind::side, int(side)};
     const bool along = std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
       if (stands_at(r.contact[i], exit)) return true;
+      if (extent == 0) return false;
       const dvec3 off = geometry.point(at_exit(r.contact[i], exit)) - r.point[i];
       return glm::length(off) <= extent && glm::dot(off, r.n) >= -geometry.tie();
     });
@@ -225,7 +211,6 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
   }
-  turn_ends(geometry, pieces);
   tell_along_joins(geometry, pieces, extent);
   turn_ends(geometry, pieces);
 }
