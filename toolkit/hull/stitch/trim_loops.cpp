@@ -63,12 +63,13 @@ void join_places(std::vector<OrientedPatch::Meeting>& meetings) {
 }
 
 /// The angle of a way into the unit square with the way along the border from a position on, walked
-/// counter-clockwise (sense 1) or clockwise (-1).
+/// counter-clockwise (sense 1) or clockwise (-1); one along the border may be off it by rounding.
 double angle_at(double position, double sense, const dvec2& inward) {
   constexpr std::array<dvec2, 4> along = {dvec2(1, 0), dvec2(0, 1), dvec2(-1, 0), dvec2(0, -1)};
   const double side = sense > 0 ? std::floor(position) : std::ceil(position) - 1;
   const dvec2 way = sense * along[std::size_t(side + 4) % 4];
-  return std::atan2(sense * (way.x * inward.y - way.y * inward.x), glm::dot(way, inward));
+  const double off = std::max(0.0, sense * (way.x * inward.y - way.y * inward.x));
+  return std::atan2(off, glm::dot(way, inward));
 }
 
 constexpr std::array<Side, 4> sides_around = {Side::v0, Side::u1, Side::v1, Side::u0};
