@@ -262,8 +262,8 @@ std::optional<CommonSupport> ContactSystem::crossing(CommonSupport s, double dep
     s.evaluate(geometry_);
     if (length < converged_step || (length < noise_step && length > 0.5 * last)) {
       const double height = glm::dot(s.d(), s.n);
-      const double off = glm::length(s.d() - height * s.n);
-      const bool touch = std::abs(height) < residual_limit + depth && off < residual_limit &&
+      const double apart = glm::length(s.d() - height * s.n);
+      const bool touch = std::abs(height) < residual_limit + depth && apart < residual_limit &&
                          largest_slope(s) < residual_limit;
       return touch ? std::optional(s) : std::nullopt;
     }

@@ -332,10 +332,10 @@ class GraphSolver {
     arc.pieces = solver.take();
     for (const int end : {1, 0}) {
       if (!merges[std::size_t(end)]) continue;
-      std::optional<Ruling>& told = plugs[std::size_t(end)];
-      if (told && end == 0) *told = reversed(*told);
+      std::optional<Ruling>& crossing = plugs[std::size_t(end)];
+      if (crossing && end == 0) *crossing = reversed(*crossing);
       if (end == 0) reverse(arc.pieces);
-      merge(search_, arc.pieces, told);
+      merge(search_, arc.pieces, crossing);
       if (end == 0) reverse(arc.pieces);
     }
     if (arc.closed && arc.pieces.size() > 1 &&
