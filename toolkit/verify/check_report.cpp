@@ -25,6 +25,14 @@ std::optional<double> number(const Json* value) {
   return value->get<double>();
 }
 
+StatedResolution stated_resolution(const Json& report) {
+  const Json* exact = find(&report, "hull");
+  const double stated = number(find(exact, "resolution")).value_or(0);
+  const Json* source = find(exact, "resolution_source");
+  return {std::isfinite(stated) ? std::max(stated, 0.0) : 0,
+          source != nullptr && (*source == "coordinates" || *source == "joins")};
+}
+
 /// Compares one report.
 class ReportCheck {
  public:
@@ -41,11 +49,6 @@ class ReportCheck {
   }
   void compare_counts(const HullDocument& hull);
   void compare_bounds(const HullDocument& hull);
-  /// The resolution is what the model's numbers miss, not just the smallest or what was asked for.
-  bool is_of_model() const {
-    const Json* source = find(find(&report_, "hull"), "resolution_source");
-    return source != nullptr && (*source == "coordinates" || *source == "joins");
-  }
   void compare_measures(const HullDocument& hull, const DocumentMeasures& measures,
                         double accuracy);
 
@@ -102,7 +105,8 @@ void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasu
   // again.
   const Json* subdivision = find(&report_, "subdivision");
   double deviation = number(find(subdivision, "deviation_bound")).value_or(0);
-  if (is_of_model()) raise(deviation, number(find(exact, "resolution")).value_or(0));
+  const StatedResolution resolution = stated_resolution(report_);
+  if (resolution.is_of_model) raise(deviation, resolution.length);
   for (const HullDocument::Face& face : hull.faces) raise(deviation, face.tolerant);
   compare("mean_width", exact, measures.mean_width,
           accuracy + measures.mean_width_error + 4 * deviation / std::abs(measures.mean_width));
@@ -110,10 +114,8 @@ void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasu
 
 }  // namespace
 
-double stated_resolution(const HullDocument& hull) {
-  const Json report = Json::parse(hull.report, nullptr, false);
-  const double stated = number(find(find(&report, "hull"), "resolution")).value_or(0);
-  return std::isfinite(stated) ? std::max(stated, 0.0) : 0;
+StatedResolution stated_resolution(const HullDocument& hull) {
+  return stated_resolution(Json::parse(hull.report, nullptr, false));
 }
 
 void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,

@@ -11,8 +11,13 @@ namespace taut {
 /// reach where these end in free ends.
 inline constexpr double measure_accuracy = 1e-10;
 
-/// The resolution that a document's report states, in model units; 0 if none.
-double stated_resolution(const HullDocument& hull);
+/// The resolution that a document's report states.
+struct StatedResolution {
+  double length = 0;  ///< in model units; 0 if none is stated
+  /// It is what the model's numbers miss, not just the smallest or what was asked for.
+  bool is_of_model = false;
+};
+StatedResolution stated_resolution(const HullDocument& hull);
 
 /// Compares what a document's report says of the exact hull with the document: its dimension, the
 /// numbers of faces and curves, nothing unresolved, how many faces are tolerant and their largest

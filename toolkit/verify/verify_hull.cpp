@@ -90,7 +90,8 @@ class HullVerifier {
         options_(options),
         diagonal_(scene.diagonal()),
         rounding_(relative_rounding(scene)),
-        resolution_(stated_resolution(hull)),
+        stated_(stated_resolution(hull)),
+        resolution_(stated_.length),
         geometry_(hull, scene.frame().center, rounding_) {}
   HullVerification run();
 
@@ -123,7 +124,8 @@ class HullVerifier {
   const VerifyOptions& options_;
   double diagonal_;
   double rounding_;
-  double resolution_;  ///< 0 if the document states none
+  StatedResolution stated_;
+  double resolution_;
   DocumentGeometry geometry_;
   HullVerification result_;
   HullFaults faults_;
@@ -172,10 +174,18 @@ void HullVerifier::check_structure() {
   result_.euler = structure.euler;
 }
 
+/// How far a source rises that begins with a slope, over a parameter up to 1.
+double height(double slope, double curvature) {
+  if (!(slope > 0)) return 0;
+  return slope < -curvature ? -0.5 * slope * slope / curvature : slope;
+}
+
 /// How steeply a source rises over a plane at one of its places, as derivative over a whole Bezier
 /// patch or curve: where that ends it may fall off. What is nearer than the resolution is one: by
-/// as much as slopes change over it, by second derivatives, they are none.
-double rise(const SourceJet& jet, const dvec2& t, const dvec3& n, double resolution) {
+/// as much as slopes change over it, by second derivatives, they are none. Only the height counts
+/// at its ends, where it may join others with a kink, and of a model whose numbers are rounded.
+double rise(const SourceJet& jet, const dvec2& t, const dvec3& n,
+            const StatedResolution& resolution) {
   const std::array<std::array<dvec3, 2>, 2> ddx = {{{jet.dxx, jet.dxy}, {jet.dxy, jet.dyy}}};
   double steepest = 0;
   for (std::size_t k = 0; k < to_size(jet.dimension); ++k) {
@@ -183,10 +193,14 @@ double rise(const SourceJet& jet, const dvec2& t, const dvec3& n, double resolut
     double changed = 0;
     for (std::size_t j = 0; j < to_size(jet.dimension); ++j) {
       const double speed = glm::length(jet.dx[j]);
-      if (speed > resolution) changed += resolution / speed * std::abs(glm::dot(ddx[k][j], n));
+      if (!(speed > resolution.length)) continue;
+      changed += resolution.length / speed * std::abs(glm::dot(ddx[k][j], n));
     }
-    if (t[int(k)] < 1) raise(steepest, slope - changed);
-    if (t[int(k)] > 0) raise(steepest, -slope - changed);
+    const double at = t[int(k)];
+    const bool may_kink = resolution.is_of_model || at == 0 || at == 1;
+    const double bend = may_kink ? glm::dot(ddx[k][k], n) : 0;
+    if (at < 1) raise(steepest, height(slope - changed, bend));
+    if (at > 0) raise(steepest, height(-slope - changed, bend));
   }
   return steepest;
 }
@@ -208,7 +222,7 @@ void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n,
     // Patches that are no neighbours may have these parameters too.
     if (off[i] > least + geometry_.noise()) continue;
     const SourceJet jet = geometry_.jet(c.source, places[i]);
-    raise(result_.tangency, relative(rise(jet, places[i].t, n, resolution_)));
+    raise(result_.tangency, relative(rise(jet, places[i].t, n, stated_)));
   }
 }
 

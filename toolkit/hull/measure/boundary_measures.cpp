@@ -22,6 +22,10 @@ namespace {
 /// scene's frame: 1e-8 beside free ends of blobs.
 constexpr double quadrature_way = 1e-6;
 
+/// Exact rulings are led from one to another if they miss them by no more than this share of the
+/// way: by more they are those of other contacts.
+constexpr double farthest_led = 0.01;
+
 /// Nodes of the rules that do for patches that are small beside their radii of curvature.
 constexpr int few_nodes = 6;
 
@@ -86,6 +90,8 @@ class Summation {
 
   void add_piece(std::size_t arc, std::size_t piece, double depth);
   void add_between(const Stretch& at, const Ruling& from, const Ruling& to);
+  std::array<dvec3, 2> moved_since(const Sums& before) const;
+  bool add_led(const Stretch& at, const LedRulings& led);
   void add_ways(const Stretch& at, const std::vector<RulingWay>& ways);
   void add_exact(const Stretch& at, const RulingsBetween& between);
   void add_ruling(const Stretch& at, const MovingRuling& m, double weight, Quantities& sample);
@@ -226,24 +232,49 @@ void Summation::add_between(const Stretch& at, const Ruling& from, const Ruling&
   if (between.empty()) return;
   add_exact(at, between);
   if (between.is_smoother()) return;
-  std::array<dvec3, 2> moved;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const dvec3 whole = to.point[i] - from.point[i];
-    for (int k = 0; k < 3; ++k) {
-      const std::size_t q = way + 3 * i + std::size_t(k);
-      moved[i][k] = double(sums_.value[q] - before.value[q]);
-    }
-    // Along edges angles count by the way. Of others the measures are known better than the way.
-    const bool is_known = from.contact[i].kind != SourceKind::edge;
-    if (is_known && glm::distance(moved[i], whole) <= quadrature_way) moved[i] = whole;
-  }
-  const double missed = missed_way(moved, from, to);
+  const double missed = missed_way(moved_since(before), from, to);
   if (leads(missed)) return;
+  const LedRulings led(geometry_, between, from, to);
+  if (leads(led.missed())) {
+    if (missed <= quadrature_way) return;
+  } else if (led.missed() < farthest_led * between.length()) {
+    const Sums exact = sums_;
+    sums_ = before;
+    if (add_led(at, led) && missed_way(moved_since(before), from, to) <= quadrature_way) {
+      sums_.error[curvature] += 0.5 * glm::distance(from.n, to.n) * led.missed();
+      return;
+    }
+    sums_ = exact;
+  }
   sums_.error[curvature] += missed_curvature(missed);
   const Sums exact = sums_;
   sums_ = before;
   add_ways(at, ruling_ways(system_, from, to, at.depth));
   if (exact.error[curvature] < sums_.error[curvature]) sums_ = exact;
+}
+
+/// The ways of both contacts that were added.
+std::array<dvec3, 2> Summation::moved_since(const Sums& before) const {
+  std::array<dvec3, 2> moved;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t q = way + 3 * i + std::size_t(k);
+      moved[i][k] = double(sums_.value[q] - before.value[q]);
+    }
+  }
+  return moved;
+}
+
+/// Whether there are such rulings all along.
+bool Summation::add_led(const Stretch& at, const LedRulings& led) {
+  bool all = true;
+  const auto f = [&](double s, double weight, Quantities& sample) {
+    const std::optional<MovingRuling> m = all ? led(s) : std::nullopt;
+    if (m) add_ruling(at, *m, weight, sample);
+    all = m.has_value();
+  };
+  integrate<6>(f, tolerances, 0, 1, sums_);
+  return all;
 }
 
 void Summation::add_ways(const Stretch& at, const std::vector<RulingWay>& ways) {

@@ -84,6 +84,40 @@ class Ways {
 
 }  // namespace
 
+LedRulings::LedRulings(const ContactGeometry& geometry, const RulingsBetween& between,
+                       const Ruling& from, const Ruling& to)
+    : geometry_(geometry), between_(between) {
+  const std::array<std::optional<MovingRuling>, 2> exact = {between(0), between(1)};
+  if (!exact[0] || !exact[1]) return;
+  at_ = {offset(from, *exact[0]), offset(to, *exact[1])};
+  missed_ = distance(from, exact[0]->at.ruling()) + distance(to, exact[1]->at.ruling());
+}
+
+LedRulings::Offset LedRulings::offset(const Ruling& end, const MovingRuling& exact) {
+  Offset offset{end.n - exact.at.n, {}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    offset.parameters[i] = parameters(end.contact[i]) - parameters(exact.at.contact[i]);
+  }
+  return offset;
+}
+
+std::optional<MovingRuling> LedRulings::operator()(double s) const {
+  std::optional<MovingRuling> m = between_(s);
+  if (!m) return std::nullopt;
+  Ruling ruling = m->at.ruling();
+  ruling.n = unit(ruling.n + glm::mix(at_[0].n, at_[1].n, s));
+  m->dn += at_[1].n - at_[0].n;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const dvec2 moved = glm::mix(at_[0].parameters[i], at_[1].parameters[i], s);
+    ruling.contact[i].u += moved.x;
+    ruling.contact[i].v += moved.y;
+    m->dp[i] += at_[1].parameters[i] - at_[0].parameters[i];
+  }
+  m->at = CommonSupport(geometry_, ruling);
+  m->complete();
+  return m;
+}
+
 MovingRuling RulingWay::straight(const ContactGeometry& geometry, double r) const {
   Ruling between = from;
   MovingRuling m;

@@ -7,6 +7,32 @@
 
 namespace taut {
 
+/// Exact rulings between two that are none themselves, moved so that they lead from the one to the
+/// other: where rounded patches join, rulings end at normals within the kink that are those of
+/// neither side, and without this the faces beside would not meet.
+class LedRulings {
+ public:
+  /// @pre all outlive this
+  LedRulings(const ContactGeometry& geometry, const RulingsBetween& between, const Ruling& from,
+             const Ruling& to);
+  /// By how much exact rulings miss the two, both contacts together; infinite where there is none.
+  double missed() const { return missed_; }
+  /// The exact ruling at s in [0, 1], moved by its share of what those at the ends miss.
+  std::optional<MovingRuling> operator()(double s) const;
+
+ private:
+  struct Offset {
+    dvec3 n = dvec3(0.0);
+    std::array<dvec2, 2> parameters = {dvec2(0.0), dvec2(0.0)};
+  };
+  static Offset offset(const Ruling& end, const MovingRuling& exact);
+
+  const ContactGeometry& geometry_;
+  const RulingsBetween& between_;
+  std::array<Offset, 2> at_;  ///< either end
+  double missed_ = infinity;
+};
+
 /// A part of the way from one ruling of a piece to the next, on which its contacts come from where
 /// they are at its beginning to where they are at its end.
 ///

@@ -76,6 +76,7 @@ double chord(const Ruling& a, const Ruling& b) {
 template <class T, class Middle>
 void add_intervals(const std::vector<T>& points, Middle middle, EvenDivision& division) {
   const std::size_t count = points.size();
+  if (count < 2) return;  // a piece that could not be solved
   if (count == 2) {
     division.add(std::sqrt(sagitta(points[0], middle(), points[1])));
     return;
@@ -260,13 +261,14 @@ void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
         division);
     for (std::size_t k = 0; k + 1 < rulings.size(); ++k) from.emplace_back(p, k);
   }
+  if (from.empty()) return;
   const auto begin = int(all_.samples.size());
   std::vector<ArcPlace> along;
   for (const Place& place : division.places(sagitta_, least_parts)) {
     const auto [piece, k] = from[place.interval];
     const std::vector<Ruling>& rulings = pieces[std::size_t(piece)].rulings;
     const std::optional<Ruling> r = ruling_between(system_, rulings[k], rulings[k + 1], place.s);
-    if (!r) continue;
+    if (!r || !is_finite(r->n) || !is_finite(r->point[0]) || !is_finite(r->point[1])) continue;
     along.push_back({arc, piece, *r});
     add_ruling(along.back());
   }
