@@ -7,6 +7,7 @@
 #include "taut/core/integers.h"
 #include "taut/verify/closest_on_curve.h"
 #include "taut/verify/nearest_point.h"
+#include "taut/verify/stated_bounds.h"
 
 namespace taut {
 namespace {
@@ -44,6 +45,8 @@ class OutlineCheck {
   double run();
 
  private:
+  /// What is no farther off than the bound of the curve or face at hand is not off.
+  void see(double distance) { raise(off_, std::max(distance - bound_, 0.0)); }
   /// A stretch along a side of one of a source's Bezier patches.
   struct Border {
     int source = -1;
@@ -83,13 +86,19 @@ class OutlineCheck {
   double tolerance_;
   double listed_;  ///< a point is one of those listed; else what lies between them is asked
   HullFaults& faults_;
+  double bound_ = 0;
   double off_ = 0;
 };
 
 double OutlineCheck::run() {
-  for (std::size_t i = 0; i < hull_.curves.size(); ++i) check_kind(i);
+  for (std::size_t i = 0; i < hull_.curves.size(); ++i) {
+    bound_ = bound_of(hull_, hull_.curves[i]);
+    check_kind(i);
+  }
+  const std::vector<double> bounds = bounds_beside(hull_);
   for (std::size_t i = 0; i < hull_.faces.size(); ++i) {
     const Face& face = hull_.faces[i];
+    bound_ = bounds[i];
     if (face.kind == FaceKind::patch) check_patch(i);
     if (face.kind == FaceKind::facet) check_facet(i);
     if (face.kind != FaceKind::scroll) continue;
@@ -136,7 +145,7 @@ void OutlineCheck::check_kind(std::size_t i) {
 }
 
 void OutlineCheck::check_edge(const Curve& curve) {
-  for (const dvec3& p : curve.points) raise(off_, distance_to_edge(curve.source, p));
+  for (const dvec3& p : curve.points) see(distance_to_edge(curve.source, p));
 }
 
 double OutlineCheck::distance_to_edge(int edge, const dvec3& p) const {
@@ -215,7 +224,7 @@ void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
       if (is_edge(curve.source)) edges.insert(curve.source);
       continue;
     }
-    for (const dvec3& p : curve.points) raise(off_, distance(p, listed, own));
+    for (const dvec3& p : curve.points) see(distance(p, listed, own));
     const int other = curve.faces[curve.faces[0] == int(f) ? 1 : 0];
     if (other >= 0) add_borders_of(other, others);
   }
@@ -225,7 +234,7 @@ void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
     for (const int edge : edges) {
       if (off > listed_) off = std::min(off, distance_to_edge(edge, p));
     }
-    raise(off_, off);
+    see(off);
   }
 }
 
@@ -278,7 +287,7 @@ void OutlineCheck::check_ruling_ends(const Curve& curve, const Face& scroll) {
                                      glm::distance(curve.points.back(), b)));
     }
   }
-  raise(off_, best);
+  see(best);
 }
 
 /// The source's point with these parameters. Patches that are no neighbours may have them too, of
@@ -317,8 +326,8 @@ void OutlineCheck::check_free_stretches(std::size_t f) {
   const NearestPoint curves(points);
   const auto check = [&](const dvec2& uv) {
     const std::optional<dvec3> x = point_near(face.source, uv, curves);
-    if (!x) return raise(off_, std::numeric_limits<double>::infinity());
-    raise(off_, curves.distance(*x));
+    if (!x) return see(std::numeric_limits<double>::infinity());
+    see(curves.distance(*x));
   };
   for (const RegionOutline& region : outlines_.regions()) {
     if (region.face != int(f)) continue;
@@ -346,14 +355,14 @@ void OutlineCheck::check_loop(const Face& face, const HullDocument::Loop& loop) 
     const OutlineStretch stretch = outlines_.stretch(face.source, loop.uv[k], loop.uv[next]);
     const bool on_border = stretch.kind == OutlineStretch::Kind::border;
     const std::optional<dvec3> x = point_near(face.source, loop.uv[k], curves);
-    if (!x) return raise(off_, std::numeric_limits<double>::infinity());
+    if (!x) return see(std::numeric_limits<double>::infinity());
     own.push_back(*x);
-    if (!(on_border && (last_on_border || k == 0))) raise(off_, curves.distance(*x));
+    if (!(on_border && (last_on_border || k == 0))) see(curves.distance(*x));
     if (on_border) borders.push_back({face.source, stretch});
     last_on_border = on_border;
   }
   const NearestPoint listed(own);
-  for (const dvec3& p : points) raise(off_, distance(p, listed, borders));
+  for (const dvec3& p : points) see(distance(p, listed, borders));
 }
 
 double OutlineCheck::distance_to_border(int source, const OutlineStretch& stretch,
@@ -479,7 +488,7 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
   std::vector<double> off(along.size(), std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < count; ++k) {
     const auto side = side_jet(face, k);
-    if (!side) return raise(off_, std::numeric_limits<double>::infinity());
+    if (!side) return see(std::numeric_limits<double>::infinity());
     for (int i = 0; i < parts; ++i) {
       polygon.push_back((*side)(double(i) / parts).x + geometry_.origin());
     }
@@ -488,7 +497,7 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
       off[i] = std::min(off[i], closest_on_curve(geometry_.local(along[i]), 0, 1, *side).distance);
     }
   }
-  for (const double distance : off) raise(off_, distance);
+  for (const double distance : off) see(distance);
   if (!is_convex(polygon, face.normal)) {
     faults_.add("outlines", at("faces", f) + "the facet's sides are not convex");
   }
@@ -532,8 +541,8 @@ void OutlineCheck::check_facet(std::size_t f) {
   if (along.empty()) return faults_.add("outlines", at("faces", f) + "a facet without curves");
   const NearestPoint curves(along);
   const NearestPoint boundary(face.boundary);
-  for (const dvec3& p : face.boundary) raise(off_, curves.distance(p));
-  for (const dvec3& p : along) raise(off_, boundary.distance(p));
+  for (const dvec3& p : face.boundary) see(curves.distance(p));
+  for (const dvec3& p : along) see(boundary.distance(p));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "taut/core/disjoint_sets.h"
 #include "taut/core/integers.h"
+#include "taut/verify/stated_bounds.h"
 
 namespace taut {
 namespace {
@@ -31,9 +32,13 @@ class CurveEnds {
 
 CurveEnds::CurveEnds(const HullDocument& hull, double tolerance) {
   std::vector<dvec3> ends;
+  std::vector<double> reach;  // how far ends of others that are one with them may be, both together
+  double farthest = 0;
   for (const HullDocument::Curve& curve : hull.curves) {
     ends.push_back(curve.points.front());
     ends.push_back(curve.points.back());
+    reach.insert(reach.end(), 2, 0.5 * tolerance + bound_of(hull, curve));
+    farthest = std::max(farthest, reach.back());
     point_.push_back(std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec3& p) {
       return glm::distance(p, curve.points.front()) <= tolerance;
     }));
@@ -58,9 +63,9 @@ CurveEnds::CurveEnds(const HullDocument& hull, double tolerance) {
     const std::size_t a = order[i];
     for (std::size_t k = i + 1; k < order.size(); ++k) {
       const std::size_t b = order[k];
-      if (ends[b].x - ends[a].x > tolerance) break;
-      if (glm::distance(ends[a], ends[b]) <= tolerance && together(a, b))
-        vertices.unite(int(a), int(b));
+      if (ends[b].x - ends[a].x > reach[a] + farthest) break;
+      const double near = a / 2 == b / 2 ? tolerance : reach[a] + reach[b];
+      if (glm::distance(ends[a], ends[b]) <= near && together(a, b)) vertices.unite(int(a), int(b));
     }
   }
   for (int i = 0; i < int(ends.size()); ++i) vertex_.push_back(vertices.find(i));
@@ -183,9 +188,11 @@ int Structure::characteristic(const HullDocument::Face& face) const {
   // A closed scroll is a ring, or a disc about the vertex that it has on one side.
   const HullDocument::Ruling& first = face.rulings.front();
   const HullDocument::Ruling& last = face.rulings.back();
-  const bool ring = glm::distance(first.n, last.n) <= same_direction &&
-                    glm::distance(first.a.p, last.a.p) <= tolerance_ &&
-                    glm::distance(first.b.p, last.b.p) <= tolerance_;
+  const double near = tolerance_ + face.tolerant;
+  const double turn = face.tolerant / glm::distance(first.a.p, first.b.p);
+  const bool ring = glm::distance(first.n, last.n) <= std::max(same_direction, turn) &&
+                    glm::distance(first.a.p, last.a.p) <= near &&
+                    glm::distance(first.b.p, last.b.p) <= near;
   if (!ring) return 1;
   return 2 - (face.curves[0].empty() ? 0 : 1) - (face.curves[1].empty() ? 0 : 1);
 }

@@ -216,7 +216,7 @@ void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n,
     off.push_back(relative(glm::distance(x, geometry_.local(c.p))));
   }
   const double least = off.empty() ? infinity : *std::min_element(off.begin(), off.end());
-  raise(result_.off_source, least);
+  raise(result_.off_source, std::max(least - relative(bound), 0.0));
   if (bound > 0) return;
   for (std::size_t i = 0; i < places.size(); ++i) {
     // Patches that are no neighbours may have these parameters too.
@@ -251,7 +251,8 @@ void HullVerifier::check_side(const HullDocument::Face& facet, std::size_t k) {
     check_height(glm::dot(x, facet.normal) - offset, facet.tolerant);
     if (i > 0 && i < parts) continue;
     const std::size_t end = (k + (i == 0 ? 0 : 1)) % facet.contacts.size();
-    raise(result_.off_source, relative(glm::distance(x, geometry_.local(facet.contacts[end].p))));
+    const double off = glm::distance(x, geometry_.local(facet.contacts[end].p));
+    raise(result_.off_source, relative(std::max(off - facet.tolerant, 0.0)));
   }
 }
 

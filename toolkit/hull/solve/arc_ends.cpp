@@ -111,9 +111,15 @@ class ArcEndSearch {
       const bool solved = search_.system().solve(
           s, [&](const CommonSupport& now) { return distance_equation(now, length); });
       if (!solved) return std::nullopt;
-      if (stays(s)) return s.ruling();
+      if (!stays(s)) continue;
+      return is_inside(s.contact[0]) && is_inside(s.contact[1]) ? std::optional(s.ruling())
+                                                                : std::nullopt;
     }
     return std::nullopt;
+  }
+
+  bool is_inside(const Contact& c) const {
+    return glm::distance(geometry_.point(clamped(c)), geometry_.point(c)) <= geometry_.tie();
   }
 
   /// False if a contact has been moved to the element that it has run over into.
@@ -121,12 +127,8 @@ class ArcEndSearch {
     bool stays = true;
     for (std::size_t i = 0; i < 2; ++i) {
       Contact& c = s.contact[i];
-      const Contact inside = clamped(c);
-      if (glm::distance(geometry_.point(inside), geometry_.point(c)) <= geometry_.tie() &&
-          c.kind == SourceKind::face) {
-        continue;
-      }
-      const std::optional<Contact> there = climbed(geometry_, inside, s.n);
+      if (is_inside(c) && c.kind == SourceKind::face) continue;
+      const std::optional<Contact> there = climbed(geometry_, clamped(c), s.n);
       if (!there || same_element(*there, c)) continue;
       c = geometry_.first(*there);
       stays = false;

@@ -254,6 +254,25 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent) {
   }
 }
 
+void drop_turns(std::vector<Ruling>& rulings, double rounding) {
+  const auto turns = [&](const Ruling& a, const Ruling& b, const Ruling& c) {
+    const auto along = [](const dvec3& x, const dvec3& y, const dvec3& z) {
+      return glm::dot(y - x, z - y);
+    };
+    const double sum = along(a.n, b.n, c.n) + along(a.point[0], b.point[0], c.point[0]) +
+                       along(a.point[1], b.point[1], c.point[1]);
+    return sum < -rounding * (distance(a, b) + distance(b, c));
+  };
+  for (std::size_t k = 1; k + 1 < rulings.size();) {
+    if (turns(rulings[k - 1], rulings[k], rulings[k + 1])) {
+      rulings.erase(rulings.begin() + std::ptrdiff_t(k));
+      k = std::max<std::size_t>(k - 1, 1);
+    } else {
+      ++k;
+    }
+  }
+}
+
 void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   for (ArcPiece& piece : pieces) {
     for (const std::size_t i : {0u, 1u}) {

@@ -11,12 +11,14 @@ namespace taut {
 namespace {
 
 /// Parts of a facet's curved side, and of the way between two rulings, at whose ends it is looked.
-constexpr int side_places = 8;
-constexpr int ruling_places = 8;
+constexpr int places = 8;
+/// How often the step to the places next to the deepest one is halved.
+constexpr int closer_looks = 5;
 /// How many times the resolution of exact models that is that rounding makes of a model's numbers.
 constexpr double rounded_depths = 2;
-/// How many times deeper it may be between two places than in the deepest one.
-constexpr double between_places = 1.25;
+/// How many times deeper it may be beside the deepest place, where it was looked closer: what a
+/// parabola over the last steps tops it by.
+constexpr double near_places = 1.001;
 /// Places of a region at which it is looked, along each of the patch's parameters.
 constexpr int region_places = 3;
 /// How many slacks of its outline a place is inside: rulings may be few.
@@ -31,17 +33,16 @@ class TolerantPlaces {
 
   double of(const ArcPiece& piece) {
     double deepest = piece.tolerant;
-    for (const Ruling& r : piece.rulings) deepest = std::max(deepest, depth(r));
-    if (!is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie()) return 0;
+    for (const Ruling& r : piece.rulings) {
+      deepest = std::max(deepest, depth(r));
+      for (std::size_t i = 0; i < 2; ++i)
+        deepest = std::max(deepest, off(r.contact[i], r.point[i]));
+    }
+    const bool is_exact = !is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie();
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
       const RulingsBetween between(system_, piece.rulings[k - 1], piece.rulings[k]);
-      if (between.empty()) continue;
-      for (int place = 1; place < ruling_places; ++place) {
-        const double s = between.at_share(double(place) / ruling_places);
-        const std::optional<MovingRuling> exact = between(s);
-        // Where none is found, what there is has no depth that could be looked at.
-        deepest = std::max(deepest, exact ? depth(exact->at.ruling()) : resolution_);
-      }
+      if (between.empty() || (is_exact && depth_at(between, 0.5) <= geometry_.tie())) continue;
+      deepest = std::max(deepest, deepest_of(between));
     }
     return deepest <= geometry_.tie() ? 0 : bound_of(deepest);
   }
@@ -49,17 +50,26 @@ class TolerantPlaces {
   double of(const HullFace& facet) {
     const double h = query_(facet.n, facet.contacts.front()).h;
     double deepest = 0;
-    const auto look = [&](const dvec3& x) {
-      deepest = std::max(deepest, h - glm::dot(x, facet.n));
-    };
-    for (const dvec3& x : facet.points) look(x);
-    for (const EdgeStretch& side : facet.sides) {
-      if (side.piece < 0) continue;
-      for (int k = 1; k < side_places; ++k) {
-        const double t = glm::mix(side.from, side.to, double(k) / side_places);
-        look(geometry_.point(side.at(t)));
-      }
+    const auto depth_of = [&](const dvec3& x) { return h - glm::dot(x, facet.n); };
+    for (const dvec3& x : facet.points) deepest = std::max(deepest, depth_of(x));
+    for (std::size_t k = 0; k < facet.contacts.size(); ++k) {
+      const Contact& c = facet.contacts[k];
+      deepest = std::max(deepest, depth_of(geometry_.point(c)));
+      if (k < facet.points.size()) deepest = std::max(deepest, off(c, facet.points[k]));
     }
+    double of_sides = 0;
+    for (std::size_t k = 0; k < facet.sides.size(); ++k) {
+      const EdgeStretch& side = facet.sides[k];
+      if (side.piece < 0) continue;
+      const auto depth_at = [&](double share) {
+        return depth_of(geometry_.point(side.at(glm::mix(side.from, side.to, share))));
+      };
+      of_sides = std::max(of_sides, deepest_along(depth_at));
+      const std::size_t next = (k + 1) % facet.points.size();
+      deepest = std::max({deepest, off(side.at(side.from), facet.points[k]),
+                          off(side.at(side.to), facet.points[next])});
+    }
+    if (of_sides > geometry_.tie()) deepest = std::max(deepest, bound_of(of_sides));
     return deepest <= geometry_.tie() ? 0 : deepest;
   }
 
@@ -94,9 +104,44 @@ class TolerantPlaces {
     return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
   }
 
-  /// Between the places it may be deeper, as far as that is within the resolution.
-  double bound_of(double deepest) const {
-    return std::max(deepest, std::min(between_places * deepest, resolution_));
+  /// Of exact rulings; where none is found, of one between, and no less than may be made of it.
+  double depth_at(const RulingsBetween& between, double share) {
+    const double s = between.at_share(share);
+    const std::optional<MovingRuling> exact = between(s);
+    if (exact) return depth(exact->at.ruling());
+    return std::max(resolution_, depth(between.interpolated(s).at.ruling()));
+  }
+  double deepest_of(const RulingsBetween& between) {
+    return deepest_along([&](double share) { return depth_at(between, share); });
+  }
+
+  /// Between 0 and 1; about the deepest place it is looked closer.
+  template <class DepthAt>
+  double deepest_along(const DepthAt& depth_at) const {
+    double deepest = 0, at = 0.5, step = 1.0 / places;
+    const auto look = [&](double share) {
+      if (!(0 < share && share < 1)) return;
+      const double found = depth_at(share);
+      if (found > deepest) at = share;
+      deepest = std::max(deepest, found);
+    };
+    for (int place = 1; place < places; ++place) look(double(place) / places);
+    if (deepest <= geometry_.tie()) return deepest;
+    for (int k = 0; k < closer_looks; ++k) {
+      step *= 0.5;
+      const double middle = at;
+      look(middle - step);
+      look(middle + step);
+    }
+    return deepest;
+  }
+
+  /// What is not exact is told to the resolution: elsewhere it may be as deep.
+  double bound_of(double deepest) const { return std::max(near_places * deepest, resolution_); }
+
+  /// Contacts that are one to within the resolution have one point.
+  double off(const Contact& c, const dvec3& x) const {
+    return glm::distance(geometry_.point(c), x);
   }
 
   double depth(const Ruling& r) {
@@ -113,6 +158,24 @@ class TolerantPlaces {
 
 }  // namespace
 
+namespace {
+
+/// What pieces miss each other by where one follows the other is within the bounds of both.
+void bound_joints(SeparatingArc& arc, double tie) {
+  for (std::size_t k = arc.closed ? 0 : 1; k < arc.pieces.size(); ++k) {
+    ArcPiece& before = arc.pieces[(k == 0 ? arc.pieces.size() : k) - 1];
+    ArcPiece& after = arc.pieces[k];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double missed =
+          glm::distance(before.rulings.back().point[i], after.rulings.front().point[i]);
+      if (missed <= tie) continue;
+      for (ArcPiece* piece : {&before, &after}) piece->tolerant = std::max(piece->tolerant, missed);
+    }
+  }
+}
+
+}  // namespace
+
 bool is_rounded(const Scene& scene, double resolution) {
   const double floor = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
   return resolution > rounded_depths * floor;
@@ -120,14 +183,15 @@ bool is_rounded(const Scene& scene, double resolution) {
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution) {
-  TolerantPlaces places(system, query, resolution);
+  TolerantPlaces found(system, query, resolution);
   for (SeparatingArc& arc : boundary.arcs) {
-    for (ArcPiece& piece : arc.pieces) piece.tolerant = places.of(piece);
+    for (ArcPiece& piece : arc.pieces) piece.tolerant = found.of(piece);
+    bound_joints(arc, system.geometry().tie());
   }
   for (HullFace& face : boundary.faces) {
-    if (face.kind == FaceKind::facet && !face.contacts.empty()) face.tolerant = places.of(face);
+    if (face.kind == FaceKind::facet && !face.contacts.empty()) face.tolerant = found.of(face);
     for (const PatchRegion& region : face.regions) {
-      face.tolerant = std::max(face.tolerant, places.of(boundary, region));
+      face.tolerant = std::max(face.tolerant, found.of(boundary, region));
     }
     if (face.kind != FaceKind::scroll) continue;
     const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
