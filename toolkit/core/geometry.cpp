@@ -33,6 +33,13 @@ dvec3 unit(const dvec3& v) {
   return s / glm::length(s);
 }
 
+double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
+  const dvec3 along = b - a;
+  const double square = glm::dot(along, along);
+  const double t = square > 0 ? std::clamp(glm::dot(x - a, along) / square, 0.0, 1.0) : 0;
+  return glm::distance(x, a + t * along);
+}
+
 dvec3 polygon_normal(const std::vector<dvec3>& points) {
   dvec3 sum(0.0);
   for (std::size_t k = 1; k + 1 < points.size(); ++k) {

@@ -62,6 +62,9 @@ double diagonal(const Box& box);
 /// The zero vector stays zero.
 dvec3 unit(const dvec3& v);
 
+/// The distance of a point from the segment between two others, which may be one.
+double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b);
+
 /// The unit normal of the mean plane of a polygon, from whose tip it is counter-clockwise (Newell's
 /// method); zero where it has no area.
 dvec3 polygon_normal(const std::vector<dvec3>& points);

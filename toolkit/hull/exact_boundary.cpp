@@ -55,8 +55,9 @@ DirectionMap map_of(const ContactGeometry& geometry, double resolution, long can
   return map;
 }
 
-/// Solved from the map, and stitched.
-HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions,
+/// Solved from the map, and stitched. What is not exact is known to `rho`: that of the model, from
+/// which those of maps may differ.
+HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions, double rho,
                     const HullOptions& options, HullStatistics& statistics) {
   Stopwatch watch;
   options.progress.update("trace", 0);
@@ -70,7 +71,7 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   SupportQuery query(geometry.scene(), options.progress.stop);
   HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
   boundary.gap = directions.resolution;
-  find_tolerant_places(ContactSystem(geometry), query, boundary, directions.resolution);
+  find_tolerant_places(ContactSystem(geometry), query, boundary, rho);
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();
@@ -100,7 +101,7 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap& directions,
                             const HullOptions& options, HullStatistics& statistics) {
   const double rho = directions.resolution;
-  HullBoundary boundary = solved(geometry, directions, options, statistics);
+  HullBoundary boundary = solved(geometry, directions, rho, options, statistics);
   if (is_within(boundary, rho) || boundary.unresolved.size() > few_open_spots) return boundary;
   // What is left undecided is not decided by finer maps either, and what is bent stays so.
   if (undecided(directions) > 0 || directions.bent > 0) return boundary;
@@ -109,7 +110,7 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
     left -= finer.statistics.candidates;
     if (undecided(finer) > 0 || left <= 0) break;
-    HullBoundary other = solved(geometry, finer, options, statistics);
+    HullBoundary other = solved(geometry, finer, rho, options, statistics);
     if (is_within(other, rho)) return other;
   }
   return boundary;

@@ -24,13 +24,6 @@ std::string at(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]: ";
 }
 
-double distance_to_segment(const dvec3& p, const dvec3& a, const dvec3& b) {
-  const dvec3 side = b - a;
-  const double square = glm::dot(side, side);
-  const double s = square > 0 ? std::clamp(glm::dot(p - a, side) / square, 0.0, 1.0) : 0;
-  return glm::distance(p, a + s * side);
-}
-
 /// Checks one document.
 class OutlineCheck {
  public:

@@ -118,6 +118,11 @@ StatedResolution stated_resolution(const HullDocument& hull) {
   return stated_resolution(Json::parse(hull.report, nullptr, false));
 }
 
+std::optional<double> stated_mean_width(const HullDocument& hull) {
+  const Json report = Json::parse(hull.report, nullptr, false);
+  return number(find(find(&report, "hull"), "mean_width"));
+}
+
 void check_report(const HullDocument& hull, const std::optional<DocumentMeasures>& measures,
                   double rounding, HullFaults& faults) {
   if (hull.report.empty()) return;

@@ -19,6 +19,9 @@ struct StatedResolution {
 };
 StatedResolution stated_resolution(const HullDocument& hull);
 
+/// The exact hull's mean width that a document's report states, in model units.
+std::optional<double> stated_mean_width(const HullDocument& hull);
+
 /// Compares what a document's report says of the exact hull with the document: its dimension, the
 /// numbers of faces and curves, nothing unresolved, how many faces are tolerant and their largest
 /// bound, and the measures where there are any. A document without a report has nothing to compare.

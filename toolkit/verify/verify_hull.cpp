@@ -347,7 +347,9 @@ void HullVerifier::check_even_directions(const Coverage& coverage,
   double sum = 0;
   for (const double one : h) sum += one;
   const double width = 2 * scene_.frame().length_to_model(sum / double(directions.size()));
-  raise(result_.mean_width_error, std::abs(measures->mean_width / width - 1));
+  const auto miss = [&](double found) { return std::abs(found / width - 1); };
+  raise(result_.mean_width_error, miss(measures->mean_width) - measures->mean_width_error);
+  if (const auto stated = stated_mean_width(hull_)) raise(result_.mean_width_error, miss(*stated));
 }
 
 /// A hull of lower dimension reaches as far as its points, which a polyhedral one lists.

@@ -51,8 +51,9 @@ struct HullVerification {
   int uncovered = 0;
   int directions = 0;
   /// |integral of n dA| over the area, beyond what outlines of facets off their planes, by the
-  /// bounds of the faces along them, make of it; and the relative difference of the mean width by
-  /// integrals over the faces from that by support queries; of hulls of dimension 3.
+  /// bounds of the faces along them, make of it; and the relative difference of the mean width that
+  /// is stated, and of that by integrals over the faces beyond what these may err by, from that by
+  /// support queries; of hulls of dimension 3.
   double vector_area = 0;
   double mean_width_error = 0;
   /// How well the integrals over the faces are known, as far as one can tell: volume, area and mean

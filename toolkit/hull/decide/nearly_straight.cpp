@@ -54,13 +54,6 @@ class Chain {
   std::vector<int> elements_;
 };
 
-double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
-  const dvec3 along = b - a;
-  const double length2 = glm::dot(along, along);
-  const double t = length2 > 0 ? std::clamp(glm::dot(x - a, along) / length2, 0.0, 1.0) : 0;
-  return glm::length(x - a - t * along);
-}
-
 dvec3 place(const MapPieces& pieces, int vertex) {
   return euclidean(*pieces.element(vertex).root->exact.points);
 }

@@ -232,16 +232,25 @@ void Summation::add_between(const Stretch& at, const Ruling& from, const Ruling&
   if (between.empty()) return;
   add_exact(at, between);
   if (between.is_smoother()) return;
-  const double missed = missed_way(moved_since(before), from, to);
+  std::array<dvec3, 2> moved = moved_since(before);
+  double missed = missed_way(moved, from, to);
   if (leads(missed)) return;
   const LedRulings led(geometry_, between, from, to);
   if (leads(led.missed())) {
-    if (missed <= quadrature_way) return;
+    // Along edges angles count by the way. Of others the measures are known better than the way.
+    for (std::size_t i = 0; i < 2; ++i) {
+      const dvec3 whole = to.point[i] - from.point[i];
+      const bool is_known = from.contact[i].kind != SourceKind::edge;
+      if (is_known && glm::distance(moved[i], whole) <= quadrature_way) moved[i] = whole;
+    }
+    missed = missed_way(moved, from, to);
+    if (leads(missed)) return;
   } else if (led.missed() < farthest_led * between.length()) {
     const Sums exact = sums_;
     sums_ = before;
-    if (add_led(at, led) && missed_way(moved_since(before), from, to) <= quadrature_way) {
-      sums_.error[curvature] += 0.5 * glm::distance(from.n, to.n) * led.missed();
+    const bool is_led = add_led(at, led);
+    if (is_led && missed_way(moved_since(before), from, to) <= std::min(missed, quadrature_way)) {
+      sums_.error[curvature] += std::abs(double(sums_.value[curvature] - exact.value[curvature]));
       return;
     }
     sums_ = exact;

@@ -26,6 +26,17 @@ double distance(const Ruling& a, const Ruling& b) {
   return glm::distance(a.point[0], b.point[0]) + glm::distance(a.point[1], b.point[1]);
 }
 
+/// Both contacts are where their elements support: what exact rulings miss it by then is the
+/// system's noise, as near free ends.
+bool is_exact(const ContactGeometry& geometry, const Ruling& r) {
+  return std::all_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
+    const ContactJet jet = geometry.jet(c);
+    return std::all_of(jet.dx.begin(), jet.dx.begin() + jet.dimension, [&](const dvec3& dx) {
+      return std::abs(glm::dot(dx, r.n)) <= geometry.tie();
+    });
+  });
+}
+
 class Ways {
  public:
   Ways(const ContactSystem& system, double tolerance)
@@ -87,10 +98,26 @@ class Ways {
 LedRulings::LedRulings(const ContactGeometry& geometry, const RulingsBetween& between,
                        const Ruling& from, const Ruling& to)
     : geometry_(geometry), between_(between) {
+  if (is_exact(geometry, from) && is_exact(geometry, to)) {
+    missed_ = 0;
+    return;
+  }
   const std::array<std::optional<MovingRuling>, 2> exact = {between(0), between(1)};
   if (!exact[0] || !exact[1]) return;
   at_ = {offset(from, *exact[0]), offset(to, *exact[1])};
   missed_ = distance(from, exact[0]->at.ruling()) + distance(to, exact[1]->at.ruling());
+  // Where a side is collapsed parameters there tell nothing, but those that are moved by them do.
+  const std::optional<MovingRuling> middle = between(0.5);
+  if (!middle) return;
+  double moved = 0;
+  for (const Offset& offset : at_) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const ContactJet& jet = middle->at.jet[i];
+      moved += glm::length(offset.parameters[i].x * jet.dx[0]) +
+               glm::length(offset.parameters[i].y * jet.dx[1]);
+    }
+  }
+  missed_ = std::max(missed_, moved);
 }
 
 LedRulings::Offset LedRulings::offset(const Ruling& end, const MovingRuling& exact) {

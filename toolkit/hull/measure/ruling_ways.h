@@ -15,7 +15,8 @@ class LedRulings {
   /// @pre all outlive this
   LedRulings(const ContactGeometry& geometry, const RulingsBetween& between, const Ruling& from,
              const Ruling& to);
-  /// By how much exact rulings miss the two, both contacts together; infinite where there is none.
+  /// By how much exact rulings miss the two, both contacts together; zero where these are exact,
+  /// infinite where there is none.
   double missed() const { return missed_; }
   /// The exact ruling at s in [0, 1], moved by its share of what those at the ends miss.
   std::optional<MovingRuling> operator()(double s) const;

@@ -54,13 +54,6 @@ class EvenDivision {
   std::vector<double> sums_ = {0};
 };
 
-double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
-  const dvec3 edge = b - a;
-  const double square = glm::dot(edge, edge);
-  const double t = square > 0 ? std::clamp(glm::dot(x - a, edge) / square, 0.0, 1.0) : 0;
-  return glm::distance(x, a + t * edge);
-}
-
 double sagitta(const Ruling& a, const Ruling& middle, const Ruling& b) {
   return std::max(distance_to_segment(middle.point[0], a.point[0], b.point[0]),
                   distance_to_segment(middle.point[1], a.point[1], b.point[1]));

@@ -254,14 +254,20 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent) {
   }
 }
 
-void drop_turns(std::vector<Ruling>& rulings, double rounding) {
+void drop_turns(std::vector<Ruling>& rulings, double extent) {
+  using Place = std::array<dvec3, 3>;
+  const auto place = [](const Ruling& r) { return Place{r.n, r.point[0], r.point[1]}; };
   const auto turns = [&](const Ruling& a, const Ruling& b, const Ruling& c) {
-    const auto along = [](const dvec3& x, const dvec3& y, const dvec3& z) {
-      return glm::dot(y - x, z - y);
-    };
-    const double sum = along(a.n, b.n, c.n) + along(a.point[0], b.point[0], c.point[0]) +
-                       along(a.point[1], b.point[1], c.point[1]);
-    return sum < -rounding * (distance(a, b) + distance(b, c));
+    const Place from = place(a), turn = place(b), to = place(c);
+    double along = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      along += glm::dot(turn[i] - from[i], to[i] - turn[i]);
+      if (std::min(distance_to_segment(to[i], from[i], turn[i]),
+                   distance_to_segment(from[i], turn[i], to[i])) > extent) {
+        return false;
+      }
+    }
+    return along < 0;
   };
   for (std::size_t k = 1; k + 1 < rulings.size();) {
     if (turns(rulings[k - 1], rulings[k], rulings[k + 1])) {

@@ -23,10 +23,9 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
 /// rounded surfaces rounding tells the way from one to the other.
 void drop_beside_ends(std::vector<Ruling>& rulings, double extent);
 
-/// Leaves out rulings from which a piece turns back, by more than rounding makes of what is
-/// `rounding` from each other: where all is in one plane to within the resolution, rulings that are
-/// exact are so in any order.
-void drop_turns(std::vector<Ruling>& rulings, double rounding);
+/// Leaves out rulings from which a piece turns back the way it came, to within `extent`: where all
+/// is in one plane to within the resolution, rulings that are exact are so in any order.
+void drop_turns(std::vector<Ruling>& rulings, double extent);
 
 /// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
 /// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge

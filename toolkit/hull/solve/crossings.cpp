@@ -24,6 +24,27 @@ double border_reach(const RulingSearch& search) {
   return std::max(on_border, search.place_extent());
 }
 
+/// Of a contact, those that no border holds.
+std::vector<std::size_t> free_parameters(const ContactGeometry& geometry, const Contact& c) {
+  std::vector<std::size_t> free;
+  for (int k = 0; k < geometry.jet(c).dimension; ++k) {
+    const double t = k == 0 ? c.u : c.v;
+    if (0 < t && t < 1) free.push_back(std::size_t(k));
+  }
+  return free;
+}
+
+/// The contact nearest to a place next to it, along its free parameters.
+Contact slid_to(const ContactGeometry& geometry, Contact c, const dvec3& place) {
+  for (const std::size_t k : free_parameters(geometry, c)) {
+    const ContactJet jet = geometry.jet(c);
+    double& t = k == 0 ? c.u : c.v;
+    const double square = glm::dot(jet.dx[k], jet.dx[k]);
+    if (square > 0) t = std::clamp(t + glm::dot(place - jet.x, jet.dx[k]) / square, 0.0, 1.0);
+  }
+  return c;
+}
+
 /// Where the two surfaces of a ruling touch, next to it: no farther off each other than the
 /// resolution.
 std::optional<Ruling> touching_next_to(const RulingSearch& search, const Ruling& beside) {
@@ -155,9 +176,16 @@ std::optional<FacetNode> crossing_of(const RulingSearch& search, const KnownArcs
       if (const auto there = expressed_in(geometry, before, own)) own = *there;
     }
     crossing.contacts.push_back(own);
-    crossing.points.push_back(found[0].point[0]);
     crossing.slots.push_back({node.ends[k].arc, node.ends[k].end});
   }
+  // In the place that is held by borders, and others as near to it as theirs let them be.
+  const auto held = std::min_element(
+      crossing.contacts.begin(), crossing.contacts.end(), [&](const Contact& a, const Contact& b) {
+        return free_parameters(geometry, a).size() < free_parameters(geometry, b).size();
+      });
+  const dvec3 place = geometry.point(*held);
+  for (Contact& c : crossing.contacts) c = slid_to(geometry, c, place);
+  crossing.points.assign(crossing.contacts.size(), place);
   return crossing;
 }
 

@@ -59,7 +59,7 @@ class GraphSolver {
         std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
-      for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, geometry_.tie());
+      for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, map_.contact_extent());
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, extent);
       join_in_crossings(arc);

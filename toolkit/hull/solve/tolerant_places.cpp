@@ -16,6 +16,8 @@ constexpr int places = 8;
 constexpr int closer_looks = 5;
 /// How many times the resolution of exact models that is that rounding makes of a model's numbers.
 constexpr double rounded_depths = 2;
+/// How many times deeper it may be elsewhere than in the deepest place that was found.
+constexpr double other_places = 1.25;
 /// How many times deeper it may be beside the deepest place, where it was looked closer: what a
 /// parabola over the last steps tops it by.
 constexpr double near_places = 1.001;
@@ -69,7 +71,7 @@ class TolerantPlaces {
       deepest = std::max({deepest, off(side.at(side.from), facet.points[k]),
                           off(side.at(side.to), facet.points[next])});
     }
-    if (of_sides > geometry_.tie()) deepest = std::max(deepest, bound_of(of_sides));
+    deepest = std::max(deepest, near_places * of_sides);
     return deepest <= geometry_.tie() ? 0 : deepest;
   }
 
@@ -83,6 +85,11 @@ class TolerantPlaces {
       deepest = std::max(deepest, own_depth(region, uv));
     }
     deepest = deepest <= geometry_.tie() ? 0 : bound_of(deepest);
+    // How what stands for others ripples, places do not tell.
+    const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
+    if (geometry_.patch(any).stand_in) {
+      deepest = std::max(deepest, deviation_of(geometry_.part(any)));
+    }
     for (const std::vector<TrimStretch>& loop : region.loops) {
       for (const TrimStretch& s : loop) {
         if (s.arc >= 0) deepest = std::max(deepest, piece_of(boundary, s).tolerant);
@@ -104,12 +111,10 @@ class TolerantPlaces {
     return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
   }
 
-  /// Of exact rulings; where none is found, of one between, and no less than may be made of it.
+  /// Of exact rulings; where none is found, what there is has no depth that could be looked at.
   double depth_at(const RulingsBetween& between, double share) {
-    const double s = between.at_share(share);
-    const std::optional<MovingRuling> exact = between(s);
-    if (exact) return depth(exact->at.ruling());
-    return std::max(resolution_, depth(between.interpolated(s).at.ruling()));
+    const std::optional<MovingRuling> exact = between(between.at_share(share));
+    return exact ? depth(exact->at.ruling()) : resolution_ / near_places;
   }
   double deepest_of(const RulingsBetween& between) {
     return deepest_along([&](double share) { return depth_at(between, share); });
@@ -136,8 +141,14 @@ class TolerantPlaces {
     return deepest;
   }
 
-  /// What is not exact is told to the resolution: elsewhere it may be as deep.
-  double bound_of(double deepest) const { return std::max(near_places * deepest, resolution_); }
+  double deviation_of(const Part& part) const {
+    return geometry_.scene().frame().length_to_frame(part.deviation_bound());
+  }
+
+  /// Elsewhere it may be deeper, as far as that is within the resolution.
+  double bound_of(double deepest) const {
+    return std::max(near_places * deepest, std::min(other_places * deepest, resolution_));
+  }
 
   /// Contacts that are one to within the resolution have one point.
   double off(const Contact& c, const dvec3& x) const {

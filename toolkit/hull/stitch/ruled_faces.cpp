@@ -95,10 +95,22 @@ Ruling middle_ruling(const ContactSystem& system, const ArcPiece& piece) {
   return m ? m->at.ruling() : r;
 }
 
+int source_along(const ContactGeometry& geometry, const Ruling& r) {
+  const int source = source_along(geometry, r, 0);
+  return source >= 0 ? source : source_along(geometry, r, 1);
+}
+
+/// That of the ruling in the middle, if those halfway from there to the ends are of some, too.
 int source_along(const ContactSystem& system, const ArcPiece& piece) {
-  const Ruling r = middle_ruling(system, piece);
-  const int source = source_along(system.geometry(), r, 0);
-  return source >= 0 ? source : source_along(system.geometry(), r, 1);
+  const int source = source_along(system.geometry(), middle_ruling(system, piece));
+  const std::size_t last = piece.rulings.size() - 1;
+  for (const std::size_t k : {last / 4, last - last / 4}) {
+    const bool is_inside = 0 < k && k < last;
+    if (is_inside && source >= 0 && source_along(system.geometry(), piece.rulings[k]) < 0) {
+      return -1;
+    }
+  }
+  return source;
 }
 
 /// It is one ruling for all that labels tell.
