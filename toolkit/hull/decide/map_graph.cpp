@@ -200,8 +200,27 @@ class Weaving {
       }
     }
     for (auto& [arc, left] : of_arc) {
-      while (left.size() > 1) pass_nearest(k, left);
+      if (left.size() > 2 && left.size() % 2 == 0) {
+        pass_in_order(k, arc, left);
+      } else {
+        while (left.size() > 1) pass_nearest(k, left);
+      }
     }
+  }
+
+  /// An arc that leaves its cell and comes back: the difference of its contacts keeps to one side
+  /// all over the cell, so that across it the arc goes on and on.
+  void pass_in_order(int k, int arc, std::vector<int>& passes) {
+    const auto [low, high] = std::div(arc, cell(k).apart);
+    const std::vector<Box>& contacts = cell(k).contacts;
+    const dvec3 apart = contacts[std::size_t(low)].center() - contacts[std::size_t(high)].center();
+    const auto d = DirectionMap::corners(cell(k));
+    const dvec3 along = glm::cross(d[0] + d[1] + d[2] + d[3], apart);
+    std::sort(passes.begin(), passes.end(), [&](int a, int b) {
+      const double before = glm::dot(middle(a), along), after = glm::dot(middle(b), along);
+      return before != after ? before < after : a < b;
+    });
+    for (std::size_t i = 0; i < passes.size(); i += 2) join(k, passes[i], passes[i + 1]);
   }
 
   /// The two of them that are nearest to each other.
@@ -216,12 +235,15 @@ class Weaving {
         best = {a, b};
       }
     }
-    const int a = left[best.first];
-    const int b = left[best.second];
-    crossing(a).next[number_of(crossing(a), k)] = b;
-    crossing(b).next[number_of(crossing(b), k)] = a;
+    join(k, left[best.first], left[best.second]);
     left.erase(left.begin() + std::ptrdiff_t(best.second));
     left.erase(left.begin() + std::ptrdiff_t(best.first));
+  }
+
+  /// An arc passes the cell from the one to the other.
+  void join(int k, int a, int b) {
+    crossing(a).next[number_of(crossing(a), k)] = b;
+    crossing(b).next[number_of(crossing(b), k)] = a;
   }
 
   dvec3 middle(int k) {

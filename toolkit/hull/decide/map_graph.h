@@ -23,8 +23,7 @@ struct MapCrossing {
 ///
 /// What a side between two cells shows, which arcs cross it, is told once, from its ends, for both.
 /// Through cells that tell their contacts apart arcs pass from crossing to crossing; all others
-/// that touch each other make a node, from which as many arcs leave as cross its border. (More than
-/// two between the same two contacts may pass it in pairs; which ones, the map does not tell.)
+/// that touch each other make a node, from which as many arcs leave as cross its border.
 /// Where two cells do not agree on their side, as at ends of arcs for want of resolution, crossings
 /// are left over in one of them, which is a node as well. (Two arcs that both cross one side, and
 /// that no cell tells, are missed.)
