@@ -57,11 +57,12 @@ class GraphSolver {
     const double extent = search_.place_extent();
     const double reach =
         std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
+    const double beside = std::max(extent, piece_ways * search_.least_way());
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
       for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, map_.contact_extent());
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
-      for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, extent);
+      for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       join_in_crossings(arc);
     }
     graph_.newton_iterations = system_.iterations();
