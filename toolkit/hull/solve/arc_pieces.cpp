@@ -13,6 +13,9 @@
 namespace taut {
 namespace {
 
+/// Cosine of the angle to the way back from which on it turns back, beyond rounding.
+constexpr double turned_back = 1e-3;
+
 /// Steps no longer than this are none, and what is no farther from a border is on it.
 constexpr double least_piece = 1e-12;
 /// The same where a contact goes from border to border of its element: beside a corner, or off and
@@ -259,15 +262,17 @@ void drop_turns(std::vector<Ruling>& rulings, double extent) {
   const auto place = [](const Ruling& r) { return Place{r.n, r.point[0], r.point[1]}; };
   const auto turns = [&](const Ruling& a, const Ruling& b, const Ruling& c) {
     const Place from = place(a), turn = place(b), to = place(c);
-    double along = 0;
+    double along = 0, before = 0, after = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       along += glm::dot(turn[i] - from[i], to[i] - turn[i]);
+      before += glm::dot(turn[i] - from[i], turn[i] - from[i]);
+      after += glm::dot(to[i] - turn[i], to[i] - turn[i]);
       if (std::min(distance_to_segment(to[i], from[i], turn[i]),
                    distance_to_segment(from[i], turn[i], to[i])) > extent) {
         return false;
       }
     }
-    return along < 0;
+    return along < -turned_back * std::sqrt(before * after);
   };
   for (std::size_t k = 1; k + 1 < rulings.size();) {
     if (turns(rulings[k - 1], rulings[k], rulings[k + 1])) {
