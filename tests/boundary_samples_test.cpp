@@ -125,6 +125,14 @@ TEST(BoundarySamples, OfTwoSpheresHaveRowsBesideTheirCircles) {
   for (const CurveChord& chord : all.chords) EXPECT_TRUE(is_edge_of(hull, chord.a, chord.b));
 }
 
+/// Of an arc that could not be solved there may be one ruling, which divides nothing.
+TEST(BoundarySamples, OfAPieceOfOneRulingAreNone) {
+  KnownBoundary one = two_spheres_boundary();
+  for (ArcPiece& piece : one.boundary.arcs.front().pieces) piece.rulings.resize(1);
+  const BoundarySamples all = samples_of(one, {.gap = 2e-3, .width = 1e-9});
+  EXPECT_TRUE(all.chords.empty());
+}
+
 /// On the rim of a cap, of radius R, a sagitta counts by how much the normal turns there.
 TEST(BoundarySamples, OfACapDivideItsRim) {
   const double gap = 1e-4;

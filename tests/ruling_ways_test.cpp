@@ -6,6 +6,7 @@
 #include <string>
 
 #include "judge/families.h"
+#include "models.h"
 #include "taut/hull/convex_hull.h"
 #include "taut/hull/measure/boundary_measures.h"
 
@@ -100,6 +101,40 @@ TEST(RulingWays, StraightOnesStayOnTheModel) {
       }
     }
   }
+}
+
+/// Two balls of two seams each whose coordinates have six decimals: rulings end within the kinks of
+/// seams, and exact ones between them miss them. Led, they meet, and the faces close up.
+TEST(RulingWays, AreLedToWhereRulingsEnd) {
+  taut_test::Random random(1);
+  Natural balls;
+  balls.shape =
+      mapped(sphere(1), skew_rotation()) + shifted(mapped(sphere(1), skew_rotation()), {4, 1, 2});
+  const Scene scene = make_scene(placed(balls, Variant::decimals, random).shape);
+  const ContactGeometry geometry(scene);
+  const ContactSystem system(geometry);
+  const Hull hull = solved(scene);
+  double farthest = 0;
+  for (const SeparatingArc& arc : hull.boundary->arcs) {
+    for (const ArcPiece& piece : arc.pieces) {
+      for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
+        const Ruling& from = piece.rulings[k - 1];
+        const Ruling& to = piece.rulings[k];
+        const RulingsBetween between(system, from, to);
+        const LedRulings led(geometry, between, from, to);
+        farthest = std::max(farthest, led.missed());
+        if (led.missed() == 0) continue;
+        const auto first = led(0), last = led(1);
+        ASSERT_TRUE(first && last);
+        for (std::size_t i = 0; i < 2; ++i) {
+          EXPECT_LE(glm::distance(first->at.jet[i].x, from.point[i]), 1e-12);
+          EXPECT_LE(glm::distance(last->at.jet[i].x, to.point[i]), 1e-12);
+        }
+      }
+    }
+  }
+  EXPECT_GT(farthest, 1e-9);
+  EXPECT_LT(farthest, 1e-5);
 }
 
 }  // namespace

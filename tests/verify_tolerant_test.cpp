@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "boundaries.h"
+#include "cages.h"
 #include "judge/families.h"
+#include "judge/judge.h"
 #include "sound_hull.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/convex_hull.h"
@@ -95,6 +97,57 @@ INSTANTIATE_TEST_SUITE_P(Natural, VerifyRounded,
                            return std::string(info.param.family) + "_" +
                                   name_of(info.param.variant);
                          });
+
+struct Stated {
+  const char* family;
+  Variant variant;
+  unsigned long seed = 1;
+};
+
+class VerifyStated : public testing::TestWithParam<Stated> {};
+
+/// What hulls of natural models and their reports state holds to 1e-12 of the diagonal: measures
+/// where rulings end within kinks (ball_of_two_seams, gear, capsule), depths between rulings (wing,
+/// open_cage) and along facets' sides (bolt, propeller), contacts that leave edges by their ends
+/// (blade), pieces of one ruling or none (thread), edges off their faces (cut_by_edges), rulings to
+/// and fro in a plane (wing, thread), widths (balls_in_a_row), labels (filleted_plate), stand-ins
+/// (loop_cage), arcs that leave a cell and come back (bolt_circle), edges that turn sharply
+/// (wires), ends of curved sides beside other places (terrain).
+TEST_P(VerifyStated, HoldsWhatIsStated) {
+  taut_test::Random random(GetParam().seed);
+  for (const FamilyGroup& group : family_groups()) {
+    for (const Family& family : group.families) {
+      if (family.name != GetParam().family) continue;
+      const Natural natural = placed(family.make(random), GetParam().variant, random);
+      const Scene scene =
+          natural.cage ? Scene(cage_model(*natural.cage)) : make_scene(natural.shape);
+      HullOptions options;
+      options.relative = 1e-2;
+      options.threads = 1;
+      const Hull hull = convex_hull(scene, options);
+      ASSERT_TRUE(hull.boundary);
+      EXPECT_TRUE(hull.boundary->unresolved.empty());
+      const HullVerification found = verified(document_of(scene, hull), scene);
+      EXPECT_TRUE(found.is_hull(1e-12)) << text_of(found);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Natural, VerifyStated,
+    testing::Values(Stated{"gear", Variant::float32}, Stated{"capsule", Variant::float32},
+                    Stated{"wing", Variant::float32}, Stated{"wing", Variant::decimals},
+                    Stated{"bolt", Variant::decimals}, Stated{"propeller", Variant::decimals},
+                    Stated{"blade", Variant::float32}, Stated{"cut_by_edges", Variant::clean},
+                    Stated{"cut_by_edges", Variant::turned}, Stated{"thread", Variant::turned},
+                    Stated{"balls_in_a_row", Variant::float32},
+                    Stated{"filleted_plate", Variant::float32}, Stated{"loop_cage", Variant::clean},
+                    Stated{"bolt_circle", Variant::clean, 2}, Stated{"wires", Variant::turned, 2},
+                    Stated{"terrain", Variant::turned, 2},
+                    Stated{"plate_of_bosses", Variant::float32}, Stated{"cup", Variant::float32}),
+    [](const auto& info) {
+      return std::string(info.param.family) + "_" + name_of(info.param.variant);
+    });
 
 /// Where edges and patches lie in one place a hull names one of them.
 TEST(VerifyTolerant, OneOfSeveralInOnePlaceIsNamed) {

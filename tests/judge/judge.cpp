@@ -21,8 +21,8 @@ using namespace taut;  // NOLINT: what is judged
 
 namespace {
 
-/// Lengths that verify() may find wrong, in diagonals.
-constexpr double verified_length = 1e-9;
+/// What `taut verify` holds documents to beyond the bounds that they state, in diagonals.
+constexpr double exact_relative = 1e-12;
 /// Relative differences of measures of rounded models from those of the models drawn.
 constexpr double rounded_measure = 1e-5;
 /// And of meshes that are the hull from its boundary, by the rounding of vertices.
@@ -59,15 +59,6 @@ std::string wrong_measure(const Scene& scene, const Hull& hull, const Expected& 
   return wrong;
 }
 
-/// With the resolution that it was made for.
-HullDocument document_of(const Scene& scene, const Hull& hull) {
-  HullDocument document = hull_document(scene, *hull.boundary);
-  Report report;
-  report.hull.resolution = hull.resolution;
-  document.report = to_json(report);
-  return document;
-}
-
 /// What is wrong by a support function of the judge's own.
 std::string wrong_support(const Subject& subject, const Scene& scene, const Hull& hull,
                           Random& random) {
@@ -94,6 +85,33 @@ std::string wrong_support(const Subject& subject, const Scene& scene, const Hull
 }
 
 }  // namespace
+
+HullDocument document_of(const Scene& scene, const Hull& hull) {
+  const HullBoundary& boundary = *hull.boundary;
+  HullDocument document = hull_document(scene, boundary);
+  Report report;
+  report.hull.resolution = hull.resolution;
+  report.hull.counts = {boundary.count(FaceKind::patch), boundary.count(FaceKind::scroll),
+                        boundary.count(FaceKind::facet), int(boundary.curves.size()),
+                        int(boundary.unresolved.size())};
+  Report::ExactHull::Tolerant tolerant;
+  for (const HullDocument::Face& face : document.faces) {
+    tolerant.faces += face.tolerant > 0 ? 1 : 0;
+    tolerant.bound = std::max(tolerant.bound, face.tolerant);
+  }
+  report.hull.tolerant = tolerant;
+  if (boundary.unresolved.empty()) {
+    const BoundaryMeasures measures = measure(scene, ContactGeometry(scene), boundary);
+    report.hull.measures = measures;
+    report.hull.mean_width = measures.mean_width;
+    report.hull.measures_accuracy = measures.bounds.largest();
+  }
+  if (scene.model().deviation_bound() > 0) {
+    report.subdivision = Report::Subdivision{0, 0, scene.model().deviation_bound()};
+  }
+  document.report = to_json(report);
+  return document;
+}
 
 Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_options) {
   Verdict verdict;
@@ -123,7 +141,8 @@ Verdict judged(const Subject& subject, Random& random, const HullOptions& hull_o
   }
   VerifyOptions options;
   options.random_directions = 500;
-  verdict.verified = verify(document_of(scene, hull), scene, options).is_hull(verified_length);
+  const HullDocument document = document_of(scene, hull);
+  verdict.verified = verify(document, scene, options).is_hull(exact_relative);
   const std::string wrong = wrong_measure(scene, hull, subject.expected, verdict.measured);
   if (verdict.wrong.empty()) verdict.wrong = wrong;
   return verdict;

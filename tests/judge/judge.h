@@ -5,6 +5,8 @@
 
 #include "expected.h"
 #include "families.h"
+#include "taut/hull/result/hull.h"
+#include "taut/hull/result/hull_document.h"
 #include "taut/hull/result/hull_options.h"
 #include "taut/surface/model.h"
 
@@ -14,7 +16,7 @@ namespace taut_test {
 struct Verdict {
   bool closed = false;    ///< there is a boundary, and nothing of it is unresolved
   bool within = false;    ///< and it is exact to within the resolution
-  bool verified = false;  ///< verify() finds nothing wrong at 1e-9 of the diagonal
+  bool verified = false;  ///< verify() finds nothing wrong beyond what the hull states
   /// Why what the hull says is wrong, by a support function of the judge's own or by measures that
   /// are expected; empty if it is not.
   std::string wrong;
@@ -38,6 +40,9 @@ struct Subject {
   Shape shape;
   std::optional<taut::ControlCage> cage;
 };
+
+/// The document of a hull with a boundary, and with the report that a user would find in it.
+taut::HullDocument document_of(const taut::Scene& scene, const taut::Hull& hull);
 
 /// Judges the hull of the subject's model. @throws what hulls throw, but for a tolerance that is
 /// not reached

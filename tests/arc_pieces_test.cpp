@@ -1,0 +1,55 @@
+#include "taut/hull/solve/arc_pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace taut {
+namespace {
+
+/// Contacts on the x axis and on a parallel to it, one opposite the other.
+Ruling ruling_at(double x, double aside = 0) {
+  Ruling r;
+  r.n = {0, 0, 1};
+  r.point = {dvec3(x, aside, 0), dvec3(x, 1 + aside, 0)};
+  return r;
+}
+
+std::vector<double> places_of(const std::vector<Ruling>& rulings) {
+  std::vector<double> places;
+  for (const Ruling& r : rulings) places.push_back(r.point[0].x);
+  return places;
+}
+
+TEST(ArcPieces, TurnsBackTheWayTheyCameAreLeftOut) {
+  std::vector<Ruling> rulings;
+  for (const double x : {0.0, 1.0, 2.5, 2.0, 3.0, 2.9, 4.0}) rulings.push_back(ruling_at(x));
+  drop_turns(rulings, 1e-6);
+  const std::vector<double> places = places_of(rulings);
+  EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
+  EXPECT_EQ(places.front(), 0);
+  EXPECT_EQ(places.back(), 4);
+
+  rulings = {ruling_at(0), ruling_at(1), ruling_at(0)};
+  drop_turns(rulings, 1e-6);
+  EXPECT_EQ(places_of(rulings), std::vector<double>({0, 0}));
+}
+
+/// As round a thin region, however few rulings there are.
+TEST(ArcPieces, WaysAroundAreKept) {
+  std::vector<Ruling> rulings = {ruling_at(0), ruling_at(1, 0.01), ruling_at(0, 0.02)};
+  drop_turns(rulings, 1e-3);
+  EXPECT_EQ(rulings.size(), 3U);
+}
+
+/// What leaves a place at right angles, as n does where a contact has come to rest, does not turn.
+TEST(ArcPieces, CornersAreNoTurns) {
+  std::vector<Ruling> rulings = {ruling_at(0), ruling_at(1e-4), ruling_at(1e-4)};
+  rulings[2].n = unit(dvec3(0.1, 0, 1));
+  drop_turns(rulings, 1e-3);
+  EXPECT_EQ(rulings.size(), 3U);
+}
+
+}  // namespace
+}  // namespace taut
