@@ -24,7 +24,7 @@ constexpr double quadrature_way = 1e-6;
 
 /// Exact rulings are led from one to another if they miss them by no more than this share of the
 /// way: by more they are those of other contacts.
-constexpr double farthest_led = 0.01;
+constexpr double farthest_led = 0.1;
 
 /// Nodes of the rules that do for patches that are small beside their radii of curvature.
 constexpr int few_nodes = 6;
@@ -96,6 +96,7 @@ class Summation {
   void add_exact(const Stretch& at, const RulingsBetween& between);
   void add_ruling(const Stretch& at, const MovingRuling& m, double weight, Quantities& sample);
   bool bounds_normals(const GreenRegion& region, const TrimStretch& stretch) const;
+  bool bounds_region(const TrimStretch& stretch) const;
   void add_border(const GreenRegion& region, const TrimStretch& stretch);
 
   void add_scroll(const MovingRuling& m, Quantities& sum) const;
@@ -320,24 +321,32 @@ bool Summation::bounds_normals(const GreenRegion& region, const TrimStretch& str
   return patch.borders[std::size_t(stretch.side)].piece >= 0;
 }
 
-/// Along a stretch of a patch's border, and where that is an edge, its crease: the normals of the
-/// edge lie beyond the patch's own n, away from the patch. With the patch to the left of the
-/// direction T of travel seen from outside (positive sign), they have larger phi: its lower end.
+/// Whether another region goes on beyond the stretch: with a kink, if the patches are rounded.
+bool Summation::bounds_region(const TrimStretch& stretch) const {
+  return stretch.curve < 0 ||
+         boundary_.curves[std::size_t(stretch.curve)].kind == HullCurveKind::join;
+}
+
+/// Along a stretch of a patch's border, and where that is an edge or a join, its crease: the
+/// normals of the edge lie beyond the patch's own n, away from the patch. With the patch to the
+/// left of the direction T of travel seen from outside (positive sign), they have larger phi: its
+/// lower end.
 void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch) {
   const bool of_v = along_v(stretch.side);
   const bool edge = bounds_normals(region, stretch);
   const bool of_line = of_v == (region.inner == 0);
-  if (!of_line && !edge) return;
+  const bool join = !edge && bounds_region(stretch);
+  if (!of_line && !edge && !join) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
-  if (of_line && !edge && on_side(stretch.side, 0)[region.inner] == region.base) return;
+  if (of_line && !edge && !join && on_side(stretch.side, 0)[region.inner] == region.base) return;
   const bool plain = of_line && is_plain(region, stretch);
   const auto f = [&](double t, double weight, Quantities& sample) {
     const dvec2 p = on_side(stretch.side, t);
     if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample, plain);
-    if (!edge) return;
+    if (!edge && !join) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
-    const dvec3 x = j.x - creases_.of(*region.region, stretch.side);
+    const dvec3 x = j.x - (edge ? creases_.of(*region.region, stretch.side) : origin_);
     const double half = crease(x, sense * j.dx[of_v ? 1 : 0], unit(N));
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;

@@ -1,6 +1,7 @@
 #include "taut/hull/solve/edge_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -42,13 +43,19 @@ class EdgePlaces {
       const double speed = length(line);
       const std::set<double>& level = level_[line];
       const auto is_level = [&](double t) { return level.count(t) > 0; };
+      // What has another place where it is needs none farther away.
+      const auto is_alone = [&, all = &places](double t) {
+        return is_level(t) && std::none_of(all->begin(), all->end(), [&](const auto& p) {
+                 return !is_level(p.first) && std::abs(p.first - t) * speed <= distance_;
+               });
+      };
       const auto& [instance, piece, patch, side] = line;
       const bool is_bent =
           piece >= 0 && geometry_.is_beside_bent({instance, SourceKind::edge, piece, 0, 0});
       for (auto first = places.begin(); first != places.end();) {
         auto last = std::next(first);
         for (auto before = first; last != places.end(); before = last++) {
-          const bool wide = is_bent || is_level(before->first) || is_level(last->first);
+          const bool wide = is_bent || is_alone(before->first) || is_alone(last->first);
           const double reach = wide ? level_distance_ : distance_;
           if ((last->first - before->first) * speed > reach) break;
         }

@@ -10,8 +10,8 @@ namespace taut {
 /// edges' pieces and of sides, too, are such places, and contacts so near to them are on them.
 /// (Contacts move along their elements, across the normal: their heights change by the square of
 /// the distance.) Ends of curved sides, along which rounding leaves planes nearly level, are one
-/// with places up to `level_distance` from them, and so are places beside ruled patches that are
-/// bent. In the scene's frame.
+/// with places up to `level_distance` from them, if none is nearer, and so are places beside ruled
+/// patches that are bent. In the scene's frame.
 void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance,
                        double level_distance = 0);
 
