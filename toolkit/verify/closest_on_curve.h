@@ -14,7 +14,8 @@ struct ClosestOnCurve {
 };
 
 /// The point of a curve over [from, to] (or [to, from]) that is nearest to p, by Newton's method
-/// from the nearest of some samples, with steps halved that lead away. `jet(s)` is a SourceJet whose first parameter is the curve's.
+/// from the nearest of some samples, with steps halved that lead away. `jet(s)` is a SourceJet
+/// whose first parameter is the curve's.
 template <class Jet>
 ClosestOnCurve closest_on_curve(const dvec3& p, double from, double to, const Jet& jet) {
   constexpr int samples = 16;
