@@ -43,5 +43,29 @@ TEST(EdgePlaces, AreOneWithinADistance) {
   EXPECT_EQ(first.point[0], geometry.point(first.contact[0]));
 }
 
+/// The end of a facet's curved side is one with a place farther away, but not if it has one where
+/// it is.
+TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {
+  const Scene scene = make_scene({{}, {twisted_cubic()}, {{0, 0, 5}}});
+  const ContactGeometry geometry(scene);
+  const auto united = [&](const std::vector<double>& places, double side_end) {
+    SeparatingGraph graph;
+    for (const double t : places) graph.arcs.push_back(along_curve(geometry, t, 0.9));
+    FacetNode facet;
+    facet.sides = {EdgeStretch{0, 0, side_end, 0.8}};
+    graph.nodes.push_back(facet);
+    unite_edge_places(geometry, graph, 1e-7, 1e-4);
+    return graph;
+  };
+  const auto begin = [](const SeparatingGraph& graph, std::size_t arc) {
+    return graph.arcs[arc].pieces.front().rulings.front().contact[0].u;
+  };
+  const SeparatingGraph far = united({0.3}, 0.3 + 1e-5);
+  EXPECT_EQ(far.nodes.front().sides.front().from, begin(far, 0));
+  const SeparatingGraph two = united({0.3, 0.3 + 1e-5}, 0.3 + 1e-5 + 1e-9);
+  EXPECT_EQ(two.nodes.front().sides.front().from, begin(two, 1));
+  EXPECT_NE(begin(two, 0), begin(two, 1));
+}
+
 }  // namespace
 }  // namespace taut

@@ -28,7 +28,7 @@ double border_reach(const RulingSearch& search) {
 std::vector<std::size_t> free_parameters(const ContactGeometry& geometry, const Contact& c) {
   std::vector<std::size_t> free;
   for (int k = 0; k < geometry.jet(c).dimension; ++k) {
-    const double t = k == 0 ? c.u : c.v;
+    const double t = parameters(c)[k];
     if (0 < t && t < 1) free.push_back(std::size_t(k));
   }
   return free;
