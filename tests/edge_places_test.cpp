@@ -62,7 +62,7 @@ TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {
   };
   const SeparatingGraph far = united({0.3}, 0.3 + 1e-5);
   EXPECT_EQ(far.nodes.front().sides.front().from, begin(far, 0));
-  const SeparatingGraph two = united({0.3, 0.3 + 1e-5}, 0.3 + 1e-5 + 1e-9);
+  const SeparatingGraph two = united({0.3, 0.3 + 1e-5}, 0.3 + 1e-5 - 1e-9);
   EXPECT_EQ(two.nodes.front().sides.front().from, begin(two, 1));
   EXPECT_NE(begin(two, 0), begin(two, 1));
 }
