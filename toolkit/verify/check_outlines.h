@@ -14,7 +14,8 @@ namespace taut {
 /// - "outlines": a facet's outline is convex and what its curves make it, and so are its sides.
 ///
 /// Returns the largest distance by which a curve is off one of its two faces, or a face's own
-/// outline off its curves. `tolerance`: in model units, for what is one point or a straight line.
+/// outline off its curves, beyond the bounds that these faces state. `tolerance`: in model units,
+/// for what is one point or a straight line.
 double check_outlines(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
                       double tolerance, HullFaults& faults);
 

@@ -16,8 +16,8 @@ struct HullStructure {
   int euler = 0;
 };
 
-/// Ends of curves with a face in common that are closer than the tolerance, in model units, are
-/// one.
+/// Ends of curves with a face in common that are closer than the tolerance, in model units, and the
+/// bounds that the curves' faces state, are one; both ends of one curve, than the tolerance.
 HullStructure hull_structure(const HullDocument& hull, double tolerance);
 
 }  // namespace taut

@@ -29,14 +29,17 @@ struct HullVerification {
   double off_model = 0;
   /// Largest slope by which a contact's surface or edge rises over its supporting plane: derivative
   /// along n over a whole Bezier patch or curve, where that ends but for where it falls off; less
-  /// what a place that is off by the resolution that the document states may have of it. Of faces
-  /// that state a bound nothing.
+  /// what a place that is off by the resolution that the document states may have of it. At the
+  /// ends of parameters, and of models whose numbers are rounded, the height that it rises to
+  /// instead. Of faces that state a bound nothing.
   double tangency = 0;
   /// Largest |(a - b) . n| of a ruling, and distance of a facet's points from its plane.
   double flatness = 0;
-  /// Largest distance of a contact's point from its source at its parameters.
+  /// Largest distance of a contact's point from its source at its parameters, beyond the bound that
+  /// its face states.
   double off_source = 0;
-  /// Largest distance of a curve from one of its faces, or of a face's outline from its curves.
+  /// Largest distance of a curve from one of its faces, or of a face's outline from its curves,
+  /// beyond the bounds that these faces state.
   double off_outline = 0;
   /// max of h_model - h_document and of h_document - h_model over the directions of all rulings,
   /// some between them, and facets, by support queries.

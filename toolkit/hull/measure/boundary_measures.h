@@ -38,10 +38,10 @@ struct BoundaryMeasures : Measures {
 ///
 /// Patches by Green's theorem in their parameters, scrolls along their rulings, facets as polygons;
 /// creases, needed for the mean width, from the normals that bound them: from separating curves
-/// with a contact on an edge or two at vertices, and from patches' borders on edges. Of a
-/// polyhedron, which has no separating curves, from its curves. Where neighbouring rulings are not
-/// joined by exact ones, as next to planes that are known to the resolution, those between are
-/// interpolated.
+/// with a contact on an edge or two at vertices, and from patches' borders on edges and joins,
+/// which have kinks where they are rounded. Of a polyhedron, which has no separating curves, from
+/// its curves. Where neighbouring rulings are not joined by exact ones, as beside such kinks and
+/// planes that are known to the resolution, those between are led to them or interpolated.
 ///
 /// Of a complete boundary whose rulings are exact to rounding, errors are about 1e-13, however far
 /// apart the rulings are; where a piece ends in a free end, below 1e-10 if the whole piece has but

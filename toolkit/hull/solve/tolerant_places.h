@@ -12,9 +12,11 @@ bool is_rounded(const Scene& scene, double resolution);
 
 /// Finds out how far arcs and faces of a boundary are below the supporting planes with their
 /// normals (ArcPiece::tolerant, HullFace::tolerant), by support queries: at the rulings that are
-/// stored, and where these are farther than rounding makes them between them, too; at the corners
-/// and curved sides of facets; at a grid of places in patches. Where no rulings are found between
-/// two, they are known to the resolution, in the scene's frame. @throws Cancelled
+/// stored and midway between them and, where these are farther than rounding makes them, closer; at
+/// the corners and curved sides of facets; at a grid of places in patches, of which stand-ins are
+/// within their deviation. Points that are off their contacts, and by which pieces miss each other,
+/// count as well. Where no rulings are found between two, they are known to the resolution, in the
+/// scene's frame. These are bounds as far as such places tell. @throws Cancelled
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution);
 
