@@ -58,15 +58,15 @@ struct Arc {
 class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,
-            std::vector<dvec3>& vertices, const Box& box, double smooth_angle, double grid,
-            double bent, const Progress& progress)
+            std::vector<dvec3>& vertices, const Box& box, double tolerance, double smooth_angle,
+            double grid, double bent, const Progress& progress)
       : patches_(patches),
         pieces_(pieces),
         edges_(edges),
         vertices_(vertices),
         box_(box),
         progress_(progress),
-        tolerance_(join_tolerance(box, bent)),
+        tolerance_(tolerance),
         free_piece_count_(to_int(pieces.size())),
         sides_(side_curves(patches, tolerance_)),
         smoothness_(patches, sides_, tolerance_, smooth_angle, grid, bent),
@@ -467,12 +467,14 @@ void Part::connect(double smooth_angle, const Progress& progress) {
   // What points may be off lines and planes of others.
   const double bent = cover_share * grid_resolution * half_step;
   find_rulings(patches_, box_, bent, progress);
-  split_crests(faces_, patches_, box_, bent, progress);
-  split_junctions(faces_, patches_, box_, bent, progress);
+  // Patches of cages are computed, whatever the cages' points were rounded to: their borders meet.
+  const bool meet = !cages_.empty();
+  const double apart = meet ? 0 : bent;
+  split_crests(faces_, patches_, box_, apart, progress);
+  split_junctions(faces_, patches_, box_, apart, progress);
   find_repeated_patches(patches_, box_, progress);
-  // Patches of cages are computed, whatever the cages' points were rounded to.
-  Connector connector(patches_, pieces_, edges_, vertices_, box_, smooth_angle,
-                      cages_.empty() ? 2 * half_step : 0, bent, progress);
+  Connector connector(patches_, pieces_, edges_, vertices_, box_, join_tolerance(box_, apart),
+                      smooth_angle, meet ? 0 : 2 * half_step, bent, progress);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
   join_gap_ = connector.join_gap();

@@ -60,15 +60,18 @@ double reach(const ContactGeometry& geometry, const Ruling& r) {
   return std::clamp(uncertainty(geometry, r), least_piece_at_corner, longest_empty_piece);
 }
 
-/// Puts a ruling in the place of one very near to it, its contacts in their own elements as far as
-/// they reach there.
-void move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
-  ruling.n = place.n;
-  ruling.point = place.point;
+/// Puts a ruling in the place of one very near to it, its contacts in their own elements. False if
+/// one of these does not reach there; it stays as it is then.
+bool move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
+  Ruling moved = place;
   for (std::size_t i = 0; i < 2; ++i) {
     const Contact c = snapped(geometry, place.contact[i], reach(geometry, place));
-    if (const auto own = in_element(geometry, c, ruling.contact[i])) ruling.contact[i] = *own;
+    const auto own = in_element(geometry, c, ruling.contact[i]);
+    if (!own) return false;
+    moved.contact[i] = *own;
   }
+  ruling = moved;
+  return true;
 }
 
 void set_contact(const ContactGeometry& geometry, Ruling& ruling, std::size_t i,
@@ -89,7 +92,8 @@ void move_to_borders(const ContactGeometry& geometry, Ruling& ruling, double dis
   }
 }
 
-/// Contacts with which pieces begin and end in their normal form: turned to the next ones.
+}  // namespace
+
 void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
   for (ArcPiece& piece : pieces) {
     std::vector<Ruling>& rulings = piece.rulings;
@@ -102,6 +106,8 @@ void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
     }
   }
 }
+
+namespace {
 
 /// Pieces that go on into each other in the same elements are one.
 void join_pieces(std::vector<ArcPiece>& pieces) {
@@ -134,19 +140,24 @@ std::optional<ContactExit> join_along(const ContactGeometry& geometry, const Arc
   return std::nullopt;
 }
 
-/// Most of the piece's rulings tell so; about poles they do not tell.
+/// The region of contact i of a piece along a side of its patch is beyond that: it lies to the left
+/// of contact 1 and to the right of contact 0 as they go, seen from outside.
 bool extends_over(const ContactGeometry& geometry, const ArcPiece& piece, std::size_t i,
-                  const ContactExit& exit) {
-  int votes = 0;
+                  Side side) {
+  const Contact& first = piece.rulings.front().contact[i];
+  const Contact& last = piece.rulings.back().contact[i];
+  const double along = along_v(side) ? last.v - first.v : last.u - first.u;
+  double outward = 0;  // of Su x Sv
   for (const Ruling& r : piece.rulings) {
-    if (collapsed_side(geometry, r.contact[i])) continue;
-    votes += extends_over(geometry, CommonSupport(geometry, r), int(i), exit) ? 1 : -1;
+    const ContactJet j = geometry.jet(r.contact[i]);
+    outward += glm::dot(glm::cross(j.dx[0], j.dx[1]), r.n);
   }
-  return votes > 0;
+  const bool is_ahead = (side == Side::v0 || side == Side::u1) == (along > 0);
+  return along != 0 && is_ahead != ((i == 1) == (outward > 0));
 }
 
-/// A contact that has come to run along a smooth join is told as one of the patch into which its
-/// region extends.
+}  // namespace
+
 void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
                       double extent) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -155,7 +166,7 @@ void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pi
       const std::optional<ContactExit> exit = join_along(geometry, piece, i, extent);
       if (!exit) continue;
       for (Ruling& r : piece.rulings) set_contact(geometry, r, i, at_exit(r.contact[i], *exit));
-      if (extends_over(geometry, piece, i, *exit)) {
+      if (extends_over(geometry, piece, i, all_sides[std::size_t(exit->index)])) {
         for (Ruling& r : piece.rulings) {
           if (const auto over = beyond(geometry, r.contact[i], *exit)) r.contact[i] = *over;
         }
@@ -169,6 +180,8 @@ void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pi
   }
   join_pieces(pieces);
 }
+
+namespace {
 
 /// Rounding may make any shorter piece of nothing.
 double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece) {
@@ -200,22 +213,26 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
     for (std::size_t k = pieces.size(); k-- > 0 && pieces.size() > 1;) {
       if (!is_empty(k)) continue;
       // What begins and ends the arc is told by its first ruling and its last.
-      if (k == 0) move_to(geometry, pieces[1].rulings.front(), pieces[0].rulings.front());
-      if (k + 1 == pieces.size())
-        move_to(geometry, pieces[k - 1].rulings.back(), pieces[k].rulings.back());
+      const Ruling& first = pieces[k].rulings.front();
+      const Ruling& last = pieces[k].rulings.back();
+      if (k == 0 && !move_to(geometry, pieces[1].rulings.front(), first)) continue;
+      if (k + 1 == pieces.size() && !move_to(geometry, pieces[k - 1].rulings.back(), last)) {
+        continue;
+      }
       if (k > 0 && k + 1 < pieces.size()) {
         // One contact crosses its border here, the other one in the piece's other end.
-        Ruling& before = pieces[k - 1].rulings.back();
-        Ruling& after = pieces[k + 1].rulings.front();
+        Ruling before = pieces[k - 1].rulings.back();
+        Ruling after = pieces[k + 1].rulings.front();
         move_to_borders(geometry, before, extent > 0 ? reach : 0);
         move_to_borders(geometry, after, extent > 0 ? reach : 0);
         set_places(geometry, after, before);
+        if (before.point != after.point) continue;
+        pieces[k - 1].rulings.back() = before;
+        pieces[k + 1].rulings.front() = after;
       }
       pieces.erase(pieces.begin() + std::ptrdiff_t(k));
     }
   }
-  tell_along_joins(geometry, pieces, extent);
-  turn_ends(geometry, pieces);
 }
 
 Ruling reversed(const Ruling& r) {
@@ -280,6 +297,27 @@ void drop_turns(std::vector<Ruling>& rulings, double extent) {
       k = std::max<std::size_t>(k - 1, 1);
     } else {
       ++k;
+    }
+  }
+}
+
+void tell_corners(std::vector<ArcPiece>& pieces, double extent) {
+  for (ArcPiece& piece : pieces) {
+    for (const std::size_t i : {0u, 1u}) {
+      const Contact corner = piece.rulings.front().contact[i];
+      const dvec3 end = piece.rulings.front().point[i];
+      const Contact& last = piece.rulings.back().contact[i];
+      const bool comes_back = corner.kind == SourceKind::face && same_element(corner, last) &&
+                              corner.u == last.u && corner.v == last.v;
+      const bool stays =
+          comes_back && std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
+            return glm::distance(r.point[i], end) <= extent;
+          });
+      if (!stays) continue;
+      for (Ruling& r : piece.rulings) {
+        r.contact[i] = corner;
+        r.point[i] = end;
+      }
     }
   }
 }

@@ -13,9 +13,8 @@ inline constexpr double longest_empty_piece = 1e-7;
 
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
 /// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
-/// Contacts with which the others begin and end are in their normal form (turned_to). `reach`: up
-/// to so long they may be none, and up to `extent` the first and the last, if that is more than
-/// rounding tells.
+/// `reach`: up to so long they may be none, and up to `extent` the first and the last, if that is
+/// more than rounding tells.
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
                        double reach = 0, double extent = 0);
 
@@ -26,6 +25,18 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent);
 /// Leaves out rulings from which a piece turns back the way it came, to within `extent`: where all
 /// is in one plane to within the resolution, rulings that are exact are so in any order.
 void drop_turns(std::vector<Ruling>& rulings, double extent);
+
+/// Contacts that leave a place of a patch and come back to it, no farther than `extent` from it,
+/// stay there.
+void tell_corners(std::vector<ArcPiece>& pieces, double extent);
+
+/// A contact that has come to run along a smooth join, or no farther than `extent` from it where
+/// heights tie, is told as one of the patch into which its region extends.
+void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+                      double extent);
+
+/// Contacts with which pieces begin and end in their normal form: turned to the next ones.
+void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
 
 /// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
 /// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge

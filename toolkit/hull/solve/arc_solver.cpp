@@ -20,8 +20,11 @@ namespace {
 constexpr int division_limit = 40;
 /// Divisions of one way, after which its parts are taken as they are.
 constexpr int most_divisions = 100;
-/// Borders that a contact passes at once.
-constexpr int most_hops = 3;
+/// Borders that a contact passes at once, after a few of which it may be no farther from where it
+/// goes than so many times the way: elements may be much smaller than ways that are not divided.
+constexpr int few_hops = 3;
+constexpr int most_hops = 16;
+constexpr double astray = 2;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
 constexpr double middle_share = 0.05;
 /// Largest turn between neighbours, in radians.
@@ -87,12 +90,17 @@ std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometr
   struct Way {
     Contact at;
     std::vector<std::array<Contact, 2>> steps;
+    double left = infinity;  ///< from where it has come to
   };
   const dvec3 aim = geometry.point(to);
-  std::vector<Way> ways = {{from, {}}};
-  for (int hops = 0; hops < most_hops; ++hops) {
-    std::vector<Way> longer;
-    std::optional<Way> best;
+  std::vector<Way> ways = {{from, {}, glm::distance(geometry.point(from), aim)}};
+  const double reach = astray * ways.front().left;
+  std::vector<Contact> passed = {from};
+  const auto same = [](const Contact& c) {
+    return [&c](const auto& other) { return same_element(c, other); };
+  };
+  for (int hops = 0; hops < most_hops && !ways.empty(); ++hops) {
+    std::vector<Way> longer;  // of each element the one that comes nearest
     for (const Way& way : ways) {
       for (const ContactExit& exit : exits(geometry, way.at)) {
         Contact border = at_exit(way.at, exit);
@@ -100,16 +108,24 @@ std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometr
           border = passed_on_side(geometry, border, Side(exit.index), geometry.point(way.at), aim);
         }
         const std::optional<Contact> over = beyond(geometry, border, exit);
-        if (!over) continue;
-        Way next = {*over, way.steps};
+        if (!over || std::any_of(passed.begin(), passed.end(), same(*over))) continue;
+        Way next = {*over, way.steps, glm::distance(geometry.point(*over), aim)};
+        if (hops >= few_hops && next.left > reach) continue;
         next.steps.push_back({border, *over});
-        const bool nearer = !best || glm::distance(geometry.point(*over), aim) <
-                                         glm::distance(geometry.point(best->at), aim);
-        if (same_element(*over, to) && nearer) best = next;
-        longer.push_back(std::move(next));
+        const auto known = std::find_if(longer.begin(), longer.end(), [&](const Way& other) {
+          return same_element(other.at, *over);
+        });
+        if (known == longer.end()) {
+          longer.push_back(std::move(next));
+        } else if (next.left < known->left) {
+          *known = std::move(next);
+        }
       }
     }
-    if (best) return best->steps;
+    for (const Way& way : longer) {
+      if (same_element(way.at, to)) return way.steps;
+      passed.push_back(way.at);
+    }
     ways = std::move(longer);
   }
   return {};

@@ -35,7 +35,8 @@ class EdgePlaces {
   }
 
   /// Places follow each other with less than the distance between them: all are the line's end if
-  /// that is among them, else the first that is no end of a curved side, or the first.
+  /// that is among them (the nearer one if both are), else the first that is no end of a curved
+  /// side, or the first.
   void unite() {
     for (auto& [line, places] : places_) {
       places.try_emplace(0.0, 0.0);
@@ -61,11 +62,13 @@ class EdgePlaces {
         }
         const auto exact =
             std::find_if(first, last, [&](const auto& p) { return !is_level(p.first); });
-        double at = (exact == last ? first : exact)->first;
-        for (auto k = first; k != last; ++k) {
-          if (k->first == 0 || k->first == 1) at = k->first;
+        const bool begins = first->first == 0;
+        const bool ends = std::prev(last)->first == 1;
+        const double at = (exact == last ? first : exact)->first;
+        for (; first != last; ++first) {
+          const bool to_end = ends && (!begins || first->first > 0.5);
+          first->second = to_end ? 1 : begins ? 0 : at;
         }
-        for (; first != last; ++first) first->second = at;
       }
     }
   }

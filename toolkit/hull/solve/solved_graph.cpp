@@ -63,6 +63,9 @@ class GraphSolver {
       for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, map_.contact_extent());
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
+      tell_corners(arc.pieces, extent);
+      tell_along_joins(geometry_, arc.pieces, extent);
+      turn_ends(geometry_, arc.pieces);
       join_in_crossings(arc);
     }
     graph_.newton_iterations = system_.iterations();

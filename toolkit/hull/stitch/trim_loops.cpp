@@ -139,7 +139,10 @@ void Trimmer::add_trim_arcs(const HalfArc& half) {
     const int piece = backward ? count - 1 - k : k;
     const std::vector<Ruling>& rulings = arc.pieces[std::size_t(piece)].rulings;
     const auto i = std::size_t(half.contact);
-    if (rulings.front().contact[i].kind != SourceKind::face) {
+    const bool stays = std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& r) {
+      return parameters(r.contact[i]) == parameters(rulings.front().contact[i]);
+    });
+    if (rulings.front().contact[i].kind != SourceKind::face || stays) {
       trim_arcs_of_.back().push_back(-1);
       continue;
     }
