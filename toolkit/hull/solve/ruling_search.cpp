@@ -62,6 +62,11 @@ bool is_between(const Ruling& from, const Ruling& to, const Ruling& r) {
   return std::max(square(from, r), square(r, to)) < square(from, to);
 }
 
+double place_resolution_of(const Scene& scene, const DirectionMap& map) {
+  const double share = is_rounded(scene, map.resolution) ? coarsest_resolution : resolution_floor;
+  return std::min(map.resolution, scene.frame().length_to_frame(share * scene.diagonal()));
+}
+
 /// A resolution that is asked for does not tell how far places that are one are from each other.
 double place_extent_of(const Scene& scene, const DirectionMap& map) {
   const double coarsest = scene.frame().length_to_frame(coarsest_resolution * scene.diagonal());
@@ -87,6 +92,7 @@ RulingSearch::RulingSearch(const ContactSystem& system, SupportQuery& query,
       geometry_(system.geometry()),
       query_(query),
       map_(map),
+      place_resolution_(place_resolution_of(geometry_.scene(), map)),
       place_extent_(place_extent_of(geometry_.scene(), map)) {}
 
 double RulingSearch::least_way() const {

@@ -29,6 +29,8 @@ class RulingSearch {
   const ContactGeometry& geometry() const { return geometry_; }
   const DirectionMap& map() const { return map_; }
   SupportQuery& query() const { return query_; }
+  /// The resolution to which places are known: no coarser than surfaces are.
+  double place_resolution() const { return place_resolution_; }
   /// How far from each other places may be that rounding of the model makes one: as far as a
   /// contact extends. 0 where it is not rounded.
   double place_extent() const { return place_extent_; }
@@ -85,6 +87,7 @@ class RulingSearch {
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   const DirectionMap& map_;
+  const double place_resolution_;
   const double place_extent_;
 };
 

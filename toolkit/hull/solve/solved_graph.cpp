@@ -50,10 +50,8 @@ class GraphSolver {
     for (const MapGraph::Node& node : known_.graph.nodes) add(node);
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     drop_arcs();
-    unite_edge_places(geometry_, graph_, place_depths * map_.resolution, map_.contact_extent());
-    const Scene& scene = geometry_.scene();
-    const double coarsest = scene.frame().length_to_frame(coarsest_resolution * scene.diagonal());
-    const double resolution = std::min(map_.resolution, coarsest);
+    const double resolution = search_.place_resolution();
+    unite_edge_places(geometry_, graph_, place_depths * resolution, map_.contact_extent());
     const double extent = search_.place_extent();
     const double reach =
         std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);

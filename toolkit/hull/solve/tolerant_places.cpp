@@ -189,7 +189,9 @@ void bound_joints(SeparatingArc& arc, double tie) {
 
 bool is_rounded(const Scene& scene, double resolution) {
   const double floor = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
-  return resolution > rounded_depths * floor;
+  const std::vector<Part>& parts = scene.model().parts();
+  return resolution > rounded_depths * floor &&
+         std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.cages().empty(); });
 }
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
