@@ -42,6 +42,16 @@ double uncertainty(const ContactGeometry& geometry, const Ruling& r) {
   return ContactSystem(geometry).uncertainty(CommonSupport(geometry, r));
 }
 
+/// Contacts that are on patches before and after are in one place.
+bool meet_on_patches(const Ruling& before, const Ruling& after) {
+  for (const std::size_t i : {0u, 1u}) {
+    const bool on_patches =
+        before.contact[i].kind == SourceKind::face && after.contact[i].kind == SourceKind::face;
+    if (on_patches && before.point[i] != after.point[i]) return false;
+  }
+  return true;
+}
+
 /// One of the contacts lies on borders of its element where the piece begins and where it ends.
 bool passes_corner(const ArcPiece& piece) {
   const auto on_border = [](const Contact& c) {
@@ -61,14 +71,17 @@ double reach(const ContactGeometry& geometry, const Ruling& r) {
 }
 
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements. False if
-/// one of these does not reach there; it stays as it is then.
+/// one of these is a patch that does not reach there but for rounding, so that no curve in it would
+/// end where the next one begins; it stays as it is then.
 bool move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
   Ruling moved = place;
   for (std::size_t i = 0; i < 2; ++i) {
     const Contact c = snapped(geometry, place.contact[i], reach(geometry, place));
     const auto own = in_element(geometry, c, ruling.contact[i]);
-    if (!own) return false;
-    moved.contact[i] = *own;
+    const double off = glm::distance(ruling.point[i], place.point[i]);
+    const bool is_face = ruling.contact[i].kind == SourceKind::face;
+    if (!own && is_face && off > reach(geometry, place)) return false;
+    moved.contact[i] = own.value_or(ruling.contact[i]);
   }
   ruling = moved;
   return true;
@@ -226,7 +239,9 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
         move_to_borders(geometry, before, extent > 0 ? reach : 0);
         move_to_borders(geometry, after, extent > 0 ? reach : 0);
         set_places(geometry, after, before);
-        if (before.point != after.point) continue;
+        const bool is_end = (k == 1 && pieces[0].rulings.size() == 1) ||
+                            (k + 2 == pieces.size() && pieces[k + 1].rulings.size() == 1);
+        if (is_end || !meet_on_patches(before, after)) continue;
         pieces[k - 1].rulings.back() = before;
         pieces[k + 1].rulings.front() = after;
       }
@@ -349,7 +364,9 @@ void append(std::vector<ArcPiece>& pieces, std::vector<ArcPiece>&& more) {
   if (!pieces.empty() && first != more.end() &&
       same_elements(pieces.back().rulings.back(), first->rulings.front())) {
     auto& to = pieces.back().rulings;
-    to.insert(to.end(), first->rulings.begin() + 1, first->rulings.end());
+    // They meet in a ruling that both have; a single one may be another, with which the arc ends.
+    const bool meet = first->rulings.size() > 1 || distance(to.back(), first->rulings[0]) == 0;
+    to.insert(to.end(), first->rulings.begin() + (meet ? 1 : 0), first->rulings.end());
     pieces.back().tolerant = std::max(pieces.back().tolerant, first->tolerant);
     ++first;
   }

@@ -20,10 +20,9 @@ namespace {
 constexpr int division_limit = 40;
 /// Divisions of one way, after which its parts are taken as they are.
 constexpr int most_divisions = 100;
-/// Borders that a contact passes at once, after a few of which it may be no farther from where it
-/// goes than so many times the way: elements may be much smaller than ways that are not divided.
-constexpr int few_hops = 3;
-constexpr int most_hops = 16;
+/// Elements that a contact passes at once, or passes by, at most. They may be much smaller than
+/// ways that are not divided, but those that lead so many times farther off are not passed.
+constexpr int most_passed = 256;
 constexpr double astray = 2;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
 constexpr double middle_share = 0.05;
@@ -84,49 +83,53 @@ Contact passed_on_side(const ContactGeometry& geometry, Contact c, Side side, co
 }
 
 /// Borders from one element to another that a contact passes, in each as one of the element before
-/// and one of that beyond. None if there are more than a few between the two.
+/// and one of that beyond: always on from the element that has come the nearest. None if there are
+/// more than some between the two.
 std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometry,
                                                   const Contact& from, const Contact& to) {
   struct Way {
     Contact at;
-    std::vector<std::array<Contact, 2>> steps;
-    double left = infinity;  ///< from where it has come to
+    int before = -1;
+    Contact border;     ///< of the element before
+    double left = 0;    ///< from where it goes
+    bool done = false;  ///< it has been gone on from
   };
   const dvec3 aim = geometry.point(to);
-  std::vector<Way> ways = {{from, {}, glm::distance(geometry.point(from), aim)}};
+  std::vector<Way> ways = {{from, -1, from, glm::distance(geometry.point(from), aim)}};
   const double reach = astray * ways.front().left;
-  std::vector<Contact> passed = {from};
-  const auto same = [](const Contact& c) {
-    return [&c](const auto& other) { return same_element(c, other); };
+  const auto nearest = [&] {
+    int best = -1;
+    for (int k = 0; k < int(ways.size()); ++k) {
+      const Way& way = ways[std::size_t(k)];
+      if (!way.done && (best < 0 || way.left < ways[std::size_t(best)].left)) best = k;
+    }
+    return best;
   };
-  for (int hops = 0; hops < most_hops && !ways.empty(); ++hops) {
-    std::vector<Way> longer;  // of each element the one that comes nearest
-    for (const Way& way : ways) {
-      for (const ContactExit& exit : exits(geometry, way.at)) {
-        Contact border = at_exit(way.at, exit);
-        if (exit.kind == ContactExit::Kind::side) {
-          border = passed_on_side(geometry, border, Side(exit.index), geometry.point(way.at), aim);
-        }
-        const std::optional<Contact> over = beyond(geometry, border, exit);
-        if (!over || std::any_of(passed.begin(), passed.end(), same(*over))) continue;
-        Way next = {*over, way.steps, glm::distance(geometry.point(*over), aim)};
-        if (hops >= few_hops && next.left > reach) continue;
-        next.steps.push_back({border, *over});
-        const auto known = std::find_if(longer.begin(), longer.end(), [&](const Way& other) {
-          return same_element(other.at, *over);
-        });
-        if (known == longer.end()) {
-          longer.push_back(std::move(next));
-        } else if (next.left < known->left) {
-          *known = std::move(next);
-        }
+  for (int at = 0; at >= 0 && int(ways.size()) < most_passed; at = nearest()) {
+    ways[std::size_t(at)].done = true;
+    const Contact here = ways[std::size_t(at)].at;
+    for (const ContactExit& exit : exits(geometry, here)) {
+      Contact border = at_exit(here, exit);
+      if (exit.kind == ContactExit::Kind::side) {
+        border = passed_on_side(geometry, border, Side(exit.index), geometry.point(here), aim);
       }
+      const std::optional<Contact> over = beyond(geometry, border, exit);
+      if (!over || std::any_of(ways.begin(), ways.end(),
+                               [&](const Way& way) { return same_element(way.at, *over); })) {
+        continue;
+      }
+      const double left = glm::distance(geometry.point(*over), aim);
+      if (!same_element(*over, to)) {
+        if (at == 0 || left <= reach) ways.push_back({*over, at, border, left});
+        continue;
+      }
+      std::vector<std::array<Contact, 2>> steps = {{border, *over}};
+      for (int k = at; ways[std::size_t(k)].before >= 0; k = ways[std::size_t(k)].before) {
+        steps.push_back({ways[std::size_t(k)].border, ways[std::size_t(k)].at});
+      }
+      std::reverse(steps.begin(), steps.end());
+      return steps;
     }
-    for (const Way& way : longer) {
-      if (same_element(way.at, to)) return way.steps;
-      passed.push_back(way.at);
-    }
-    ways = std::move(longer);
   }
   return {};
 }

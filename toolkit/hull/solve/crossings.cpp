@@ -176,7 +176,6 @@ std::optional<FacetNode> crossing_of(const RulingSearch& search, const KnownArcs
       if (const auto there = expressed_in(geometry, before, own)) own = *there;
     }
     crossing.contacts.push_back(own);
-    crossing.slots.push_back({node.ends[k].arc, node.ends[k].end});
   }
   // In the place that is held by borders, and others as near to it as theirs let them be.
   const auto held = std::min_element(
@@ -186,6 +185,7 @@ std::optional<FacetNode> crossing_of(const RulingSearch& search, const KnownArcs
   const dvec3 place = geometry.point(*held);
   for (Contact& c : crossing.contacts) c = slid_to(geometry, c, place);
   crossing.points.assign(crossing.contacts.size(), place);
+  crossing.slots.assign(crossing.contacts.size(), {});
   return crossing;
 }
 

@@ -35,8 +35,8 @@ class EdgePlaces {
   }
 
   /// Places follow each other with less than the distance between them: all are the line's end if
-  /// that is among them (the nearer one if both are), else the first that is no end of a curved
-  /// side, or the first.
+  /// that is among them (the nearer one if both are, and are two points), else the first that is no
+  /// end of a curved side, or the first.
   void unite() {
     for (auto& [line, places] : places_) {
       places.try_emplace(0.0, 0.0);
@@ -62,8 +62,8 @@ class EdgePlaces {
         }
         const auto exact =
             std::find_if(first, last, [&](const auto& p) { return !is_level(p.first); });
-        const bool begins = first->first == 0;
         const bool ends = std::prev(last)->first == 1;
+        const bool begins = first->first == 0 && !(ends && speed <= geometry_.tie());
         const double at = (exact == last ? first : exact)->first;
         for (; first != last; ++first) {
           const bool to_end = ends && (!begins || first->first > 0.5);

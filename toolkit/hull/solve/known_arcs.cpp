@@ -10,6 +10,7 @@
 #include "taut/hull/decide/cell_contacts.h"
 #include "taut/hull/decide/graph_edits.h"
 #include "taut/hull/decide/top_parts.h"
+#include "taut/hull/solve/arc_pieces.h"
 #include "taut/hull/solve/crossings.h"
 #include "taut/hull/solve/level_pieces.h"
 
@@ -249,6 +250,42 @@ class ArcFinder {
 
 KnownArcs known_arcs(const RulingSearch& search, const Progress& progress) {
   return ArcFinder(search, progress).run();
+}
+
+void join_arcs(KnownArcs& known, int node) {
+  std::vector<MapGraph::End>& ends = known.graph.nodes[std::size_t(node)].ends;
+  const MapGraph::End into = ends[0], out = ends[1];
+  ends.clear();
+  MapGraph::Arc& arc = known.graph.arcs[std::size_t(into.arc)];
+  if (into.arc == out.arc) {
+    arc.node = {-1, -1};
+    return;
+  }
+  const auto turn = [&](int k) {
+    MapGraph::Arc& own = known.graph.arcs[std::size_t(k)];
+    std::swap(own.node[0], own.node[1]);
+    std::vector<Ruling>& rulings = known.rulings[std::size_t(k)];
+    std::reverse(rulings.begin(), rulings.end());
+    for (Ruling& r : rulings) r = reversed(r);
+    for (const int at : own.node) {
+      if (at < 0) continue;
+      for (MapGraph::End& e : known.graph.nodes[std::size_t(at)].ends) {
+        if (e.arc == k) e.end = 1 - e.end;
+      }
+    }
+  };
+  if (into.end == 0) turn(into.arc);
+  if (out.end == 1) turn(out.arc);
+  MapGraph::Arc& other = known.graph.arcs[std::size_t(out.arc)];
+  arc.node[1] = std::exchange(other.node, {-1, -1})[1];
+  std::vector<MapGraph::End>& there = known.graph.nodes[std::size_t(arc.node[1])].ends;
+  const auto last = std::find_if(there.begin(), there.end(), [&](const MapGraph::End& e) {
+    return e.arc == out.arc && e.end == 1;
+  });
+  *last = {into.arc, 1};
+  std::vector<Ruling>& rulings = known.rulings[std::size_t(into.arc)];
+  const std::vector<Ruling> more = std::exchange(known.rulings[std::size_t(out.arc)], {});
+  rulings.insert(rulings.end(), more.begin(), more.end());
 }
 
 }  // namespace taut

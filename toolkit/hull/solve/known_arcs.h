@@ -25,4 +25,8 @@ struct KnownArcs {
 /// is between the two contacts, are left out. @throws Cancelled
 KnownArcs known_arcs(const RulingSearch& search, const Progress& progress = {});
 
+/// Makes one of the two arcs that end in a node, which has none then; the other one keeps its
+/// number, and no rulings. @pre there are two such ends
+void join_arcs(KnownArcs& known, int node);
+
 }  // namespace taut

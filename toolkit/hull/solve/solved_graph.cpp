@@ -47,7 +47,7 @@ class GraphSolver {
         known_(with_ears_cut(search_, progress)) {}
 
   SeparatingGraph run() {
-    for (const MapGraph::Node& node : known_.graph.nodes) add(node);
+    find_facets();
     for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
     drop_arcs();
     const double resolution = search_.place_resolution();
@@ -84,31 +84,38 @@ class GraphSolver {
     return end.end == 0 ? side : 1 - side;
   }
 
-  /// A node of the map is a facet, or a free end.
-  void add(const MapGraph::Node& node) {
-    std::optional<FacetNode> facet = crossing_of(search_, known_, node);
-    if (facet) {
-      number_.push_back(int(graph_.nodes.size()));
-      graph_.nodes.push_back(std::move(*facet));
-      return;
+  /// A node of the map is a facet, or a free end; or two arcs that go on into each other.
+  void find_facets() {
+    std::vector<std::optional<FacetNode>> facets;
+    for (const MapGraph::Node& node : known_.graph.nodes) facets.push_back(facet_of(node));
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      if (!facets[k] && known_.graph.nodes[k].ends.size() == 2) join_arcs(known_, int(k));
     }
-    facet = with_curved_sides(node);
-    if (!facet && node.ends.size() > 2) facet = of_corners(node);
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      add(known_.graph.nodes[k], std::move(facets[k]));
+    }
+  }
+
+  /// Across each of its straight sides one of the node's arcs leaves.
+  std::optional<FacetNode> facet_of(const MapGraph::Node& node) {
+    if (std::optional<FacetNode> crossing = crossing_of(search_, known_, node)) return crossing;
+    std::optional<FacetNode> facet = with_curved_sides(node);
+    const bool fits = facet && sides_of(*facet, node).size() == node.ends.size();
+    if (!fits && node.ends.size() > 2) facet = of_corners(node);
+    return fits || node.ends.size() > 2 ? facet : std::nullopt;
+  }
+
+  void add(const MapGraph::Node& node, std::optional<FacetNode> facet) {
+    number_.push_back(facet ? int(graph_.nodes.size()) : -1);
     if (!facet) {
-      number_.push_back(-1);
-      if (node.ends.size() != 1) fail(dvec3(0.0), "a node is neither a facet nor a free end");
+      if (node.ends.size() > 1) fail(dvec3(0.0), "a node is neither a facet nor a free end");
       return;
     }
-    const std::vector<std::size_t> sides = sides_of(*facet, node);
-    if (sides.size() != node.ends.size()) {
-      fail(facet->n, "not as many arcs leave a facet as it has straight sides");
-      number_.push_back(-1);
-      return;
+    const std::vector<std::size_t> sides =
+        facet->is_crossing ? std::vector<std::size_t>{} : sides_of(*facet, node);
+    for (std::size_t k = 0; k < node.ends.size(); ++k) {
+      facet->slots[facet->is_crossing ? k : sides[k]] = {node.ends[k].arc, node.ends[k].end};
     }
-    for (std::size_t k = 0; k < sides.size(); ++k) {
-      facet->slots[sides[k]] = {node.ends[k].arc, node.ends[k].end};
-    }
-    number_.push_back(int(graph_.nodes.size()));
     graph_.nodes.push_back(std::move(*facet));
   }
 
@@ -309,10 +316,33 @@ class GraphSolver {
     }
   }
 
+  /// What cells tell of other sides of a facet, or across it, is none of the arc's that leaves it:
+  /// in its plane to within the resolution, and nearer to other corners.
+  void drop_in_facet(std::vector<Ruling>& known, int end, const FacetNode& facet,
+                     const Ruling& side) const {
+    const auto is_other = [&](const Ruling& r) {
+      for (const std::size_t i : {0u, 1u}) {
+        const double depth = glm::dot(facet.points.front() - r.point[i], facet.n);
+        if (std::abs(depth) > map_.resolution) return false;
+      }
+      for (const std::size_t i : {0u, 1u}) {
+        const double own = glm::distance(r.point[i], side.point[i]);
+        for (const dvec3& corner : facet.points) {
+          if (glm::distance(r.point[i], corner) < own) return true;
+        }
+      }
+      return false;
+    };
+    while (known.size() > 1 && is_other(end == 0 ? known.front() : known.back())) {
+      known.erase(end == 0 ? known.begin() : known.end() - 1);
+    }
+  }
+
   void solve(std::size_t k) {
     progress_.check();
     const MapGraph::Arc& told = known_.graph.arcs[k];
     std::vector<Ruling> known = known_.rulings[k];
+    if (known.empty()) return graph_.arcs.push_back({});  // it is part of another one
     SeparatingArc arc;
     arc.closed = told.is_closed();
     std::array<bool, 2> merges = {false, false};
@@ -327,6 +357,9 @@ class GraphSolver {
       merges[std::size_t(end)] = !r || crosses;
       if (crosses) plugs[std::size_t(end)] = std::exchange(r, std::nullopt);
       if (r) drop_close_to_pole(geometry_, *r, known, end);
+      if (r) {
+        drop_in_facet(known, end, graph_.nodes[std::size_t(arc.facet[std::size_t(end)])], *r);
+      }
       if (r) known.insert(end == 0 ? known.begin() : known.end(), *r);
     }
     if (arc.closed) known.push_back(known.front());
@@ -361,7 +394,7 @@ class GraphSolver {
     }
   }
 
-  /// Leaves out arcs that lead back.
+  /// Leaves out arcs that lead back, or are parts of others.
   void drop_arcs() {
     std::vector<int> number;
     int count = 0;
@@ -376,6 +409,7 @@ class GraphSolver {
 
   /// It begins and ends in one free end: cells beside that were taken for an arc.
   bool leads_back(const SeparatingArc& arc) const {
+    if (arc.pieces.empty()) return true;
     if (arc.closed || arc.facet[0] >= 0 || arc.facet[1] >= 0) return false;
     const Ruling& first = arc.pieces.front().rulings.front();
     const Ruling& last = arc.pieces.back().rulings.back();
@@ -389,7 +423,7 @@ class GraphSolver {
   ContactSystem system_;
   RulingSearch search_;
   const Progress& progress_;
-  const KnownArcs known_;
+  KnownArcs known_;
   std::vector<int> number_;  // of a told node in the graph, -1: a free end
   SeparatingGraph graph_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "taut/hull/contact/facet_contacts.h"
@@ -101,8 +102,10 @@ class Trimmer {
  private:
   using Loop = std::vector<TrimStretch>;
 
+  /// None of pieces along which the contact stays in one place.
   void add_trim_arcs(const HalfArc& half);
   int patch_of(const Contact& c, const dvec3& n);
+  std::optional<int> after_half_arc(const HalfArc& half) const;
   void link();
   void meet(int trim_arc, bool arrives);
   void trim(OrientedPatch& oriented);
@@ -115,7 +118,7 @@ class Trimmer {
   const SeparatingGraph& graph_;
   std::vector<Unresolved>& unresolved_;
   std::vector<TrimArc> trim_arcs_;
-  std::vector<std::vector<int>> trim_arcs_of_;  // per half-arc 2 * arc + contact; -1: none
+  std::vector<std::vector<int>> trim_arcs_of_;  // per half-arc 2 * arc + contact; -1: on no patch
   std::vector<OrientedPatch> patches_;
   std::map<std::tuple<int, int, int>, int> patch_index_;
   std::vector<TrimRegion> regions_;
@@ -139,13 +142,14 @@ void Trimmer::add_trim_arcs(const HalfArc& half) {
     const int piece = backward ? count - 1 - k : k;
     const std::vector<Ruling>& rulings = arc.pieces[std::size_t(piece)].rulings;
     const auto i = std::size_t(half.contact);
-    const bool stays = std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& r) {
-      return parameters(r.contact[i]) == parameters(rulings.front().contact[i]);
-    });
-    if (rulings.front().contact[i].kind != SourceKind::face || stays) {
+    if (rulings.front().contact[i].kind != SourceKind::face) {
       trim_arcs_of_.back().push_back(-1);
       continue;
     }
+    const bool stays = std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& r) {
+      return parameters(r.contact[i]) == parameters(rulings.front().contact[i]);
+    });
+    if (stays) continue;
     const Ruling& first = backward ? rulings.back() : rulings.front();
     const Ruling& last = backward ? rulings.front() : rulings.back();
     TrimArc trim_arc;
@@ -181,23 +185,39 @@ void Trimmer::meet(int trim_arc, bool arrives) {
       {position(p), trim_arc, arrives, (arrives ? s.before : s.after) - p});
 }
 
+/// The first trim arc of those that go on where this one ends, -1 if that is on no patch.
+std::optional<int> Trimmer::after_half_arc(const HalfArc& half) const {
+  HalfArc after = half;
+  do {
+    after = next_half_arc(graph_, after);
+    if (after.arc < 0) return std::nullopt;
+    const std::vector<int>& own = trim_arcs_of_[std::size_t(2 * after.arc + after.contact)];
+    if (!own.empty()) return own.front();
+  } while (after.arc != half.arc || after.contact != half.contact);
+  return std::nullopt;
+}
+
 /// Lets each trim arc run into the next, or into the border.
 void Trimmer::link() {
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     for (int contact = 0; contact < 2; ++contact) {
       const std::vector<int>& own = trim_arcs_of_[std::size_t(2 * a + contact)];
+      const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
+      if (own.empty() && arc.closed) {
+        fail(arc.pieces.front().rulings.front().n, "a closed curve stays in one place");
+      }
       for (std::size_t k = 0; k < own.size(); ++k) {
         int next = -1;
         if (k + 1 < own.size()) {
           next = own[k + 1];
         } else {
-          const HalfArc after = next_half_arc(graph_, {a, contact});
-          if (after.arc < 0) {
+          const std::optional<int> after = after_half_arc({a, contact});
+          if (!after) {
             if (own[k] >= 0)
               fail(trim_arcs_[std::size_t(own[k])].n, "a separating curve ends nowhere");
             continue;
           }
-          next = trim_arcs_of_[std::size_t(2 * after.arc + after.contact)].front();
+          next = *after;
         }
         const int trim_arc = own[k];
         if (trim_arc < 0 && next < 0) continue;
