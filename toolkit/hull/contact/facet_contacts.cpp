@@ -29,10 +29,10 @@ constexpr double side_turn = 1e-6;
 constexpr int turns_around = 3;
 
 /// How far parameters may leave [0, 1] by rounding.
-constexpr double parameter_slack = 1e-9;
+constexpr double element_slack = 1e-9;
 
 bool in_range_with_slack(const Contact& c) {
-  const auto within = [](double t) { return t >= -parameter_slack && t <= 1 + parameter_slack; };
+  const auto within = [](double t) { return t >= -element_slack && t <= 1 + element_slack; };
   return within(c.u) && within(c.v);
 }
 

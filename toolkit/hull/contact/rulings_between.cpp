@@ -29,7 +29,7 @@ constexpr double touching_share = 0.6;
 /// An arc that is so many times its chord is none that was solved.
 constexpr double longest_arc = 10;
 
-double square(const dvec3& x) { return glm::dot(x, x); }
+double squared(const dvec3& x) { return glm::dot(x, x); }
 
 /// A free end: its two points are one, though they may come from two elements.
 bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= coordinate_rounding; }
@@ -102,10 +102,10 @@ bool touches(const Ruling& end, const Ruling& longer, const MovingRuling& m) {
   if (std::min(first, other) != SourceKind::face || std::max(first, other) != SourceKind::edge)
     return false;
   double along = glm::dot(longer.n - end.n, m.dn);
-  double chord = square(longer.n - end.n);
+  double chord = squared(longer.n - end.n);
   for (std::size_t i = 0; i < 2; ++i) {
     along += glm::dot(longer.point[i] - end.point[i], m.dx[i]);
-    chord += square(longer.point[i] - end.point[i]);
+    chord += squared(longer.point[i] - end.point[i]);
   }
   return along < touching_share * chord && along > (1 - touching_share) * chord;
 }
@@ -188,8 +188,8 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
       to_(to),
       kept_({kept_parameter(from.contact[0], to.contact[0]),
              kept_parameter(from.contact[1], to.contact[1])}),
-      square_(square(to.n - from.n) + square(to.point[0] - from.point[0]) +
-              square(to.point[1] - from.point[1])) {
+      square_(squared(to.n - from.n) + squared(to.point[0] - from.point[0]) +
+              squared(to.point[1] - from.point[1])) {
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
@@ -401,8 +401,8 @@ bool RulingsBetween::is_near(const MovingRuling& start, const MovingRuling& m) c
   const double least = touches_ ? glm::length(start.at.d()) : shorter_;
   if (!merges() && glm::length(m.at.d()) < least_length * least) return false;
   const double limit = std::max(correction_share * correction_share * square_, rounded * rounded);
-  return square(m.at.n - start.at.n) + square(m.at.jet[0].x - start.at.jet[0].x) +
-             square(m.at.jet[1].x - start.at.jet[1].x) <=
+  return squared(m.at.n - start.at.n) + squared(m.at.jet[0].x - start.at.jet[0].x) +
+             squared(m.at.jet[1].x - start.at.jet[1].x) <=
          limit;
 }
 

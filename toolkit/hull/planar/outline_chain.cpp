@@ -7,7 +7,7 @@ namespace taut {
 namespace {
 
 /// Corners as near to a line are on it.
-constexpr double line_width = 1e-12;
+constexpr double width_of_line = 1e-12;
 /// A smooth joint is known only to about the root of the slack from the heights of both curves.
 constexpr double joint_reach = 1e-3;
 
@@ -223,7 +223,7 @@ bool OutlineChain::is_between(std::size_t k) const {
   const auto on_line = [&](const dvec2& x) {
     const double along = glm::dot(x - a, d);
     return along >= 0 && along <= glm::dot(d, d) &&
-           std::abs(cross(d, x - a)) <= line_width * glm::length(d);
+           std::abs(cross(d, x - a)) <= width_of_line * glm::length(d);
   };
   if (s.corner) return on_line(s.start);
   const std::vector<dvec2> polygon = part_polygon(arcs_.curve(s.curve), s.from, s.to);

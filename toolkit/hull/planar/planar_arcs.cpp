@@ -13,7 +13,7 @@ constexpr double straight_width = 1e-13;
 /// Corners of control polygons lower than this are rounding.
 constexpr double polygon_noise = 2e-15;
 /// A part that turns less has one farthest point in each direction of its tangents' normals.
-constexpr double largest_turn = 1.5;
+constexpr double most_turning = 1.5;
 /// Parts about a cusp shrink with the square of their parameters' interval.
 constexpr int deepest_cut = 40;
 
@@ -154,7 +154,7 @@ void PlanarArcs::cut(int number, const std::vector<dvec3>& part, Interval t, int
   arc.polygon = plane_point(part);
   const std::vector<dvec2> sides = polygon_sides(arc.polygon);
   const Turning turning(sides);
-  const bool convex = turning.angle < largest_turn && !(turning.left && turning.right);
+  const bool convex = turning.angle < most_turning && !(turning.left && turning.right);
   if (!convex && depth < deepest_cut) {
     const double middle = t.at(0.5);
     const auto halves = parts(part, 0.5);

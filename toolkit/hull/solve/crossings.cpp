@@ -14,7 +14,7 @@ namespace taut {
 namespace {
 
 /// How often the point is looked for anew with contacts that have left their elements.
-constexpr int most_moves = 4;
+constexpr int most_restarts = 4;
 /// How much farther away the point may be than the contacts beside it are from each other.
 constexpr double farthest_crossing = 32;
 /// Contacts are on a border where rounding moves them off it by no more.
@@ -57,7 +57,7 @@ std::optional<Ruling> touching_next_to(const RulingSearch& search, const Ruling&
     return std::nullopt;
   }
   CommonSupport at(geometry, beside);
-  for (int k = 0; k < most_moves; ++k) {
+  for (int k = 0; k < most_restarts; ++k) {
     const auto found = search.system().crossing(at, search.map().resolution);
     if (!found) return std::nullopt;
     at = *found;
