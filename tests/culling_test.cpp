@@ -6,13 +6,14 @@
 #include <cmath>
 #include <map>
 
+#include "exact_checks.h"
+#include "free_end_checks.h"
 #include "freeform.h"
 #include "models.h"
 #include "support_checks.h"
 #include "surface_checks.h"
 #include "taut/bounds/support_query.h"
 #include "taut/core/error.h"
-#include "taut/hull/solve/free_ends.h"
 
 namespace taut {
 namespace {
@@ -384,16 +385,11 @@ TEST(Culling, FreeEndsAreInNoCellThatIsCurvedOneWay) {
     dent.lobes = lobes;
     const Scene scene = make_scene(dented_body({dent}));
     const Culling culling = culled(scene, 1);
-    const ContactGeometry geometry(scene);
-    SupportQuery query(scene);
-    for (const FreeEnd& end : free_ends(geometry, query, culling.cells)) {
+    const CellFinder cells(culling);
+    for (const Ruling& end : free_ends_of(*boundary_of(scene).boundary)) {
       ++ends;
-      for (const CulledCell& cell : culling.cells) {
-        const bool holds =
-            cell.patch == end.contact.element && cell.cell.u().lower <= end.contact.u &&
-            end.contact.u <= cell.cell.u().upper && cell.cell.v().lower <= end.contact.v &&
-            end.contact.v <= cell.cell.v().upper;
-        EXPECT_FALSE(holds && cell.definite);
+      for (const Contact& contact : end.contact) {
+        for (const CulledCell* cell : cells.at(contact)) EXPECT_FALSE(cell->definite);
       }
     }
     definite += std::count_if(culling.cells.begin(), culling.cells.end(), [](const CulledCell& c) {

@@ -101,36 +101,5 @@ TEST(CurveCurvature, HasNoBinormalWhereItIsStraight) {
   EXPECT_EQ(bend->binormal, dvec3(0.0));
 }
 
-/// Plane cubics, down to a ten thousandth of the scene: their twist is rounding, and no more than
-/// is told. That of a helix's piece as short is more, but for the shortest, where nothing tells.
-TEST(TwistRounding, TellsPlaneCurves) {
-  Random random(7);
-  const auto piece = [&](double size, double height) {
-    std::vector<dvec4> points;
-    for (int k = 0; k < 4; ++k) {
-      const dvec3 x = size * dvec3(k, 0.3 * k * k, height * k * k * k);
-      points.push_back(homogeneous(skew_rotation() * x + dvec3(0.3, -0.2, 0.1)));
-    }
-    return NurbsCurve{3, {0, 0, 0, 0, 1, 1, 1, 1}, points};
-  };
-  for (int k = 0; k < 200; ++k) {
-    const double size = log_uniform(random, 1e-4, 0.1);
-    const double height = k % 2 == 0 ? 0 : 0.1;
-    const Scene scene =
-        make_scene({{}, {segment({-1, -1, -1}, {1, 1, 1}), piece(size, height)}, {}});
-    const ContactGeometry geometry(scene);
-    for (const double t : {0.0, 0.3, 1.0}) {
-      const std::optional<CurveCurvature> bend = curve_curvature(geometry, on_piece(1, t));
-      ASSERT_TRUE(bend.has_value());
-      const double rounding = twist_rounding(geometry, on_piece(1, t), *bend);
-      if (height == 0) {
-        EXPECT_LE(std::abs(bend->twist), rounding) << size;
-      } else if (size > 1e-3) {
-        EXPECT_GT(std::abs(bend->twist), rounding) << size;
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace taut

@@ -7,12 +7,11 @@
 #include <string>
 
 #include "boundary_checks.h"
+#include "free_end_checks.h"
 #include "hull_checks.h"
-#include "taut/hull/cull/culling.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/precise_hull.h"
-#include "taut/hull/solve/free_ends.h"
 
 namespace taut {
 namespace {
@@ -91,18 +90,6 @@ INSTANTIATE_TEST_SUITE_P(SlowEnds, Blobs, testing::Values(394U, 614U));
 /// told apart from other solutions.
 INSTANTIATE_TEST_SUITE_P(ShortRulings, Blobs, testing::Values(37U, 38U, 108U, 161U, 288U, 350U));
 
-bool is_reached(const HullBoundary& boundary, const dvec3& x, const dvec3& n) {
-  constexpr double same = 1e-6;
-  const auto ends_here = [&](const Ruling& r) {
-    return glm::distance(r.point[0], x) < same && glm::distance(r.n, n) < same;
-  };
-  return std::any_of(boundary.arcs.begin(), boundary.arcs.end(), [&](const SeparatingArc& arc) {
-    if (arc.closed) return false;
-    return (arc.facet[0] < 0 && ends_here(arc.pieces.front().rulings.front())) ||
-           (arc.facet[1] < 0 && ends_here(arc.pieces.back().rulings.back()));
-  });
-}
-
 /// Valleys so shallow across a join that they are none at the resolution: what is told is true.
 TEST(PreciseSweep, ShallowValleys) {
   for (const unsigned seed : {427U, 510U, 641U}) {
@@ -110,20 +97,18 @@ TEST(PreciseSweep, ShallowValleys) {
   }
 }
 
-/// At a finer resolution both free ends of the curves in them are reached.
+/// At a finer resolution a curve runs in each of them, to both of its free ends.
 TEST(PreciseSweep, FreeEndsOfShallowValleys) {
   for (const unsigned seed : {427U, 510U}) {
     const Scene scene = make_scene(blob(seed));
-    HullOptions options;
-    options.resolution = 1e-10;
-    const Hull hull = hull_on_one_thread(scene, options);
     const ContactGeometry geometry(scene);
-    SupportQuery query(scene);
-    const GaussMap map(scene, {.threads = 1, .progress = {}});
-    for (const FreeEnd& end :
-         free_ends(geometry, query, cull(scene, map, {.threads = 1, .progress = {}}).cells)) {
-      EXPECT_TRUE(is_reached(*hull.boundary, geometry.point(end.contact), end.n)) << seed;
-    }
+    HullOptions options;
+    const auto ends = [&] { return free_ends_of(*hull_on_one_thread(scene, options).boundary); };
+    const std::size_t coarse = ends().size();
+    options.resolution = 1e-10;
+    const std::vector<Ruling> fine = ends();
+    EXPECT_EQ(fine.size(), coarse + 2) << seed;
+    for (const Ruling& end : fine) EXPECT_TRUE(ends_in_free_end(geometry, end)) << seed;
   }
 }
 

@@ -88,14 +88,6 @@ std::optional<CurveCurvature> curve_curvature(const ContactGeometry& geometry, c
   return local;
 }
 
-double twist_rounding(const ContactGeometry& geometry, const Contact& c,
-                      const CurveCurvature& local) {
-  const double degree = geometry.piece(c).bezier.degree();
-  // Differences of order k are of 2^k roundings, times no more than the degree to the power k.
-  const double rate = 2 * degree / glm::length(geometry.curve_jet(c).ct);
-  return geometry.rounding() * rate * rate * (rate * local.curvature + glm::length(local.third));
-}
-
 bool ends_straight(const ContactGeometry& geometry, const Contact& c) {
   if (c.kind != SourceKind::edge || (c.u != 0 && c.u != 1)) return false;
   const ContactJet j = geometry.jet(c);

@@ -50,11 +50,6 @@ struct CurveCurvature {
 /// None where the curve stands still. @pre kind edge
 std::optional<CurveCurvature> curve_curvature(const ContactGeometry& geometry, const Contact& c);
 
-/// What the rounding of control points may make of the twist of an edge's piece, which the third
-/// power of its length divides. @pre kind edge, `local` is at c
-double twist_rounding(const ContactGeometry& geometry, const Contact& c,
-                      const CurveCurvature& local);
-
 /// The contact is on an edge, at the end of a piece without curvature there but for rounding.
 bool ends_straight(const ContactGeometry& geometry, const Contact& c);
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "taut/bounds/poles.h"
@@ -99,27 +98,12 @@ Contact on_side_of(Contact patch, Side side, double t) {
   return patch;
 }
 
-std::optional<Contact> straight_piece_or_seam(const ContactGeometry& geometry, const Contact& patch,
-                                              Side side) {
-  const int piece = geometry.patch(patch).borders[std::size_t(side)].piece;
-  if (piece < 0) return std::nullopt;
-  const Contact edge{patch.instance, SourceKind::edge, piece, 0, 0};
-  return geometry.is_straight(edge) ? std::optional(edge) : std::nullopt;
-}
-
 std::optional<Contact> straight_piece(const ContactGeometry& geometry, const Contact& patch,
                                       Side side) {
-  const std::optional<Contact> piece = straight_piece_or_seam(geometry, patch, side);
-  const bool is_edge =
-      piece && geometry.part(patch).pieces()[std::size_t(piece->element)].edge >= 0;
-  return is_edge ? piece : std::nullopt;
-}
-
-std::array<Contact, 2> segment_ends(const ContactGeometry& geometry, const Contact& piece) {
-  std::array<Contact, 2> ends = {geometry.straight_end(piece, 0), geometry.straight_end(piece, 1)};
-  const auto place = [](const Contact& c) { return std::pair(c.instance, c.element); };
-  if (place(ends[1]) < place(ends[0])) std::swap(ends[0], ends[1]);
-  return ends;
+  const int piece = geometry.patch(patch).borders[std::size_t(side)].piece;
+  if (piece < 0 || geometry.part(patch).pieces()[std::size_t(piece)].edge < 0) return std::nullopt;
+  const Contact edge{patch.instance, SourceKind::edge, piece, 0, 0};
+  return geometry.is_straight(edge) ? std::optional(edge) : std::nullopt;
 }
 
 SideFunction parabolic_along(const ContactGeometry& geometry, const Contact& patch, Side side) {

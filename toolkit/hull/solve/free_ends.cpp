@@ -8,24 +8,15 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
-#include "taut/bounds/supporting_plane.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/facet_contacts.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/contact/parabolic_sides.h"
-#include "taut/hull/contact/sign_changes.h"
-#include "taut/hull/cull/concave_patch.h"
 
 namespace taut {
 namespace {
 
 using Kind = FreeEnd::Kind;
-
-/// Cells that may hold a parabolic point are split down to this level.
-constexpr int finest_level = 6;
-/// Of a bisection for a start of Newton's method.
-constexpr int start_steps = 12;
 
 constexpr int newton_limit = 20;
 /// Steps of a parameter below this end Newton's method. Those below a length, if they do not get
@@ -45,17 +36,23 @@ constexpr double cubic_slack = 1e-9;
 constexpr double flat_slack = 1e-7;
 /// Where a departure is level for a cusp or a zero of the torsion, that is no farther.
 constexpr double level_reach = 1e-6;
-/// Roots that are no farther from a side's end may be there.
-constexpr double at_end = 1e-9;
+/// How far rounding may move a root off the end at which it is.
+constexpr double root_slack = 1e-11;
 /// Share of a direction's rate across a side below which it may lead along that.
 constexpr double along_side = 1e-9;
 /// What is nearer to a collapsed side is at it.
 constexpr double pole_distance = 1e-6;
-/// Parameters of a piece at which it is tried whether it is a plane curve: more than a cubic's or a
-/// quartic's torsion has zeros.
-constexpr std::array<double, 9> plane_places = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
-/// Elements over a border that is no farther are searched too.
+/// Elements over a border that is no farther are tried too.
 constexpr double beside_border = 0.1;
+
+/// A root may be in [0, 1], up to rounding.
+bool is_within(double root) { return root >= -root_slack && root <= 1 + root_slack; }
+
+/// A root where it is surely inside, and at the end where it may be there.
+double placed(double root) {
+  if (root < root_slack) return 0;
+  return root > 1 - root_slack ? 1 : root;
+}
 
 double distance_from(const Contact& c, Side side) {
   const double t = along_v(side) ? c.u : c.v;
@@ -146,55 +143,6 @@ std::optional<Contact> cusp_near(const ContactGeometry& geometry, Contact c, dou
   return std::nullopt;
 }
 
-double curvature_at(const ContactGeometry& geometry, const Contact& c) {
-  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
-  return b ? b->gauss_curvature() : 0;
-}
-
-/// About where the parabolic curve meets the line from a to b. @pre the curvature's sign changes
-Contact parabolic_between(const ContactGeometry& geometry, const Contact& a, const Contact& b) {
-  const auto at = [&](double s) {
-    Contact c = a;
-    c.u += s * (b.u - a.u);
-    c.v += s * (b.v - a.v);
-    return c;
-  };
-  const auto curvature = [&](double s) { return curvature_at(geometry, at(s)); };
-  return at(bisected(curvature, 0, 1, start_steps));
-}
-
-/// Between the two points in which the parabolic curve crosses a cell's outline, if the cubic along
-/// it differs in sign there.
-std::optional<Contact> cusp_in_cell(const ContactGeometry& geometry, const Contact& c,
-                                    const PatchCell& cell) {
-  const auto [u0, u1] = cell.u();
-  const auto [v0, v1] = cell.v();
-  std::array<Contact, 4> corner = {c, c, c, c};
-  std::array<bool, 4> saddle;
-  for (std::size_t k = 0; k < 4; ++k) {
-    corner[k].u = k == 1 || k == 2 ? u1 : u0;
-    corner[k].v = k >= 2 ? v1 : v0;
-    saddle[k] = curvature_at(geometry, corner[k]) < 0;
-  }
-  std::vector<Contact> crossings;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const std::size_t next = (k + 1) % 4;
-    if (saddle[k] == saddle[next]) continue;
-    crossings.push_back(parabolic_between(geometry, corner[k], corner[next]));
-  }
-  if (crossings.size() != 2) return std::nullopt;
-  const std::optional<SurfaceCurvature> a = surface_curvature(geometry, crossings[0]);
-  const std::optional<SurfaceCurvature> b = surface_curvature(geometry, crossings[1]);
-  if (!a || !b) return std::nullopt;
-  const double last = glm::dot(a->along, b->along) < 0 ? -b->cubic : b->cubic;
-  if ((a->cubic < 0) == (last < 0)) return std::nullopt;
-  const double share = a->cubic / (a->cubic - last);
-  Contact between = c;
-  between.u = crossings[0].u + share * (crossings[1].u - crossings[0].u);
-  between.v = crossings[0].v + share * (crossings[1].v - crossings[0].v);
-  return between;
-}
-
 /// @}
 /// @name Candidates
 /// @{
@@ -241,10 +189,6 @@ std::optional<Beyond> beyond_join(const ContactGeometry& geometry, const Contact
   const Contact neighbor{c.instance, SourceKind::face, border.neighbor, 0, 0};
   return Beyond{on_side_of(neighbor, border.neighbor_side, border.reversed ? 1 - t : t),
                 border.neighbor_side};
-}
-
-double curvature_on(const ContactGeometry& geometry, const Contact& patch, Side side, double t) {
-  return curvature_at(geometry, on_side_of(patch, side, t));
 }
 
 /// Beyond a smooth join, where there is one, the surface leaves the plane as it does on this side;
@@ -335,15 +279,6 @@ double twist_at(const ContactGeometry& geometry, Contact c, double t) {
   c.u = t;
   const std::optional<CurveCurvature> b = curve_curvature(geometry, c);
   return b ? b->twist : 0;
-}
-
-/// As far as rounding lets tell, the piece of an edge is a plane curve.
-bool is_planar(const ContactGeometry& geometry, Contact c) {
-  return std::all_of(plane_places.begin(), plane_places.end(), [&](double t) {
-    c.u = t;
-    const std::optional<CurveCurvature> b = curve_curvature(geometry, c);
-    return b && std::abs(b->twist) <= twist_rounding(geometry, c, *b);
-  });
 }
 
 /// From where the torsion was found to vanish; n is the binormal times the sign.
@@ -439,141 +374,6 @@ void each_corner_end(const ContactGeometry& geometry, const Contact& vertex, con
 }
 
 /// @}
-
-/// Those over the cell, of a patch's.
-CurvatureNets nets_over(CurvatureNets nets, const PatchCell& cell) {
-  for (int k = cell.level - 1; k >= 0; --k) {
-    nets = nets.halves(Direction::u)[(cell.i >> k) & 1];
-    nets = nets.halves(Direction::v)[(cell.j >> k) & 1];
-  }
-  return nets;
-}
-
-/// Gathers what supports the model.
-class FreeEndSearch {
- public:
-  FreeEndSearch(const ContactGeometry& geometry, SupportQuery& query)
-      : geometry_(geometry), query_(query) {}
-
-  void search_cells(const std::vector<CulledCell>& cells);
-  void search_borders(const std::vector<CulledCell>& cells);
-  void search_edges();
-  void search_corners();
-  std::vector<FreeEnd> result() { return std::move(ends_); }
-
- private:
-  void search_cell(const CurvatureNets& nets, const Contact& c, PatchCell at);
-  void search_piece(const Contact& c);
-  void offer(const std::optional<FreeEnd>& end);
-
-  const ContactGeometry& geometry_;
-  SupportQuery& query_;
-  std::vector<FreeEnd> ends_;
-};
-
-/// Takes the candidate if it supports the model and is new.
-void FreeEndSearch::offer(const std::optional<FreeEnd>& end) {
-  if (!end) return;
-  const dvec3 x = geometry_.point(end->contact);
-  const bool known = std::any_of(ends_.begin(), ends_.end(), [&](const FreeEnd& other) {
-    return glm::distance(geometry_.point(other.contact), x) <= same_contact &&
-           glm::distance(other.n, end->n) <= same_contact;
-  });
-  if (known) return;
-  if (is_supporting(geometry_, query_, end->n, glm::dot(x, end->n), end->contact)) {
-    ends_.push_back(*end);
-  }
-}
-
-/// The nets are those over the cell.
-void FreeEndSearch::search_cell(const CurvatureNets& nets, const Contact& c, PatchCell at) {
-  if (nets.definite_sign() != 0 || nets.over().surely_saddle()) return;
-  if (at.level < finest_level) {
-    const std::array<CurvatureNets, 2> halves = nets.halves(Direction::u);
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      const std::array<CurvatureNets, 2> quarters = halves[i].halves(Direction::v);
-      for (std::uint32_t j = 0; j < 2; ++j) search_cell(quarters[j], c, at.child(2 * i + j));
-    }
-    return;
-  }
-  const double size = at.u().upper - at.u().lower;
-  Contact middle = c;
-  middle.u = at.u().at(0.5);
-  middle.v = at.v().at(0.5);
-  if (const auto root = cusp_near(geometry_, middle, 2 * size)) offer(cusp(geometry_, *root));
-  if (const auto start = cusp_in_cell(geometry_, c, at)) {
-    if (const auto root = cusp_near(geometry_, *start, 2 * size)) offer(cusp(geometry_, *root));
-  }
-}
-
-void FreeEndSearch::search_cells(const std::vector<CulledCell>& cells) {
-  const SceneContent& content = geometry_.scene().content();
-  std::optional<CurvatureNets> nets;  // of the last cell's patch
-  const SceneElement* element = nullptr;
-  for (const CulledCell& cell : cells) {
-    if (cell.state != CellState::mixed) continue;
-    const Contact c{cell.instance, SourceKind::face, cell.patch, 0, 0};
-    const ScenePart& part = content.part_of(c.instance);
-    const int index = part.element_of_patch[std::size_t(c.element)];
-    if (index < 0) continue;
-    if (element != &part.elements[std::size_t(index)]) {
-      element = &part.elements[std::size_t(index)];
-      nets = ConcavePatch(*element, geometry_.patch(c)).curvature_nets();
-    }
-    search_cell(nets_over(*nets, cell.cell), c, cell.cell);
-  }
-}
-
-void FreeEndSearch::search_borders(const std::vector<CulledCell>& cells) {
-  for (const auto& [instance, patch] : mixed_patches(cells)) {
-    const Contact c{instance, SourceKind::face, patch, 0, 0};
-    for (const Side side : all_sides) {
-      const Border& border = border_at(geometry_, c, side);
-      const bool seam = border.kind == BorderKind::smooth && border.piece >= 0;
-      if (border.kind == BorderKind::collapsed || seam) continue;
-      const auto curvature = [&](double t) { return curvature_on(geometry_, c, side, t); };
-      if (vanishes(curvature)) continue;
-      const SideFunction parabolic = parabolic_along(geometry_, c, side);
-      for (const double t : sign_changes(parabolic)) offer(border_end(geometry_, c, side, t));
-      // It may change its sign at a corner, from patch to patch.
-      for (const double end : {0.0, 1.0}) {
-        const auto t = root_near(parabolic, end, at_end, noise_step(geometry_, c));
-        if (t && placed(*t) == end) offer(border_end(geometry_, c, side, end));
-      }
-    }
-  }
-}
-
-void FreeEndSearch::search_piece(const Contact& c) {
-  const auto twist = [&](double t) { return twist_at(geometry_, c, t); };
-  if (vanishes(twist) || is_planar(geometry_, c)) return;
-  const std::vector<double> zeros = sign_changes(twist);
-  for (const double sign : {1.0, -1.0}) {
-    for (const double t : zeros) offer(edge_end(geometry_, c, t, sign));
-    for (int end = 0; end < 2; ++end) offer(piece_end(geometry_, c, end, sign));
-  }
-}
-
-void FreeEndSearch::search_edges() {
-  for (const int i : geometry_.scene().distinct_instances()) {
-    const std::vector<EdgePiece>& pieces = geometry_.part({i}).pieces();
-    for (int k = 0; k < int(pieces.size()); ++k) {
-      const Contact c{i, SourceKind::edge, k, 0, 0};
-      // Seams are no edges.
-      if (pieces[std::size_t(k)].edge >= 0 && !geometry_.is_straight(c)) search_piece(c);
-    }
-  }
-}
-
-void FreeEndSearch::search_corners() {
-  for (const int i : geometry_.scene().distinct_instances()) {
-    const int vertices = int(geometry_.part({i}).vertices().size());
-    for (int k = 0; k < vertices; ++k) {
-      each_corner_end(geometry_, {i, SourceKind::vertex, k, 0, 0},
-                      [&](const std::optional<FreeEnd>& end) { offer(end); });
-    }
-  }
-}
 
 /// Roots about a contact: the one nearest to a free end that is known roughly.
 class Polish {
@@ -683,16 +483,6 @@ void Polish::keep(const std::optional<FreeEnd>& end) {
 }
 
 }  // namespace
-
-std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& query,
-                               const std::vector<CulledCell>& cells) {
-  FreeEndSearch search(geometry, query);
-  search.search_cells(cells);
-  search.search_borders(cells);
-  search.search_edges();
-  search.search_corners();
-  return search.result();
-}
 
 std::optional<FreeEnd> polished(const ContactGeometry& geometry, const FreeEnd& near) {
   return Polish(geometry, near).run();

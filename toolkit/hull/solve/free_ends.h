@@ -1,11 +1,8 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "taut/bounds/contact_geometry.h"
-#include "taut/bounds/support_query.h"
-#include "taut/hull/cull/culling.h"
 
 namespace taut {
 
@@ -30,21 +27,6 @@ struct FreeEnd {
   /// face, from a vertex along the edge, at a corner from one edge to the other.
   dvec3 along = dvec3(0.0);
 };
-
-/// All free ends of the scene's hull: those in the mixed cells, on the borders of their patches, on
-/// all edges' pieces and at their ends. Each supports the model to within tie(), by a support
-/// query, and is a simple root: where a whole curve of contacts shares one direction (the circle on
-/// which a torus lies) there is none, nor where an edge is straight. Collapsed sides are left out,
-/// and edges that are planar.
-///
-/// Cells whose Bernstein nets prove that the second form is singular nowhere are excluded. In each
-/// of the others, a 64th of the patch wide, Newton's method starts from the middle, and from the
-/// chord of the parabolic curve where the cubic changes sign along it. So none is missed but where
-/// the method fails from both, or where two ends lie that near. Borders and edges are sampled at a
-/// distance of a 64th too, for changes of sign and for dips that may hide two.
-/// @pre the cells are of the scene
-std::vector<FreeEnd> free_ends(const ContactGeometry& geometry, SupportQuery& query,
-                               const std::vector<CulledCell>& cells);
 
 /// The free end near the given one (to within free_end_reach), to full precision: by Newton's
 /// method, over smooth joins where it leads there. None if it does not converge nearby. Whether it
