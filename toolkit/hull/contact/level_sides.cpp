@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
-#include "taut/bounds/poles.h"
 
 namespace taut {
 namespace {
@@ -27,18 +25,6 @@ bool is_level(const ContactGeometry& geometry, const Contact& c, const dvec3& n,
 }
 
 }  // namespace
-
-Contact highest_along(const ContactGeometry& geometry, Contact c, const dvec3& n) {
-  const auto is_border = [](double t) { return t == 0 || t == 1; };
-  if (is_border(c.u) == is_border(c.v)) return c;
-  const bool of_v = is_border(c.u);
-  const ContactJet j = geometry.jet(c);
-  const double second = glm::dot(of_v ? j.dyy : j.dxx, n);
-  if (second >= -geometry.rounding()) return c;
-  double& t = of_v ? c.v : c.u;
-  t = std::clamp(t - glm::dot(j.dx[of_v ? 1 : 0], n) / second, 0.0, 1.0);
-  return c;
-}
 
 bool is_level_across(const ContactGeometry& geometry, const Contact& c, Side side, const dvec3& n) {
   const double value = along_v(side) ? c.u : c.v;
