@@ -1,11 +1,11 @@
-#include "taut/hull/cull/concave_patch.h"
+#include "taut/envelope/cull/concave_patch.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "models.h"
-#include "taut/hull/cull/convex_cap.h"
+#include "taut/envelope/cull/convex_cap.h"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/concave_surroundings.h"
+#include "taut/envelope/cull/concave_surroundings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/culling.h"
+#include "taut/envelope/cull/culling.h"
 
 #include <gtest/gtest.h>
 

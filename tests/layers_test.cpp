@@ -42,14 +42,17 @@ const std::map<std::string, Rooms> rooms_of = {
          {"polytope", {"result"}},
          {"planar", {"polytope"}},
          {"contact", {"planar"}},
-         {"cull", {"contact"}},
          {"decide", {"result"}},
-         {"solve", {"cull", "decide"}},
+         {"solve", {"contact", "decide"}},
          {"stitch", {"solve"}},
          {"sample", {"polytope"}},
          {"mesh", {"sample", "stitch"}},
          {"measure", {"stitch"}},
          {"polyhedral", {"sample"}},
+     }},
+    {"envelope",
+     {
+         {"cull", {}},
      }},
     {"io",
      {
@@ -62,9 +65,9 @@ const std::map<std::string, Rooms> rooms_of = {
      }},
 };
 
-/// The layers that may include some rooms of hull only. The envelope draws what culling leaves.
+/// The layers that may include some rooms of hull only.
 const std::map<std::string, std::set<std::string>> rooms_of_hull_for = {
-    {"envelope", {"result", "polytope", "sample", "cull"}},
+    {"envelope", {"result", "polytope", "sample"}},
     {"containment", {"result", "polytope", "sample"}},
     {"verify", {"result", "polytope"}},
 };
@@ -172,7 +175,9 @@ std::string direction_violation(const Place& from, const Include& include) {
 /// What is wrong with a file including a third-party header; else "".
 std::string home_violation(const std::string& file, const Include& include) {
   for (const Home& home : homes) {
-    if (std::regex_match(include.path, home.header) && !starts_with_any(file, home.folders)) {
+    const std::string folder = fs::path(file).parent_path().generic_string() + "/";
+    if (std::regex_match(include.path, home.header) &&
+        std::find(home.folders.begin(), home.folders.end(), folder) == home.folders.end()) {
       return "is " + home.library + ", whose home is " + home.folders.front();
     }
   }

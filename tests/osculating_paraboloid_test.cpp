@@ -1,4 +1,4 @@
-#include "taut/hull/cull/osculating_paraboloid.h"
+#include "taut/envelope/cull/osculating_paraboloid.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "models.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/cull/convex_cap.h"
+#include "taut/envelope/cull/convex_cap.h"
 
 namespace taut {
 namespace {

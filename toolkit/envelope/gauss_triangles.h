@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "taut/bounds/contact_geometry.h"
-#include "taut/hull/cull/culling.h"
+#include "taut/envelope/cull/culling.h"
 
 namespace taut {
 

@@ -4,30 +4,17 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
 
+#include "random_directions.h"
 #include "taut/bounds/coons_bvh.h"
 #include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/cull/culling.h"
 #include "teapot.h"
 
 namespace {
 
 using namespace taut;
-
-std::vector<dvec3> random_directions(std::size_t count, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> gaussian;
-  std::vector<dvec3> result;
-  while (result.size() < count) {
-    const double x = gaussian(random);
-    const double y = gaussian(random);
-    result.push_back(unit({x, y, gaussian(random)}));
-  }
-  return result;
-}
 
 SupportBounds bounds_of(const benchmark::State& state) {
   return state.range(0) == 0 ? SupportBounds::bezier_nets : SupportBounds::coons;
@@ -78,44 +65,6 @@ void build_gauss_map(benchmark::State& state) {
   state.counters["bytes/patch"] = double(bytes) / teapot_scene().model().patch_count();
 }
 BENCHMARK(build_gauss_map)->DenseRange(2, 4)->Unit(benchmark::kMillisecond);
-
-/// Argument: the finest level.
-void cull_cells(benchmark::State& state) {
-  const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
-  Culling culling;
-  for (auto _ : state) {
-    culling =
-        cull(teapot_scene(), map, {.levels = int(state.range(0)), .threads = 1, .progress = {}});
-  }
-  const CullingLevel& last = culling.levels.back();
-  state.counters["visited"] = double(culling.visited());
-  state.counters["mixed"] = double(culling.mixed());
-  state.counters["queries"] = double(culling.support_queries);
-  state.counters["removed"] = last.removed_share;
-  state.counters["decided"] = last.decided_share;
-}
-BENCHMARK(cull_cells)->DenseRange(3, 5)->Unit(benchmark::kMillisecond);
-
-/// Argument: the number of teapots, in random poses.
-void cull_instances(benchmark::State& state) {
-  Model model = teapot();
-  model.clear_instances();
-  const auto axes = random_directions(3 * std::size_t(state.range(0)), 3);
-  for (std::size_t k = 0; k < axes.size(); k += 3) {
-    const dvec3 a = axes[k];
-    const dvec3 b = unit(glm::cross(a, axes[k + 1]));
-    model.add_instance(0, {dmat3(a, b, glm::cross(a, b)), 30.0 * axes[k + 2]});
-  }
-  const Scene scene(model, {.threads = 1, .progress = {}});
-  const GaussMap map(scene, {.threads = 1, .progress = {}});
-  Culling culling;
-  for (auto _ : state) culling = cull(scene, map, {.threads = 1, .progress = {}});
-  state.counters["visited"] = double(culling.visited());
-  state.counters["mixed"] = double(culling.mixed());
-  state.counters["queries"] = double(culling.support_queries);
-  state.counters["removed"] = culling.removed_share();
-}
-BENCHMARK(cull_instances)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 /// Argument: the decimal exponent of the Coons tolerance relative to the patch.
 void build_cbvh(benchmark::State& state) {

@@ -1,6 +1,6 @@
-// Envelope images of the teapot against their size, and how many triangles a second the driver
-// draws. The driver draws with all cores, or as many threads as LP_NUM_THREADS says (0: none but
-// the caller's); everything else here with one.
+// Culling of what the envelope does not show; envelope images of the teapot against their size, and
+// how many triangles a second the driver draws. The driver draws with all cores, or as many threads
+// as LP_NUM_THREADS says (0: none but the caller's); everything else here with one.
 
 #include <benchmark/benchmark.h>
 
@@ -8,6 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "random_directions.h"
+#include "taut/bounds/gauss_map.h"
+#include "taut/envelope/cull/culling.h"
 #include "taut/envelope/envelope_hull.h"
 #include "taut/envelope/offscreen_canvas.h"
 #include "taut/envelope/trace_envelope.h"
@@ -20,6 +23,44 @@ using namespace taut;  // NOLINT: a program
 EnvelopeImages teapot_images(int size) {
   return EnvelopeImages(teapot_scene(), {.size = size, .threads = 1, .progress = {}});
 }
+
+/// Argument: the finest level.
+void cull_cells(benchmark::State& state) {
+  const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
+  Culling culling;
+  for (auto _ : state) {
+    culling =
+        cull(teapot_scene(), map, {.levels = int(state.range(0)), .threads = 1, .progress = {}});
+  }
+  const CullingLevel& last = culling.levels.back();
+  state.counters["visited"] = double(culling.visited());
+  state.counters["mixed"] = double(culling.mixed());
+  state.counters["queries"] = double(culling.support_queries);
+  state.counters["removed"] = last.removed_share;
+  state.counters["decided"] = last.decided_share;
+}
+BENCHMARK(cull_cells)->DenseRange(3, 5)->Unit(benchmark::kMillisecond);
+
+/// Argument: the number of teapots, in random poses.
+void cull_instances(benchmark::State& state) {
+  Model model = teapot();
+  model.clear_instances();
+  const auto axes = random_directions(3 * std::size_t(state.range(0)), 3);
+  for (std::size_t k = 0; k < axes.size(); k += 3) {
+    const dvec3 a = axes[k];
+    const dvec3 b = unit(glm::cross(a, axes[k + 1]));
+    model.add_instance(0, {dmat3(a, b, glm::cross(a, b)), 30.0 * axes[k + 2]});
+  }
+  const Scene scene(model, {.threads = 1, .progress = {}});
+  const GaussMap map(scene, {.threads = 1, .progress = {}});
+  Culling culling;
+  for (auto _ : state) culling = cull(scene, map, {.threads = 1, .progress = {}});
+  state.counters["visited"] = double(culling.visited());
+  state.counters["mixed"] = double(culling.mixed());
+  state.counters["queries"] = double(culling.support_queries);
+  state.counters["removed"] = culling.removed_share();
+}
+BENCHMARK(cull_instances)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 /// Both images. Argument: their size.
 void images(benchmark::State& state) {

@@ -14,9 +14,7 @@
 #include <vector>
 
 #include "peers.h"
-#include "taut/bounds/gauss_map.h"
 #include "taut/bounds/support_query.h"
-#include "taut/hull/cull/culling.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/polytope/point_hull.h"
@@ -111,20 +109,6 @@ void structure(benchmark::State& state) {
   state.counters["unresolved"] = double(boundary.unresolved.size());
 }
 BENCHMARK(structure)->Unit(benchmark::kMillisecond);
-
-/// Culling down to level 5: the share of the patches' parameter area that is proven off the hull.
-void cull_to_level_5(benchmark::State& state) {
-  const GaussMap map(teapot_scene(), {.threads = 1, .progress = {}});
-  Culling culling;
-  for (auto _ : state) {
-    culling = cull(teapot_scene(), map, {.levels = 5, .threads = 1, .progress = {}});
-  }
-  state.counters["removed"] = culling.removed_share();
-  state.counters["decided"] = culling.levels.back().decided_share;
-  state.counters["visited"] = double(culling.visited());
-  state.counters["mixed"] = double(culling.mixed());
-}
-BENCHMARK(cull_to_level_5)->Unit(benchmark::kMillisecond);
 
 /// All of the precise hull but the scene. Argument: the decimal exponent of the tolerance.
 void precise_mesh(benchmark::State& state) {

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/concave_patch.h"
+#include "taut/envelope/cull/concave_patch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/concave_surroundings.h"
+#include "taut/envelope/cull/concave_surroundings.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "taut/bounds/scene_content.h"
-#include "taut/hull/cull/concave_patch.h"
+#include "taut/envelope/cull/concave_patch.h"
 
 namespace taut {
 namespace {

@@ -9,7 +9,7 @@
 #include "taut/bounds/reach_test.h"
 #include "taut/bounds/scene.h"
 #include "taut/core/stop.h"
-#include "taut/hull/cull/convex_cap.h"
+#include "taut/envelope/cull/convex_cap.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/convex_cap.h"
+#include "taut/envelope/cull/convex_cap.h"
 
 #include <algorithm>
 #include <array>

@@ -11,8 +11,8 @@
 #include "taut/bounds/scene.h"
 #include "taut/core/progress.h"
 #include "taut/core/stop.h"
-#include "taut/hull/cull/concave_patch.h"
-#include "taut/hull/cull/osculating_paraboloid.h"
+#include "taut/envelope/cull/concave_patch.h"
+#include "taut/envelope/cull/osculating_paraboloid.h"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/hull/cull/culling.h"
+#include "taut/envelope/cull/culling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "taut/core/parallel.h"
 #include "taut/core/pool.h"
 #include "taut/core/stop.h"
-#include "taut/hull/cull/concave_surroundings.h"
+#include "taut/envelope/cull/concave_surroundings.h"
 
 namespace taut {
 namespace {

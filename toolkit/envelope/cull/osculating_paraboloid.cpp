@@ -1,4 +1,4 @@
-#include "taut/hull/cull/osculating_paraboloid.h"
+#include "taut/envelope/cull/osculating_paraboloid.h"
 
 #include <cmath>
 

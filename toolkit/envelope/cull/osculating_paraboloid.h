@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "taut/core/geometry.h"
-#include "taut/hull/cull/concave_patch.h"
+#include "taut/envelope/cull/concave_patch.h"
 
 namespace taut {
 
