@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "models.h"
-#include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_system.h"
@@ -372,61 +371,6 @@ TEST(CurvedFacets, WhatIsAFacet) {
 }
 
 /// @}
-
-/// Of balls in general position, from a ruling between the first two a little before the facet.
-TEST(CommonPlane, FindsThreeContacts) {
-  const dmat3 turn = skew_rotation();
-  const std::vector<dvec3> centers = {turn * dvec3(0, 0, 0), turn * dvec3(2, 0, 0.1),
-                                      turn * dvec3(0.9, 1.8, -0.2)};
-  const Scene scene = make_scene(spheres(0.5, centers));
-  const ContactGeometry geometry(scene);
-  const ContactSystem system(geometry);
-  SupportQuery query(scene);
-  // The balls are not turned, so that their poles are elsewhere.
-  const dvec3 truth = unit(glm::cross(centers[1] - centers[0], centers[2] - centers[0]));
-  Random random(1);
-  for (int k = 0; k < 50; ++k) {
-    const dvec3 axis = glm::normalize(centers[1] - centers[0]);
-    dvec3 n = glm::normalize(truth + 0.1 * random_direction(random));
-    n = glm::normalize(n - glm::dot(n, axis) * axis);
-    const auto contact = [&](std::size_t ball) {
-      const dvec3 middle = (centers[0] + centers[1] + centers[2]) / 3.0;
-      const dvec3 off = unit(centers[ball] - middle);
-      // Leaning outward only its own ball supports; from there the climb leads to n.
-      const std::optional<Contact> c =
-          climbed(geometry, query(glm::normalize(n + 0.6 * off)).contact, n);
-      EXPECT_TRUE(c);
-      return c.value_or(Contact());
-    };
-    CommonSupport s;
-    s.n = n;
-    s.add(geometry, contact(0));
-    s.add(geometry, contact(1));
-    const std::optional<CommonSupport> plane = common_plane(system, query, s, contact(2));
-    ASSERT_TRUE(plane) << k;
-    EXPECT_EQ(plane->count, 3);
-    EXPECT_LT(glm::distance(plane->n, truth), 1e-14);
-    EXPECT_LE(query(plane->n).h, glm::dot(plane->jet[2].x, plane->n) + support_tie);
-  }
-}
-
-/// Where another contact surpasses the plane of the first three it takes the third one's place.
-TEST(CommonPlane, ExchangesTheThirdContact) {
-  const Scene scene =
-      make_scene({{}, {}, {{0, 0, 0}, {1, 0, 0}, {0.5, 1, -0.5}, {0.5, 2, -0.7}, {0, 0, -3}}});
-  const ContactGeometry geometry(scene);
-  const ContactSystem system(geometry);
-  SupportQuery query(scene);
-  const auto vertex = [](int k) { return Contact{0, SourceKind::vertex, k, 0, 0}; };
-  CommonSupport s;
-  s.n = glm::normalize(dvec3(0, 0.1, 1));
-  s.add(geometry, vertex(0));
-  s.add(geometry, vertex(1));
-  const std::optional<CommonSupport> plane = common_plane(system, query, s, vertex(2));
-  ASSERT_TRUE(plane);
-  EXPECT_EQ(plane->contact[2].element, 3);
-  EXPECT_LT(glm::distance(plane->n, unit(dvec3(0, 0.7, 2))), 1e-15);
-}
 
 }  // namespace
 }  // namespace taut

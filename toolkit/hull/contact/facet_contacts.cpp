@@ -8,7 +8,6 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/in_line_contacts.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/planar/planar_hull.h"
@@ -17,9 +16,6 @@
 namespace taut {
 namespace {
 
-/// How often the third contact may be exchanged for one that surpasses it.
-constexpr int exchange_limit = 16;
-
 /// Turn of the direction, in radians, by which contacts beyond a side show. A tie is won by turn
 /// times distance, much more than support_tie; a contact that loses in the plane itself by more
 /// than that stays hidden.
@@ -27,14 +23,6 @@ constexpr double side_turn = 1e-6;
 
 /// Directions turned all around: any other contact is within 60 degrees of one of three.
 constexpr int turns_around = 3;
-
-/// How far parameters may leave [0, 1] by rounding.
-constexpr double element_slack = 1e-9;
-
-bool in_range_with_slack(const Contact& c) {
-  const auto within = [](double t) { return t >= -element_slack && t <= 1 + element_slack; };
-  return within(c.u) && within(c.v);
-}
 
 /// Corners of facets are on a border or at a vertex that is no farther: Newton's method leaves them
 /// so near to it.
@@ -309,37 +297,6 @@ std::optional<FacetContacts> ContactSet::complete() {
 }
 
 }  // namespace
-
-std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQuery& query,
-                                          const CommonSupport& s, Contact winner) {
-  const ContactGeometry& geometry = system.geometry();
-  dvec3 near = s.n;
-  for (int k = 0; k < exchange_limit; ++k) {
-    const std::optional<Contact> third = climbed(geometry, clamped(winner), near);
-    if (!third) return std::nullopt;
-    CommonSupport plane = s;
-    plane.count = 2;
-    plane.add(geometry, *third);
-    if (!system.solve(plane)) return std::nullopt;
-    if (!in_range_with_slack(plane.contact[2])) {
-      // The contact belongs to a neighbouring element there.
-      winner = plane.contact[2];
-      near = plane.n;
-      const std::optional<Contact> moved = climbed(geometry, clamped(winner), near);
-      if (!moved || (moved->kind == third->kind && moved->element == third->element &&
-                     moved->instance == third->instance)) {
-        return std::nullopt;
-      }
-      winner = *moved;
-      continue;
-    }
-    const Support top = query(plane.n, plane.contact[2]);
-    if (top.h <= glm::dot(plane.jet[0].x, plane.n) + geometry.tie()) return plane;
-    winner = geometry.canonical(top.contact);
-    near = plane.n;
-  }
-  return std::nullopt;
-}
 
 bool FacetContacts::is_curved() const {
   return std::any_of(sides.begin(), sides.end(),

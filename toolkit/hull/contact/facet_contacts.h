@@ -8,15 +8,6 @@
 
 namespace taut {
 
-/// Normals of facets are the same below this difference.
-inline constexpr double same_plane = 1e-7;
-
-/// Three contacts that support at a common direction, to within tie(): that of `s` where two
-/// are given, and the one by which `winner` surpasses them nearby. None if Newton's method leads
-/// nowhere. `s` is a start near the solution.
-std::optional<CommonSupport> common_plane(const ContactSystem& system, SupportQuery& query,
-                                          const CommonSupport& s, Contact winner);
-
 /// The convex hull of a plane's contact set, by its corners and sides.
 struct FacetContacts {
   std::vector<Contact> contacts;  ///< counter-clockwise from outside

@@ -24,11 +24,6 @@ CellTree::Key CellTree::key(int face, int level, std::uint32_t i, std::uint32_t 
   return (Key(face) << 61) ^ (Key(level) << 56) ^ (Key(i) << 28) ^ Key(j);
 }
 
-int CellTree::at(const dvec3& d) const {
-  const DirectionMap::Place place = DirectionMap::place(d);
-  return at(place.face, place.s, place.t);
-}
-
 int CellTree::at(int face, double s, double t) const {
   if (std::abs(s) > 1 || std::abs(t) > 1) {
     const auto [other, first, second] = DirectionMap::place(DirectionMap::direction(face, s, t));
@@ -45,15 +40,6 @@ int CellTree::at(int face, double s, double t) const {
     if (found != index_.end()) return found->second;
   }
   return -1;
-}
-
-int CellTree::at_corner(int k, int number) const {
-  const MapCell& own = cells_[std::size_t(k)];
-  const double size = std::ldexp(2.0, -own.level);
-  const auto beyond = [&](std::uint32_t i, bool upper) {
-    return -1 + size * (i + (upper ? 1 + step_beyond : -step_beyond));
-  };
-  return at(own.face, beyond(own.i, number / 2 == 1), beyond(own.j, number % 2 == 1));
 }
 
 bool CellTree::side(int k, int number, CellSide& result) const {

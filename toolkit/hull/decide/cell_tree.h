@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// Finds cells of a direction map by directions. The cells must outlive it.
+/// Finds cells of a direction map by their places. The cells must outlive it.
 class CellTree {
  public:
   explicit CellTree(const std::vector<MapCell>& cells);
@@ -16,12 +16,6 @@ class CellTree {
   /// The cell at a place of a face of the cube, which may be a little beyond its border; -1 if
   /// there is none.
   int at(int face, double s, double t) const;
-
-  /// The cell that holds a direction; -1 if there is none.
-  int at(const dvec3& d) const;
-
-  /// The cell beyond a corner of a cell, -1 if there is none.
-  int at_corner(int cell, int number) const;
 
   /// A side between two cells, whole for the finer of them.
   struct CellSide {
