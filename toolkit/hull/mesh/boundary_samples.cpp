@@ -7,87 +7,11 @@
 
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/rulings_between.h"
+#include "taut/hull/mesh/even_division.h"
+#include "taut/hull/mesh/near_samples.h"
 
 namespace taut {
 namespace {
-
-/// A place on a sequence of points: in the interval behind one of them.
-struct Place {
-  std::size_t interval = 0;
-  double s = 0;
-};
-
-/// Divides a sequence of places so that the sagittas of all parts are alike and no larger than
-/// they may be. A chord's sagitta grows as its length squared, so it is the integral of the square
-/// root that is divided.
-class EvenDivision {
- public:
-  /// Adds the next interval; `sagitta_root` is the square root of its sagitta.
-  void add(double sagitta_root) { sums_.push_back(sums_.back() + sagitta_root); }
-
-  /// How many parts are needed, before rounding.
-  double parts(double sagitta) const { return sums_.back() / std::sqrt(sagitta); }
-
-  std::vector<Place> places(double sagitta, int least_parts) const {
-    const double parts =
-        std::clamp(std::ceil(this->parts(sagitta)), double(least_parts), most_parts);
-    std::vector<Place> result = {{0, 0}};
-    for (int k = 1; k < int(parts); ++k) {
-      const double at = sums_.back() * (k / parts);
-      const auto next = std::upper_bound(sums_.begin() + 1, sums_.end() - 1, at);
-      const double from = *(next - 1);
-      const double snap = snap_share * sums_.back() / parts;
-      double s = *next > from ? (at - from) / (*next - from) : 0;
-      if (at - from < snap) s = 0;
-      if (*next - at < snap) s = 1;
-      result.push_back({std::size_t(next - sums_.begin()) - 1, s});
-    }
-    result.push_back({sums_.size() - 2, 1});
-    return result;
-  }
-
- private:
-  /// With so many parts sagittas are a billionth of the length, whatever is asked for.
-  static constexpr double most_parts = 1e4;
-  /// Nearer than this share of a part to a place that is there, that one serves as well.
-  static constexpr double snap_share = 0.1;
-  std::vector<double> sums_ = {0};
-};
-
-double sagitta(const Ruling& a, const Ruling& middle, const Ruling& b) {
-  return std::max(distance_to_segment(middle.point[0], a.point[0], b.point[0]),
-                  distance_to_segment(middle.point[1], a.point[1], b.point[1]));
-}
-
-double chord(const Ruling& a, const Ruling& b) {
-  return glm::distance(a.n, b.n) + glm::distance(a.point[0], b.point[0]) +
-         glm::distance(a.point[1], b.point[1]);
-}
-
-/// The square roots of the intervals' sagittas, from those of pairs of them; one interval alone
-/// by its middle.
-template <class T, class Middle>
-void add_intervals(const std::vector<T>& points, Middle middle, EvenDivision& division) {
-  const std::size_t count = points.size();
-  if (count < 2) return;  // a piece that could not be solved
-  if (count == 2) {
-    division.add(std::sqrt(sagitta(points[0], middle(), points[1])));
-    return;
-  }
-  std::vector<double> lengths;
-  for (std::size_t k = 0; k + 1 < count; ++k) lengths.push_back(chord(points[k], points[k + 1]));
-  std::vector<double> density(count, 0);
-  for (std::size_t k = 1; k + 1 < count; ++k) {
-    const double length = lengths[k - 1] + lengths[k];
-    if (!(length > 0)) continue;
-    density[k] = std::sqrt(sagitta(points[k - 1], points[k], points[k + 1])) / length;
-  }
-  density.front() = density[1];
-  density.back() = density[count - 2];
-  for (std::size_t k = 0; k + 1 < count; ++k) {
-    division.add(0.5 * (density[k] + density[k + 1]) * lengths[k]);
-  }
-}
 
 /// Lengths of the intervals between contacts, in the root of the second fundamental form.
 std::vector<double> form_lengths(const std::vector<Ruling>& rulings, std::size_t contact = 0) {
@@ -174,7 +98,6 @@ class BoundarySampler {
   void add_rows(int arc, int piece);
   void add_border_row(const PatchRegion& region, const TrimStretch& stretch);
   void add_beside(const ContactJet& jet, const dvec3& n, const dvec3& across, const Contact& hint);
-  BoundarySamples without_near_ones() const;
 
   const ContactGeometry& geometry_;
   SceneFrame frame_;
@@ -248,16 +171,15 @@ void BoundarySampler::add_run(int arc, int first, int count, int least_parts) {
   std::vector<std::pair<int, std::size_t>> from;  // per interval: piece and ruling
   for (int p = first; p < first + count; ++p) {
     const std::vector<Ruling>& rulings = pieces[std::size_t(p)].rulings;
-    add_intervals(
-        rulings,
-        [&] { return ruling_between(system_, rulings[0], rulings[1], 0.5).value_or(rulings[0]); },
-        division);
+    division.add(rulings, [&] {
+      return ruling_between(system_, rulings[0], rulings[1], 0.5).value_or(rulings[0]);
+    });
     for (std::size_t k = 0; k + 1 < rulings.size(); ++k) from.emplace_back(p, k);
   }
   if (from.empty()) return;
   const auto begin = int(all_.samples.size());
   std::vector<ArcPlace> along;
-  for (const Place& place : division.places(sagitta_, least_parts)) {
+  for (const EvenDivision::Place& place : division.places(sagitta_, least_parts)) {
     const auto [piece, k] = from[place.interval];
     const std::vector<Ruling>& rulings = pieces[std::size_t(piece)].rulings;
     const std::optional<Ruling> r = ruling_between(system_, rulings[k], rulings[k + 1], place.s);
@@ -354,13 +276,12 @@ void BoundarySampler::add_border(const PatchRegion& region, const TrimStretch& s
   const auto divide = [&](const std::vector<Ruling>& places) {
     sagitta = border_sagitta(places, curve);
     division = EvenDivision();
-    add_intervals(
-        places, [&] { return places[0]; }, division);
+    division.add(places, [&] { return places[0]; });
   };
   divide(coarse_places(region, stretch));
   const bool coarse = division.parts(sagitta) <= worth_dividing;
   if (!coarse) divide(border_places(region, stretch));
-  for (const Place& place : division.places(sagitta, 1)) {
+  for (const EvenDivision::Place& place : division.places(sagitta, 1)) {
     const double s =
         (double(place.interval) + place.s) / (coarse ? coarse_intervals : border_intervals);
     const double at = Interval{stretch.from, stretch.to}.at(s);
@@ -385,54 +306,6 @@ void BoundarySampler::add_border_row(const PatchRegion& region, const TrimStretc
     const dvec3 across = double(region.sign) * unit(glm::cross(r.n, along));
     add_beside(geometry_.jet(r.contact[0]), r.n, across, r.contact[0]);
   });
-}
-
-/// In the order of a direction in which few points of a model lie side by side.
-BoundarySamples BoundarySampler::without_near_ones() const {
-  const dvec3 across = unit(dvec3(0.7548776662466927, 0.5698402909980532, 0.4301597090019468));
-  const std::size_t count = all_.points.size();
-  std::vector<double> height;
-  for (const dvec3& p : all_.points) height.push_back(glm::dot(across, p - frame_.center));
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return height[a] != height[b] ? height[a] < height[b] : a < b;
-  });
-  std::vector<std::size_t> place(count);
-  for (std::size_t k = 0; k < count; ++k) place[order[k]] = k;
-  BoundarySamples result;
-  std::vector<int> number(count, -1);  // in the result
-  std::vector<int> kept_as(count, -1);
-  for (std::size_t i = 0; i < count; ++i) {
-    int near = -1;
-    const auto look = [&](std::size_t other) {
-      if (std::abs(height[other] - height[i]) > clear_[i]) return false;
-      if (number[other] >= 0 && other < i &&
-          glm::distance(all_.points[other], all_.points[i]) <= clear_[i]) {
-        near = number[other];
-      }
-      return near < 0;
-    };
-    for (std::size_t k = place[i]; k > 0 && look(order[k - 1]); --k) continue;
-    for (std::size_t k = place[i] + 1; near < 0 && k < count && look(order[k]); ++k) continue;
-    if (near >= 0 && clear_[i] > width_) continue;
-    if (near >= 0) {
-      for (const TouchedFace& f : all_.faces[i]) touch(result.faces[std::size_t(near)], f);
-      kept_as[i] = near;
-      continue;
-    }
-    number[i] = int(result.samples.size());
-    kept_as[i] = number[i];
-    result.samples.push_back(all_.samples[i]);
-    result.points.push_back(all_.points[i]);
-    result.faces.push_back(all_.faces[i]);
-  }
-  for (CurveChord chord : all_.chords) {
-    chord.a = kept_as[std::size_t(chord.a)];
-    chord.b = kept_as[std::size_t(chord.b)];
-    if (chord.a != chord.b) result.chords.push_back(chord);
-  }
-  return result;
 }
 
 /// Adds the support point of the direction that lies across from a place on a patch's border or
@@ -494,7 +367,7 @@ BoundarySamples BoundarySampler::run() {
   for_each_border([&](int, const PatchRegion& region, const TrimStretch& stretch) {
     if (stretch.arc < 0 && stretch.curve >= 0) add_border_row(region, stretch);
   });
-  return without_near_ones();
+  return without_near_ones(all_, clear_, width_, frame_.center);
 }
 
 }  // namespace
