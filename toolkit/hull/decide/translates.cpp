@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include "taut/core/nearest_in_simplex.h"
+#include "taut/hull/decide/held_elements.h"
 #include "taut/hull/decide/round_shapes.h"
 
 namespace taut {
@@ -18,10 +18,6 @@ constexpr int nearest_step_limit = 64;
 
 /// Translates of an element that it is compared with in cells.
 constexpr std::size_t near_translates = 4;
-
-/// Of more round shapes it is not told what is between two of them. The work grows with the square
-/// of their number times that of elements.
-constexpr std::size_t between_limit = 32;
 
 /// Tells most shapes apart by one number; across all that models are aligned with.
 const dvec3 gauge_axis = {0.5773, 0.2113, 0.7887};
@@ -148,12 +144,6 @@ std::optional<Mean> mean_near(const std::vector<dvec3>& points, const std::vecto
   return std::nullopt;
 }
 
-double distance_outside(const MapPieces& pieces, int element, const RoundShape& round) {
-  const StoredNet& net = pieces.element(element).root->exact;
-  const auto size = std::size_t(net.shape.size());
-  return round.distances(net.shape, {net.points, size}).outwards + pieces.geometry().rounding();
-}
-
 /// An element, or those of a round shape.
 struct Member {
   std::vector<int> elements;
@@ -245,7 +235,6 @@ class Search {
 
   Likenesses run() {
     result_.resize(pieces_.elements().size());
-    held_.assign(result_.size(), false);
     rounds_ = round_shapes(pieces_, budget_);
     for (const RoundShape& round : rounds_) {
       add({-1, int(round.kind), 0}, {round.elements, shape_of(round)});
@@ -266,9 +255,8 @@ class Search {
       add({int(element.contact.kind), net.p, net.q}, {{k}, shape_of(element)});
     }
     for (std::size_t k = 0; k < groups_.size(); ++k) tell(int(k));
-    hold();
-    hold_between();
-    keep_neighbors();
+    const std::vector<bool> held = hold_by_rounds(pieces_, rounds_, budget_, result_);
+    keep_neighbors(held);
     for (std::size_t k = 0; k < rounds_.size(); ++k) {
       for (const int element : rounds_[k].elements) result_[std::size_t(element)].round = int(k);
     }
@@ -314,81 +302,6 @@ class Search {
     }
   }
 
-  /// What a round shape holds, the largest first, which others then hold no more.
-  void hold() {
-    std::vector<int> order(rounds_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return rounds_[std::size_t(a)].greatest_radius() > rounds_[std::size_t(b)].greatest_radius();
-    });
-    for (const int number : order) {
-      pieces_.geometry().check_stop();
-      const RoundShape& round = rounds_[std::size_t(number)];
-      if (is_covered(round)) continue;
-      for (int k = 0; k < int(result_.size()); ++k) {
-        Likeness& own = result_[std::size_t(k)];
-        if (own.covered || std::count(round.elements.begin(), round.elements.end(), k) > 0)
-          continue;
-        const StoredNet& net = pieces_.element(k).root->exact;
-        if (round.surely_misses(euclidean(*net.points), budget_)) continue;
-        own.covered = distance_outside(pieces_, k, round) + round.inside <= budget_;
-        held_[std::size_t(k)] = own.covered;
-        if (own.covered) let_stand(round);
-      }
-    }
-  }
-
-  void let_stand(const RoundShape& round) {
-    for (const int k : round.elements) result_[std::size_t(k)].stands_for_others = true;
-  }
-
-  bool is_covered(const RoundShape& round) const {
-    return std::any_of(round.elements.begin(), round.elements.end(),
-                       [&](int k) { return result_[std::size_t(k)].covered; });
-  }
-
-  /// What the convex hull of two round shapes holds, which others then hold no more.
-  void hold_between() {
-    std::vector<const RoundShape*> left;
-    for (const RoundShape& round : rounds_) {
-      if (!is_covered(round)) left.push_back(&round);
-    }
-    if (left.size() > between_limit) return;
-    std::vector<bool> carries(result_.size(), false);
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      for (std::size_t j = i + 1; j < left.size(); ++j) {
-        pieces_.geometry().check_stop();
-        const std::array<const RoundShape*, 2> two = {left[i], left[j]};
-        if (two[0]->kind != two[1]->kind || is_covered(*two[0])) continue;
-        for (int k = 0; k < int(result_.size()) && !is_covered(*two[1]); ++k) {
-          if (result_[std::size_t(k)].covered || carries[std::size_t(k)]) continue;
-          if (!holds_between(two, k)) continue;
-          result_[std::size_t(k)].covered = held_[std::size_t(k)] = true;
-          for (const RoundShape* round : two) let_stand(*round);
-          for (const RoundShape* round : two) {
-            for (const int element : round->elements) carries[std::size_t(element)] = true;
-          }
-        }
-      }
-    }
-  }
-
-  /// The mean of two shapes in whose plane, or beside whose centre, the element's middle lies holds
-  /// the element.
-  bool holds_between(const std::array<const RoundShape*, 2>& two, int element) const {
-    for (const RoundShape* round : two) {
-      if (std::count(round->elements.begin(), round->elements.end(), element) > 0) return false;
-    }
-    const dvec3 way = two[1]->center - two[0]->center;
-    const dvec3 across = two[0]->is_flat() ? two[0]->axes[2] : way;
-    const dvec3 middle = shape_of(pieces_.element(element)).middle;
-    const double share = glm::dot(middle - two[0]->center, across) / glm::dot(way, across);
-    if (!(share > 0 && share < 1)) return false;
-    const std::array<double, 2> weights = {1 - share, share};
-    const RoundShape mean = mean_of(two, weights);
-    return distance_outside(pieces_, element, mean) + mean.inside <= budget_;
-  }
-
   bool counts(int element) const { return element >= 0 && !result_[std::size_t(element)].covered; }
 
   /// An element that goes on smoothly into one that is not covered is not either.
@@ -412,13 +325,13 @@ class Search {
                        [&](int k) { return counts(k); });
   }
 
-  void keep_neighbors() {
+  void keep_neighbors(const std::vector<bool>& held) {
     for (bool changed = true; changed;) {
       changed = false;
       for (std::size_t k = 0; k < result_.size(); ++k) {
         const MapElement& element = pieces_.element(int(k));
         if (!result_[k].covered) continue;
-        if (!has_neighbor_that_counts(element) && !(held_[k] && bounds_what_counts(element))) {
+        if (!has_neighbor_that_counts(element) && !(held[k] && bounds_what_counts(element))) {
           continue;
         }
         result_[k].covered = false;
@@ -430,7 +343,6 @@ class Search {
   const MapPieces& pieces_;
   double budget_;
   std::vector<Likeness> result_;
-  std::vector<bool> held_;  // by round shapes
   std::vector<RoundShape> rounds_;
   std::vector<Group> groups_;
   std::map<Key, std::multimap<double, int>> by_gauge_;
