@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "taut/bounds/scene_content.h"
-#include "taut/core/disjoint_sets.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/decide/hanging_branches.h"
 
 namespace taut {
 namespace {
@@ -183,8 +183,10 @@ std::optional<MapCellKind> CellDecider::decided(bool before_splits) {
   if (branches_.all().empty()) return MapCellKind::undecided;
   if (const auto kind = kind_of_branches(false)) return kind;
   // All that is near all the planes hangs together.
-  const std::vector<Branch>& all = branches_.all();
-  if (is_flat()) return hang_together(all) ? MapCellKind::region : MapCellKind::flat;
+  if (is_flat()) {
+    const bool is_one = hang_together(view_, branches_, options_.resolution);
+    return is_one ? MapCellKind::region : MapCellKind::flat;
+  }
   return before_splits && !planes_.is_spot() && is_facet() ? std::optional(MapCellKind::facet)
                                                            : std::nullopt;
 }
@@ -361,45 +363,6 @@ bool CellDecider::is_flat() const {
     }
     return true;
   });
-}
-
-/// Branches are one of which two points are within the resolution of each other: corners of their
-/// pieces.
-bool CellDecider::hang_together(const std::vector<Branch>& all) const {
-  DisjointSets sets(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = i + 1; j < all.size(); ++j) {
-      if (come_near(all[i], all[j])) sets.unite(int(i), int(j));
-    }
-  }
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (sets.find(int(i)) != sets.find(0)) return false;
-  }
-  return true;
-}
-
-bool CellDecider::come_near(const Branch& a, const Branch& b) const {
-  if (glm::length(box_gaps(box_of(a), box_of(b))) > options_.resolution) return false;
-  const std::vector<dvec3> own = corners_of_pieces(a);
-  const std::vector<dvec3> other = corners_of_pieces(b);
-  return std::any_of(own.begin(), own.end(), [&](const dvec3& x) {
-    return std::any_of(other.begin(), other.end(),
-                       [&](const dvec3& y) { return glm::distance(x, y) <= options_.resolution; });
-  });
-}
-
-std::vector<dvec3> CellDecider::corners_of_pieces(const Branch& branch) const {
-  std::vector<dvec3> corners;
-  for (const int chart : branch.charts) {
-    for (const int k : branches_.chart(chart).pieces) {
-      const StoredNet& net = view_.seen()[std::size_t(k)].piece->net;
-      const int row = net.shape.q + 1;
-      for (const int corner : {0, row - 1, net.shape.p * row, net.shape.p * row + row - 1}) {
-        corners.push_back(euclidean(net.points[corner]));
-      }
-    }
-  }
-  return corners;
 }
 
 }  // namespace taut

@@ -68,9 +68,6 @@ class CellDecider {
   std::optional<MapCellKind> kind_by_border();
   bool is_facet();
   bool is_flat() const;
-  bool hang_together(const std::vector<Branch>& all) const;
-  bool come_near(const Branch& a, const Branch& b) const;
-  std::vector<dvec3> corners_of_pieces(const Branch& branch) const;
 
   const MapPieces& pieces_;
   DirectionMapOptions options_;
