@@ -58,9 +58,21 @@ PieceSlopes::Bend PieceSlopes::bend() const {
   return bend_at((p() - 1) / 2, (q() - 1) / 2, [&](std::size_t k) { return middle(k); });
 }
 
+PieceSlopes::Lines PieceSlopes::lines(Direction direction) const {
+  const int row = q() + 1;
+  return direction == Direction::u ? Lines{row, 1, p(), q()} : Lines{1, row, q(), p()};
+}
+
 bool PieceSlopes::is_at(Side side) const {
   const Interval& across = along_v(side) ? piece_.u : piece_.v;
   return at_upper_end(side) ? across.upper == 1 : across.lower == 0;
+}
+
+bool PieceSlopes::is_at_pole_or_kink() const {
+  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
+    const auto k = std::size_t(side);
+    return is_at(side) && (element_.collapsed[k] || element_.kink[k] > 0);
+  });
 }
 
 bool PieceSlopes::surely_rise() const {
@@ -75,10 +87,7 @@ bool PieceSlopes::surely_rise() const {
 /// points of the piece.
 bool PieceSlopes::rise_along(Direction direction) const {
   const bool of_u = direction == Direction::u;
-  const int step = of_u ? q() + 1 : 1;
-  const int across = of_u ? 1 : q() + 1;
-  const int count = of_u ? p() : q();
-  const int degree = of_u ? q() : p();  // across
+  const auto [step, across, count, degree] = lines(direction);
   const Side lower_side = of_u ? Side::v0 : Side::u0;
   const Side upper_side = of_u ? Side::v1 : Side::u1;
   const bool lower = is_at(lower_side) && element_.collapsed[std::size_t(lower_side)];
@@ -109,14 +118,12 @@ bool PieceSlopes::rise_along(Direction direction) const {
 
 /// The longest of the control polygons, of the points over their weights.
 double PieceSlopes::longest_step(Direction direction) const {
-  const bool of_u = direction == Direction::u;
-  const int step = of_u ? q() + 1 : 1;
-  const int across = of_u ? 1 : q() + 1;
+  const auto [step, across, count, degree] = lines(direction);
   const dvec3 center = piece_.box.center();
   const double reach = 0.5 * diagonal(piece_.box);
   double longest = 0;
-  for (int j = 0; j <= (of_u ? q() : p()); ++j) {
-    for (int i = 0; i < (of_u ? p() : q()); ++i) {
+  for (int j = 0; j <= degree; ++j) {
+    for (int i = 0; i < count; ++i) {
       const int k = i * step + j * across;
       const dvec4 off = points_[k + step] - points_[k];
       longest =
@@ -129,14 +136,14 @@ double PieceSlopes::longest_step(Direction direction) const {
 /// Of the heights over one of the piece, times the weights; a part of them once one is not above
 /// `least`.
 CoefficientRange PieceSlopes::second_differences(Direction direction, double least) const {
-  const bool of_u = direction == Direction::u;
-  const int step = of_u ? q() + 1 : 1;
-  const int across = of_u ? 1 : q() + 1;
+  const Lines line = lines(direction);
   CoefficientRange range;
-  for (int j = 0; j <= (of_u ? q() : p()); ++j) {
-    for (int i = 0; i + 2 <= (of_u ? p() : q()); ++i) {
-      const int k = i * step + j * across;
-      const auto bend = [&](const auto& of) { return of(k) - 2 * of(k + step) + of(k + 2 * step); };
+  for (int j = 0; j <= line.degree; ++j) {
+    for (int i = 0; i + 2 <= line.count; ++i) {
+      const int k = i * line.step + j * line.across;
+      const auto bend = [&](const auto& of) {
+        return of(k) - 2 * of(k + line.step) + of(k + 2 * line.step);
+      };
       const double w = element_.rational ? bend([&](int l) { return points_[l].w; }) : 0;
       for (std::size_t c = 0; c < 4; ++c) {
         const double y = bend([&](int l) { return values_[l][c]; });
@@ -190,10 +197,7 @@ bool PieceSlopes::bend_up_along(Direction direction) const {
 /// Where patches twist. At a corner of the patch what is beside it may be all that is higher.
 bool PieceSlopes::bend_up_obliquely() const {
   if ((is_at(Side::u0) || is_at(Side::u1)) && (is_at(Side::v0) || is_at(Side::v1))) return false;
-  for (const Side side : all_sides) {
-    if (!is_at(side)) continue;
-    if (element_.collapsed[std::size_t(side)] || element_.kink[std::size_t(side)] > 0) return false;
-  }
+  if (is_at_pole_or_kink()) return false;
   const std::optional<Way> way = steepest_bend(bend());
   return way && are_convex(*way);
 }
@@ -238,20 +242,19 @@ std::optional<Direction> PieceSlopes::bends_both_ways(double least) const {
 
 /// The parameter with which the second derivative in a direction changes most.
 Direction PieceSlopes::changes_most(const Way& way) const {
-  std::vector<double> slopes(std::size_t(piece_.net.shape.size()));
-  std::vector<double> bends(slopes.size());
-  for (int i = 0; i <= p(); ++i) {
-    for (int j = 0; j <= q(); ++j) {
-      slopes[index(i, j)] =
-          slope_at(i, j, way.along_u, way.along_v, [&](std::size_t k) { return middle(k); });
+  const auto derivative = [&](const auto& of) {
+    std::vector<double> net;
+    for (int i = 0; i <= p(); ++i) {
+      for (int j = 0; j <= q(); ++j) net.push_back(slope_at(i, j, way.along_u, way.along_v, of));
     }
-  }
+    return net;
+  };
+  const std::vector<double> slopes = derivative([&](std::size_t k) { return middle(k); });
+  const std::vector<double> bends = derivative([&](std::size_t k) { return slopes[k]; });
   double with_u = 0;
   double with_v = 0;
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
-      bends[index(i, j)] =
-          slope_at(i, j, way.along_u, way.along_v, [&](std::size_t k) { return slopes[k]; });
       const double own = bends[index(i, j)];
       if (i > 0) with_u = std::max(with_u, p() * std::abs(own - bends[index(i - 1, j)]));
       if (j > 0) with_v = std::max(with_v, q() * std::abs(own - bends[index(i, j - 1)]));
@@ -263,11 +266,7 @@ Direction PieceSlopes::changes_most(const Way& way) const {
 /// Along a collapsed side weights may change. A point beside it is lower or higher than the side by
 /// its distance from it times the slope across, and that, times the change, adds to the slope.
 double PieceSlopes::pole_margin(Direction direction, bool lower, bool upper) const {
-  const bool of_u = direction == Direction::u;
-  const int step = of_u ? q() + 1 : 1;
-  const int across = of_u ? 1 : q() + 1;
-  const int count = of_u ? p() : q();
-  const int degree = of_u ? q() : p();
+  const auto [step, across, count, degree] = lines(direction);
   double change = 0;
   for (int i = 0; i < count; ++i) {
     for (const int j : {lower ? 0 : degree, upper ? degree : 0}) {
@@ -291,10 +290,7 @@ double PieceSlopes::pole_margin(Direction direction, bool lower, bool upper) con
 /// In a direction oblique to the parameters', in which slopes change but little across it: along
 /// the floor of a valley, or the crest of a ridge.
 bool PieceSlopes::rise_obliquely() const {
-  for (const Side side : all_sides) {
-    const auto k = std::size_t(side);
-    if (is_at(side) && (element_.collapsed[k] || element_.kink[k] > 0)) return false;
-  }
+  if (is_at_pole_or_kink()) return false;
   const Bend b = bend();
   if (b.uv == 0) return false;
   return (b.vv != 0 && are_definite(1, -b.uv / b.vv)) ||

@@ -65,7 +65,16 @@ class PieceSlopes {
     double up = 0;
   };
 
+  /// The control points along a parameter, in lines side by side: the steps from one to the next
+  /// and to the next line, the degrees along them and across.
+  struct Lines {
+    int step, across;
+    int count, degree;
+  };
+  Lines lines(Direction direction) const;
+
   bool is_at(Side side) const;
+  bool is_at_pole_or_kink() const;
   double longest_step(Direction direction) const;
   CoefficientRange second_differences(Direction direction, double least) const;
   bool bend_up_along(Direction direction) const;
