@@ -5,11 +5,8 @@
 
 #include "taut/bounds/poles.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/joined_elements.h"
-#include "taut/hull/contact/level_sides.h"
-#include "taut/hull/contact/local_curvature.h"
-#include "taut/hull/contact/parabolic_sides.h"
+#include "taut/hull/contact/ruling_starts.h"
 
 namespace taut {
 namespace {
@@ -38,49 +35,6 @@ bool merged(const Ruling& r) { return glm::length(r.point[0] - r.point[1]) <= co
 bool is_flat(const CommonSupport& s, const ContactGeometry& geometry) {
   const double least = std::sqrt(geometry.rounding());
   return is_flat(s.jet[0], s.n, least) || is_flat(s.jet[1], s.n, least);
-}
-
-/// The side of the contact's patch that is a straight edge and on which it lies. Planes that turn
-/// about the edge touch the patch there first: along the edge it is flat.
-std::optional<Side> segment_side(const ContactGeometry& geometry, const Contact& c) {
-  if (c.kind != SourceKind::face) return std::nullopt;
-  for (const Side side : all_sides) {
-    const double value = along_v(side) ? c.u : c.v;
-    if (value == (at_upper_end(side) ? 1 : 0) && straight_piece(geometry, c, side)) return side;
-  }
-  return std::nullopt;
-}
-
-bool begins_on_segment(const ContactGeometry& geometry, const Ruling& r) {
-  return std::any_of(r.contact.begin(), r.contact.end(),
-                     [&](const Contact& c) { return segment_side(geometry, c).has_value(); });
-}
-
-/// n turns with the square of the contact's way: at the end of an edge that does not bend there,
-/// and off a side across which the patch is level.
-bool leaves_flat(const ContactGeometry& geometry, const Ruling& r, const Ruling& other,
-                 std::size_t i) {
-  const Contact& c = r.contact[i];
-  if (c.kind != SourceKind::face) return ends_straight(geometry, c);
-  return std::any_of(all_sides.begin(), all_sides.end(), [&](Side side) {
-    const double value = at_upper_end(side) ? 1 : 0;
-    const double from = along_v(side) ? c.u : c.v;
-    const double to = along_v(side) ? other.contact[i].u : other.contact[i].v;
-    return from == value && to != value && is_level_across(geometry, c, side, r.n);
-  });
-}
-
-/// How n begins at one of the rulings: as ever, with the square of a contact's way while the other
-/// one moves as n does, or with that of both; a vertex does not move.
-enum class Start { plain, straight, stands };
-Start start_at(const ContactGeometry& geometry, const Ruling& r, const Ruling& other) {
-  const std::array<bool, 2> flat = {leaves_flat(geometry, r, other, 0),
-                                    leaves_flat(geometry, r, other, 1)};
-  if (!flat[0] && !flat[1]) return Start::plain;
-  const auto moves_so = [&](std::size_t i) {
-    return flat[i] || r.contact[i].kind == SourceKind::vertex;
-  };
-  return moves_so(0) && moves_so(1) ? Start::stands : Start::straight;
 }
 
 /// The derivatives in m are not those of a curve that runs about straight between the two.
@@ -133,38 +87,6 @@ void MovingRuling::speed_up(double factor) {
   }
 }
 
-void RulingsBetween::Polynomial::add(double r, const State& value, const State& slope) {
-  append(r, value, nullptr);
-  append(r, value, &slope);
-}
-
-std::array<RulingsBetween::State, 2> RulingsBetween::Polynomial::evaluate(double r) const {
-  State p{}, q{};
-  for (std::size_t k = node_.size(); k-- > 0;) {
-    for (std::size_t c = 0; c < p.size(); ++c) {
-      q[c] = q[c] * (r - node_[k]) + p[c];
-      p[c] = p[c] * (r - node_[k]) + coefficient_[k][c];
-    }
-  }
-  return {p, q};
-}
-
-/// The next divided difference: what is left of the value, or of the slope at the node that was
-/// added last, over the product of distances to the nodes before.
-void RulingsBetween::Polynomial::append(double r, const State& value, const State* slope) {
-  const auto [p, q] = evaluate(r);
-  double product = 1;
-  for (std::size_t k = 0; k + (slope != nullptr ? 1 : 0) < node_.size(); ++k) {
-    product *= r - node_[k];
-  }
-  State next;
-  for (std::size_t c = 0; c < next.size(); ++c) {
-    next[c] = (slope != nullptr ? (*slope)[c] - q[c] : value[c] - p[c]) / product;
-  }
-  node_.push_back(r);
-  coefficient_.push_back(next);
-}
-
 RulingsBetween::State RulingsBetween::state(const dvec3& n, const dvec2& p0, const dvec2& p1) {
   return {n.x, n.y, n.z, p0.x, p0.y, p1.x, p1.y};
 }
@@ -200,11 +122,11 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     refine();
   } else if (merged(from) == merged(to)) {
     nearly_merges_ = nearly_merge();
-    const std::array<Start, 2> start = {start_at(system.geometry(), from, to),
-                                        start_at(system.geometry(), to, from)};
+    const std::array<RulingStart, 2> start = {start_at(system.geometry(), from, to),
+                                              start_at(system.geometry(), to, from)};
     for (std::size_t i = 0; i < 2; ++i) {
-      straight_[i] = start[i] == Start::straight;
-      stands_[i] = start[i] == Start::stands;
+      straight_[i] = start[i] == RulingStart::straight;
+      stands_[i] = start[i] == RulingStart::stands;
     }
     const auto is_flat_far_off = [&](const Ruling& r) {
       return system.geometry().tie() > support_tie &&

@@ -2,9 +2,9 @@
 
 #include <array>
 #include <optional>
-#include <vector>
 
 #include "taut/hull/contact/contact_system.h"
+#include "taut/hull/contact/hermite_polynomial.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
@@ -72,22 +72,7 @@ class RulingsBetween {
 
  private:
   /// n and the contacts' parameters of a ruling.
-  using State = std::array<double, 7>;
-  /// Hermite's interpolation in Newton's form.
-  class Polynomial {
-   public:
-    void add(double r, const State& value) { append(r, value, nullptr); }
-    void add(double r, const State& value, const State& slope);
-    State value(double r) const { return evaluate(r)[0]; }
-    State slope(double r) const { return evaluate(r)[1]; }
-
-   private:
-    std::array<State, 2> evaluate(double r) const;
-    void append(double r, const State& value, const State* slope);
-
-    std::vector<double> node_;
-    std::vector<State> coefficient_;
-  };
+  using State = HermitePolynomial::State;
   static State state(const dvec3& n, const dvec2& p0, const dvec2& p1);
   static State place(const MovingRuling& m);
   static State rate(const MovingRuling& m);
@@ -124,8 +109,8 @@ class RulingsBetween {
   std::array<bool, 2> stands_ = {false, false};    // n, at either end
   int free_end_ = -1;                              // at which the contacts merge
   double length_ = 0;                              // of the ruling at the other one
-  bool touches_ = false;   // ... and their distance falls with the square of the way there
-  Polynomial polynomial_;  // in s, or in the length's share
+  bool touches_ = false;          // ... and their distance falls with the square of the way there
+  HermitePolynomial polynomial_;  // in s, or in the length's share
 };
 
 /// Chords from a pole so long that a parameter about it, which rounding moves by a rounding unit
