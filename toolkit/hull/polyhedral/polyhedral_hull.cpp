@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -11,6 +10,7 @@
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/polyhedral/polyhedral_boundary.h"
+#include "taut/hull/polyhedral/polyhedral_faces.h"
 #include "taut/hull/polytope/affine_span.h"
 #include "taut/hull/polytope/coarse_hull.h"
 #include "taut/hull/polytope/model_points.h"
@@ -48,12 +48,7 @@ class PolyhedralHull {
   void make_solid(const PointHull& hull);
   void make_polytope(const PointHull& hull, const std::vector<int>* original = nullptr);
   void finish(std::vector<int> corners);
-  void join_hull_faces();
-  void join_slivers();
-  void mark_features();
   dvec3 normal_of(OpenMesh::FaceHandle f) const;
-  double height(const dvec3& p, OpenMesh::FaceHandle f) const;
-  void label_faces();
 
   /// Of a length or height that is computed from differences of points, each operation's at most.
   double rounding() const { return 8 * rounding_unit * points_.diagonal(); }
@@ -70,9 +65,6 @@ class PolyhedralHull {
   std::vector<int> corners_;    ///< per vertex of the mesh: its number among the points
   std::vector<dvec3> normals_;  ///< per face of the mesh
 };
-
-/// Slivers side by side that are passed on the way to a face with a normal.
-constexpr std::size_t sliver_steps = 16;
 
 /// Neighbours of vertices that coarse_hull() may look at: some seconds.
 constexpr double most_work = 3e8;
@@ -219,9 +211,10 @@ void PolyhedralHull::make_polytope(const PointHull& hull, const std::vector<int>
     for (int& c : corners) c = (*original)[std::size_t(c)];
   }
   finish(std::move(corners));
-  if (original != nullptr) join_hull_faces();
-  join_slivers();
-  label_faces();
+  PolyhedralFaces faces(points_, corners_, normals_, width_, result_.mesh);
+  if (original != nullptr) faces.join_coplanar();
+  faces.join_slivers();
+  faces.label();
   result_.boundary =
       std::make_shared<const HullBoundary>(polyhedral_boundary(model_, result_.mesh));
 }
@@ -266,135 +259,6 @@ void PolyhedralHull::finish(std::vector<int> corners) {
     mesh.set_normal(v, {n.x, n.y, n.z});
   }
   for (const auto e : mesh.edges()) mesh.data(e).feature = true;
-}
-
-/// Height above a face, up to rounding.
-double PolyhedralHull::height(const dvec3& p, OpenMesh::FaceHandle f) const {
-  const HullMesh& mesh = result_.mesh;
-  const auto corner = mesh.to_vertex_handle(mesh.halfedge_handle(f));
-  return glm::dot(p - point_at(corner), normals_[std::size_t(f.idx())]);
-}
-
-/// Numbers as one hull face what rounding keeps from being coplanar.
-void PolyhedralHull::join_hull_faces() {
-  HullMesh& mesh = result_.mesh;
-  std::vector<int> face(mesh.n_faces(), -1);
-  std::vector<OpenMesh::FaceHandle> stack;
-  int count = 0;
-  for (const auto start : mesh.faces()) {
-    if (face[std::size_t(start.idx())] >= 0) continue;
-    face[std::size_t(start.idx())] = count;
-    stack.assign(1, start);
-    while (!stack.empty()) {
-      const auto f = stack.back();
-      stack.pop_back();
-      for (const auto g : mesh.ff_range(f)) {
-        const auto corners = mesh.fv_range(g);
-        const bool flat = std::all_of(corners.begin(), corners.end(), [&](auto v) {
-          return std::abs(height(point_at(v), start)) <= width_;
-        });
-        if (face[std::size_t(g.idx())] >= 0 || !flat) continue;
-        face[std::size_t(g.idx())] = count;
-        stack.push_back(g);
-      }
-    }
-    ++count;
-  }
-  for (const auto f : mesh.faces()) mesh.data(f).hull_face = face[std::size_t(f.idx())];
-  mark_features();
-}
-
-/// Numbers faces that are too narrow for their normals to mean anything as one with what lies
-/// across from their longest sides.
-void PolyhedralHull::join_slivers() {
-  if (width_ == 0) return;
-  HullMesh& mesh = result_.mesh;
-  const auto length = [&](OpenMesh::HalfedgeHandle h) {
-    return glm::distance(point_at(mesh.from_vertex_handle(h)), point_at(mesh.to_vertex_handle(h)));
-  };
-  const auto longest_side = [&](OpenMesh::FaceHandle f) {
-    const auto sides = mesh.fh_range(f);
-    return *std::max_element(sides.begin(), sides.end(),
-                             [&](auto a, auto b) { return length(a) < length(b); });
-  };
-  const auto is_sliver = [&](OpenMesh::FaceHandle f) {
-    const auto side = longest_side(f);
-    const dvec3& from = point_at(mesh.from_vertex_handle(side));
-    const dvec3 along = unit(point_at(mesh.to_vertex_handle(side)) - from);
-    const auto corners = mesh.fv_range(f);
-    return std::all_of(corners.begin(), corners.end(), [&](auto v) {
-      return glm::length(glm::cross(point_at(v) - from, along)) <= width_;
-    });
-  };
-  std::vector<int> face(mesh.n_faces());
-  for (const auto f : mesh.faces()) face[std::size_t(f.idx())] = mesh.data(f).hull_face;
-  bool any = false;
-  for (const auto f : mesh.faces()) {
-    OpenMesh::FaceHandle across = f;
-    for (std::size_t step = 0; is_sliver(across) && step < sliver_steps; ++step) {
-      across = mesh.opposite_face_handle(longest_side(across));
-    }
-    if (across == f) continue;
-    face[std::size_t(f.idx())] = mesh.data(across).hull_face;
-    any = true;
-  }
-  if (!any) return;
-  std::map<int, int> numbers;
-  for (const auto f : mesh.faces()) {
-    const auto [number, is_new] = numbers.try_emplace(face[std::size_t(f.idx())], numbers.size());
-    mesh.data(f).hull_face = number->second;
-  }
-  mark_features();
-}
-
-/// The edges between hull faces.
-void PolyhedralHull::mark_features() {
-  HullMesh& mesh = result_.mesh;
-  for (const auto e : mesh.edges()) {
-    const auto f = mesh.face_handle(mesh.halfedge_handle(e, 0));
-    const auto g = mesh.face_handle(mesh.halfedge_handle(e, 1));
-    mesh.data(e).feature = mesh.data(f).hull_face != mesh.data(g).hull_face;
-  }
-}
-
-/// Finds for every face the first polygon of the input that lies in it and touches a corner of its
-/// hull face.
-void PolyhedralHull::label_faces() {
-  HullMesh& mesh = result_.mesh;
-  std::vector<int> vertex_of(points_.points().size(), -1);
-  for (std::size_t v = 0; v < corners_.size(); ++v) vertex_of[std::size_t(corners_[v])] = int(v);
-  std::vector<int> valences(corners_.size(), 0);
-  for (const auto h : mesh.halfedges()) {
-    ++valences[std::size_t(mesh.to_vertex_handle(h).idx())];
-  }
-  std::vector<OpenMesh::FaceHandle> stack;
-  points_.for_each_polygon([&](int source, const std::vector<int>& corners) {
-    // All corners lie on the same face; the tip of a cone has many more.
-    int touching = -1;
-    for (const int c : corners) {
-      const int v = vertex_of[std::size_t(c)];
-      if (v < 0) continue;
-      if (touching < 0 || valences[std::size_t(v)] < valences[std::size_t(touching)]) touching = v;
-    }
-    if (touching < 0) return;
-    const auto visit = [&](OpenMesh::FaceHandle f) {
-      if (mesh.data(f).source >= 0) return;
-      const bool lies_in = std::all_of(corners.begin(), corners.end(), [&](int c) {
-        return std::abs(height(point(c), f)) <= width_;
-      });
-      if (!lies_in) return;
-      mesh.data(f).source = source;
-      stack.push_back(f);
-    };
-    for (const auto f : mesh.vf_range(OpenMesh::VertexHandle(touching))) visit(f);
-    while (!stack.empty()) {
-      const auto f = stack.back();
-      stack.pop_back();
-      for (const auto g : mesh.ff_range(f)) {
-        if (mesh.data(g).hull_face == mesh.data(f).hull_face) visit(g);
-      }
-    }
-  });
 }
 
 }  // namespace
