@@ -1,8 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "taut/bounds/gauss_map.h"
@@ -41,9 +39,6 @@ struct CulledCell {
   /// Certain: both principal curvatures have one sign all over it, its border included, not zero.
   bool definite = false;
 };
-
-/// The patches with mixed cells, by instance and number.
-std::set<std::pair<int, int>> mixed_patches(const std::vector<CulledCell>& cells);
 
 /// What happened to the cells of one level.
 struct CullingLevel {
