@@ -159,17 +159,16 @@ CoefficientRange PieceSlopes::second_differences(Direction direction, double lea
 /// Of a net of the piece's degrees a coefficient of the slope in a direction, as one of the same
 /// degrees.
 template <class Of>
-double PieceSlopes::slope_at(int i, int j, double along_u, double along_v, const Of& of) const {
+double PieceSlopes::slope_at(int i, int j, const Way& way, const Of& of) const {
   const auto row = std::size_t(q() + 1);
   const std::size_t k = index(i, j);
   const double own = of(k);
-  double u = 0;
-  double v = 0;
+  double u = 0, v = 0;
   if (i > 0) u += i * (own - of(k - row));
   if (i < p()) u += (p() - i) * (of(k + row) - own);
   if (j > 0) v += j * (own - of(k - 1));
   if (j < q()) v += (q() - j) * (of(k + 1) - own);
-  return along_u * u + along_v * v;
+  return way.along_u * u + way.along_v * v;
 }
 
 bool PieceSlopes::surely_bend_up() const {
@@ -244,15 +243,15 @@ std::optional<Direction> PieceSlopes::bends_both_ways(double least) const {
 Direction PieceSlopes::changes_most(const Way& way) const {
   const auto derivative = [&](const auto& of) {
     std::vector<double> net;
+    net.reserve(std::size_t(piece_.net.shape.size()));
     for (int i = 0; i <= p(); ++i) {
-      for (int j = 0; j <= q(); ++j) net.push_back(slope_at(i, j, way.along_u, way.along_v, of));
+      for (int j = 0; j <= q(); ++j) net.push_back(slope_at(i, j, way, of));
     }
     return net;
   };
   const std::vector<double> slopes = derivative([&](std::size_t k) { return middle(k); });
   const std::vector<double> bends = derivative([&](std::size_t k) { return slopes[k]; });
-  double with_u = 0;
-  double with_v = 0;
+  double with_u = 0, with_v = 0;
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
       const double own = bends[index(i, j)];
@@ -293,20 +292,18 @@ bool PieceSlopes::rise_obliquely() const {
   if (is_at_pole_or_kink()) return false;
   const Bend b = bend();
   if (b.uv == 0) return false;
-  return (b.vv != 0 && are_definite(1, -b.uv / b.vv)) ||
-         (b.uu != 0 && are_definite(-b.uv / b.uu, 1));
+  return (b.vv != 0 && are_definite({1, -b.uv / b.vv})) ||
+         (b.uu != 0 && are_definite({-b.uv / b.uu, 1}));
 }
 
 /// The second derivative's coefficients in a direction are positive.
 bool PieceSlopes::are_convex(const Way& way) const {
-  const double along_u = way.along_u;
-  const double along_v = way.along_v;
-  const double scale = std::abs(along_u) * p() + std::abs(along_v) * q();
+  const double scale = std::abs(way.along_u) * p() + std::abs(way.along_v) * q();
   const double least = 4 * scale * scale * noise_;  // each is a sum of so many coefficients
   std::vector<std::array<double, 5>> slopes(std::size_t(piece_.net.shape.size()));
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
-      const auto slope = [&](const auto& of) { return slope_at(i, j, along_u, along_v, of); };
+      const auto slope = [&](const auto& of) { return slope_at(i, j, way, of); };
       std::array<double, 5>& own = slopes[index(i, j)];
       for (std::size_t c = 0; c < 4; ++c) {
         own[c] = slope([&](std::size_t k) { return values_[k][c]; });
@@ -317,7 +314,7 @@ bool PieceSlopes::are_convex(const Way& way) const {
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
       const auto bend = [&](std::size_t c) {
-        return slope_at(i, j, along_u, along_v, [&](std::size_t k) { return slopes[k][c]; });
+        return slope_at(i, j, way, [&](std::size_t k) { return slopes[k][c]; });
       };
       const double w = element_.rational ? bend(4) : 0;
       for (std::size_t c = 0; c < 4; ++c) {
@@ -330,11 +327,11 @@ bool PieceSlopes::are_convex(const Way& way) const {
 }
 
 /// The slope's coefficients in a direction, as those of the degree of the piece, have one sign.
-bool PieceSlopes::are_definite(double along_u, double along_v) const {
+bool PieceSlopes::are_definite(const Way& way) const {
   CoefficientRange range;
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
-      const auto slope = [&](const auto& of) { return slope_at(i, j, along_u, along_v, of); };
+      const auto slope = [&](const auto& of) { return slope_at(i, j, way, of); };
       const double dw = element_.rational ? slope([&](std::size_t l) { return points_[l].w; }) : 0;
       for (std::size_t c = 0; c < 4; ++c) {
         const double dy = slope([&](std::size_t l) { return values_[l][c]; });
@@ -383,8 +380,7 @@ std::optional<Direction> PieceSlopes::wanted_split(double share,
       oblique_v.include(at.uv + n * at.uu, at.vv + n * at.uv);
     }
   }
-  double along_u = 0;
-  double along_v = 0;
+  double along_u = 0, along_v = 0;
   const auto add = [&](const Change& plain, double wide, const Change& oblique,
                        double oblique_wide) {
     const double best = std::max(oblique.along_u, oblique.along_v) / oblique_wide;

@@ -59,7 +59,7 @@ class PieceSlopes {
   template <class Middle>
   Bend bend_at(int i, int j, const Middle& middle) const;
   Bend bend() const;
-  /// A direction in the parameters, and the second derivative in it in the middle.
+  /// A direction in the parameters, and the second derivative in it in the middle where it counts.
   struct Way {
     double along_u = 0, along_v = 0;
     double up = 0;
@@ -83,11 +83,11 @@ class PieceSlopes {
   bool are_convex(const Way& way) const;
   Direction changes_most(const Way& way) const;
   template <class Of>
-  double slope_at(int i, int j, double along_u, double along_v, const Of& of) const;
+  double slope_at(int i, int j, const Way& way, const Of& of) const;
   bool rise_along(Direction direction) const;
   double pole_margin(Direction direction, bool lower, bool upper) const;
   bool rise_obliquely() const;
-  bool are_definite(double along_u, double along_v) const;
+  bool are_definite(const Way& way) const;
   double spread(double along_u, double along_v) const;
 
   const MapPiece& piece_;
