@@ -43,6 +43,33 @@ TEST(ArcPieces, WaysAroundAreKept) {
   EXPECT_EQ(rulings.size(), 3U);
 }
 
+/// An arc may end in a ruling of its own, next to the last one that was found.
+TEST(ArcPieces, SinglePlacesAreAppended) {
+  std::vector<ArcPiece> pieces = {{{ruling_at(0), ruling_at(1)}}};
+  append(pieces, {{{ruling_at(1), ruling_at(2)}}});
+  append(pieces, {{{ruling_at(2)}}});
+  append(pieces, {{{ruling_at(3)}}});
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_EQ(places_of(pieces.front().rulings), std::vector<double>({0, 1, 2, 3}));
+}
+
+/// Contacts that leave a corner of a patch and come back to it have not left it.
+TEST(ArcPieces, ContactsThatComeBackToACornerStayThere) {
+  const auto piece = [](double aside) {
+    ArcPiece result = {{ruling_at(0), ruling_at(0, aside), ruling_at(0)}};
+    for (Ruling& r : result.rulings) {
+      for (Contact& c : r.contact) c = {0, SourceKind::face, 0, 1, 1};
+    }
+    result.rulings[1].contact[0].u = 0.5;
+    return result;
+  };
+  std::vector<ArcPiece> pieces = {piece(1e-4), piece(1e-2)};
+  tell_corners(pieces, 1e-3);
+  EXPECT_EQ(pieces[0].rulings[1].contact[0].u, 1);
+  EXPECT_EQ(pieces[0].rulings[1].point[0], dvec3(0.0));
+  EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.5);
+}
+
 /// What leaves a place at right angles, as n does where a contact has come to rest, does not turn.
 TEST(ArcPieces, CornersAreNoTurns) {
   std::vector<Ruling> rulings = {ruling_at(0), ruling_at(1e-4), ruling_at(1e-4)};

@@ -43,6 +43,23 @@ TEST(EdgePlaces, AreOneWithinADistance) {
   EXPECT_EQ(first.point[0], geometry.point(first.contact[0]));
 }
 
+/// Both ends of an edge that is shorter than the distance stay where they are, and what lies
+/// between goes to the nearer one: a contact does not leap over the edge.
+TEST(EdgePlaces, EndsOfAShortEdgeStayApart) {
+  const Scene scene = make_scene({{}, {twisted_cubic()}, {{0, 0, 5}}});
+  const ContactGeometry geometry(scene);
+  SeparatingGraph graph;
+  graph.arcs.push_back(along_curve(geometry, 0, 0.2));
+  graph.arcs.push_back(along_curve(geometry, 0.8, 1));
+  unite_edge_places(geometry, graph, 10);
+  const auto ends = [&](std::size_t arc) {
+    const std::vector<Ruling>& rulings = graph.arcs[arc].pieces.front().rulings;
+    return std::array{rulings.front().contact[0].u, rulings.back().contact[0].u};
+  };
+  EXPECT_EQ(ends(0), (std::array{0.0, 0.0}));
+  EXPECT_EQ(ends(1), (std::array{1.0, 1.0}));
+}
+
 /// The end of a facet's curved side is one with a place farther away, but not if it has one where
 /// it is.
 TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {

@@ -566,6 +566,14 @@ TEST(AddCage, SemiSharpIcosahedraAreClosed) {
     expect_open_at_boundaries("A18_osd_loop_icos_semisharp.obj", Scheme::loop, accuracy);
   }
 }
+/// Patches are computed: however few digits the points of their cage have, small ones are not taken
+/// for points.
+TEST(AddCage, BordersOfACageWithRoundedPointsMeet) {
+  const auto model = model_from_elsewhere("A18_osd_loop_icos_semisharp.obj", Scheme::loop, 1e-9);
+  if (!model) GTEST_SKIP() << "TAUT_MODELS names no folder with it";
+  EXPECT_EQ(model->parts().front().coordinate_grid().kind, CoordinateGrid::Kind::decimals);
+  EXPECT_LT(model->parts().front().join_gap(), 1e-14);
+}
 TEST(AddCage, TorusFromAFileIsClosed) {
   expect_open_at_boundaries("A19_torus_quad_smooth.off", Scheme::catmark, 1e-9);
 }
