@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cages.h"
+#include "judge/judge.h"
 #include "models.h"
 #include "sound_hull.h"
 #include "taut/bounds/contact_geometry.h"
@@ -44,7 +45,7 @@ void expect_verified(const Model& model, const Hull& hull, const std::string& na
   const Scene scene(model);
   VerifyOptions options;
   options.random_directions = 2000;
-  const HullVerification found = verify(hull_document(scene, *hull.boundary), scene, options);
+  const HullVerification found = verify(document_of(scene, hull), scene, options);
   EXPECT_EQ(found.euler, 2) << name;
   EXPECT_TRUE(found.closed) << name;
   EXPECT_TRUE(found.is_hull(tolerance)) << name << ": " << text_of(found);
