@@ -5,8 +5,14 @@
 #include <algorithm>
 #include <vector>
 
+#include "freeform.h"
+#include "models.h"
+#include "taut/bounds/contact_exits.h"
+
 namespace taut {
 namespace {
+
+using namespace taut_test;  // NOLINT: models
 
 /// Contacts on the x axis and on a parallel to it, one opposite the other.
 Ruling ruling_at(double x, double aside = 0) {
@@ -68,6 +74,40 @@ TEST(ArcPieces, ContactsThatComeBackToACornerStayThere) {
   EXPECT_EQ(pieces[0].rulings[1].contact[0].u, 1);
   EXPECT_EQ(pieces[0].rulings[1].point[0], dvec3(0.0));
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.5);
+}
+
+/// Along a join a contact is told as one of the patch into which its region extends: to the left of
+/// contact 1, to the right of contact 0, seen from outside.
+TEST(ArcPieces, AlongJoinsContactsAreOfTheirRegionsPatch) {
+  const dmat3 turn = skew_rotation();
+  const Scene scene = make_scene(mapped(dented_sheet(0.02), turn));
+  const ContactGeometry geometry(scene);
+  const Contact patch = {0, SourceKind::face, 0, 0, 0};
+  for (const Side side : all_sides) {
+    if (geometry.patch(patch).borders[std::size_t(side)].kind != BorderKind::smooth) continue;
+    for (const std::size_t own : {0u, 1u}) {
+      for (const bool ahead : {false, true}) {
+        ArcPiece piece;
+        for (const double t : {0.2, 0.5, 0.8}) {
+          Ruling r;
+          r.n = turn * dvec3(0, 0, 1);
+          r.contact[own] = on_side(0, 0, side, ahead ? t : 1 - t);
+          r.contact[1 - own] = {0, SourceKind::face, 100, 0.5, 0.5};
+          for (const std::size_t i : {0u, 1u}) r.point[i] = geometry.point(r.contact[i]);
+          piece.rulings.push_back(r);
+        }
+        const dvec3 way = piece.rulings[2].point[own] - piece.rulings[0].point[own];
+        std::vector<ArcPiece> pieces = {piece};
+        tell_along_joins(geometry, pieces, 0);
+        Contact middle = pieces[0].rulings[1].contact[own];
+        middle.u = middle.v = 0.5;
+        const dvec3 inward = geometry.point(middle) - piece.rulings[1].point[own];
+        const bool is_left = glm::dot(glm::cross(piece.rulings[1].n, way), inward) > 0;
+        EXPECT_EQ(is_left, own == 1) << int(side) << own << ahead;
+        EXPECT_EQ(pieces[0].rulings[1].contact[1 - own].element, 100);
+      }
+    }
+  }
 }
 
 /// What leaves a place at right angles, as n does where a contact has come to rest, does not turn.

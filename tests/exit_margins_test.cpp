@@ -92,40 +92,5 @@ TEST(ExitMargins, OfTheEndsOfACurve) {
   }
 }
 
-/// On z = -x^2 - y^2 the normal along (a, b, c) is at x = a / (2 c), y = b / (2 c): turned by d, it
-/// moves along c (d.x, d.y) - (a, b) d.z.
-TEST(ExitMargins, ContactsOfAParaboloidExtendOverTheirSides) {
-  const dmat3 turn = skew_rotation();
-  const dmat3 over(1, 0, 0, 0, 1, 0, 0, 0, -1);
-  const Scene scene = make_scene(mapped(paraboloid(), turn * over));
-  const ContactGeometry geometry(scene);
-  Random random(3);
-  for (int k = 0; k < 200; ++k) {
-    std::array<Contact, 2> contacts;
-    std::array<dvec3, 2> x;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double u = uniform(random, 0, 1);
-      contacts[i] = {0, SourceKind::face, 0, u, uniform(random, 0, 1)};
-      x[i] = {2 * u - 1, 2 * contacts[i].v - 1, 0};
-      x[i].z = -x[i].x * x[i].x - x[i].y * x[i].y;
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      const dvec3 n = unit(dvec3(2 * x[i].x, 2 * x[i].y, 1));
-      const CommonSupport s = supports_at(geometry, turn * n, {contacts[0], contacts[1]});
-      const dvec3 d = x[i] - x[1 - i];
-      const dvec2 rate = n.z * dvec2(d) - d.z * dvec2(n);
-      const std::array<bool, 4> expected = {rate.x<0, rate.x> 0, rate.y<0, rate.y> 0};
-      for (std::size_t side = 0; side < 4; ++side) {
-        const ContactExit exit{ExitKind::side, int(side)};
-        EXPECT_EQ(extends_over(geometry, s, int(i), exit), expected[side]) << k << ' ' << side;
-        // From the other side nothing is a maximum.
-        CommonSupport below = s;
-        below.n = -s.n;
-        EXPECT_FALSE(extends_over(geometry, below, int(i), exit));
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace taut

@@ -37,13 +37,4 @@ LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport&
   return e;
 }
 
-bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
-                  const ContactExit& exit) {
-  const auto k = std::size_t(i);
-  const LinearEquation e = exit_margin(geometry, s, i, exit);
-  const dvec3 inward = i == 0 ? s.d() : -s.d();
-  const std::optional<dvec2> rate = parameter_rate(s.jet[k], s.n, inward);
-  return rate && glm::dot(e.parameter[k], *rate) < 0;
-}
-
 }  // namespace taut

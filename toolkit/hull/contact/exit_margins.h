@@ -10,9 +10,4 @@ namespace taut {
 LinearEquation exit_margin(const ContactGeometry& geometry, const CommonSupport& s, int i,
                            const ContactExit& exit);
 
-/// Of two contacts that part: where the direction turns into contact i's own region, the contact
-/// moves over the exit at which it stands. False where its element is flat.
-bool extends_over(const ContactGeometry& geometry, const CommonSupport& s, int i,
-                  const ContactExit& exit);
-
 }  // namespace taut

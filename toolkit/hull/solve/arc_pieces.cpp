@@ -7,7 +7,6 @@
 #include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
 #include "taut/hull/contact/contact_system.h"
-#include "taut/hull/contact/exit_margins.h"
 #include "taut/hull/contact/joined_elements.h"
 
 namespace taut {

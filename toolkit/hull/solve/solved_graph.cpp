@@ -89,7 +89,10 @@ class GraphSolver {
     std::vector<std::optional<FacetNode>> facets;
     for (const MapGraph::Node& node : known_.graph.nodes) facets.push_back(facet_of(node));
     for (std::size_t k = 0; k < facets.size(); ++k) {
-      if (!facets[k] && known_.graph.nodes[k].ends.size() == 2) join_arcs(known_, int(k));
+      const std::size_t count = known_.graph.nodes[k].ends.size();
+      if (facets[k] || count == 1) continue;
+      if (count != 2) fail(dvec3(0.0), "a node is neither a facet nor a free end");
+      if (count == 2) join_arcs(known_, int(k));
     }
     for (std::size_t k = 0; k < facets.size(); ++k) {
       add(known_.graph.nodes[k], std::move(facets[k]));
@@ -107,10 +110,7 @@ class GraphSolver {
 
   void add(const MapGraph::Node& node, std::optional<FacetNode> facet) {
     number_.push_back(facet ? int(graph_.nodes.size()) : -1);
-    if (!facet) {
-      if (node.ends.size() > 1) fail(dvec3(0.0), "a node is neither a facet nor a free end");
-      return;
-    }
+    if (!facet) return;
     const std::vector<std::size_t> sides =
         facet->is_crossing ? std::vector<std::size_t>{} : sides_of(*facet, node);
     for (std::size_t k = 0; k < node.ends.size(); ++k) {
