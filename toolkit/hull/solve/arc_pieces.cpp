@@ -253,12 +253,14 @@ Ruling reversed(const Ruling& r) {
   return {r.n, {r.contact[1], r.contact[0]}, {r.point[1], r.point[0]}};
 }
 
+void reverse(std::vector<Ruling>& rulings) {
+  std::reverse(rulings.begin(), rulings.end());
+  for (Ruling& r : rulings) r = reversed(r);
+}
+
 void reverse(std::vector<ArcPiece>& pieces) {
   std::reverse(pieces.begin(), pieces.end());
-  for (ArcPiece& piece : pieces) {
-    std::reverse(piece.rulings.begin(), piece.rulings.end());
-    for (Ruling& r : piece.rulings) r = reversed(r);
-  }
+  for (ArcPiece& piece : pieces) reverse(piece.rulings);
 }
 
 void set_places(const ContactGeometry& geometry, Ruling& ruling, Ruling& other) {

@@ -47,6 +47,7 @@ void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& piece
 Ruling reversed(const Ruling& r);
 
 /// Reverses the direction, and with it the order of contacts.
+void reverse(std::vector<Ruling>& rulings);
 void reverse(std::vector<ArcPiece>& pieces);
 
 /// Both contacts are of the same elements.

@@ -264,9 +264,7 @@ void join_arcs(KnownArcs& known, int node) {
   const auto turn = [&](int k) {
     MapGraph::Arc& own = known.graph.arcs[std::size_t(k)];
     std::swap(own.node[0], own.node[1]);
-    std::vector<Ruling>& rulings = known.rulings[std::size_t(k)];
-    std::reverse(rulings.begin(), rulings.end());
-    for (Ruling& r : rulings) r = reversed(r);
+    reverse(known.rulings[std::size_t(k)]);
     for (const int at : own.node) {
       if (at < 0) continue;
       for (MapGraph::End& e : known.graph.nodes[std::size_t(at)].ends) {

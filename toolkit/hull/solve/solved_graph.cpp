@@ -91,8 +91,11 @@ class GraphSolver {
     for (std::size_t k = 0; k < facets.size(); ++k) {
       const std::size_t count = known_.graph.nodes[k].ends.size();
       if (facets[k] || count == 1) continue;
-      if (count != 2) fail(dvec3(0.0), "a node is neither a facet nor a free end");
-      if (count == 2) join_arcs(known_, int(k));
+      if (count == 2) {
+        join_arcs(known_, int(k));
+      } else {
+        fail(dvec3(0.0), "a node is neither a facet nor a free end");
+      }
     }
     for (std::size_t k = 0; k < facets.size(); ++k) {
       add(known_.graph.nodes[k], std::move(facets[k]));
@@ -111,10 +114,9 @@ class GraphSolver {
   void add(const MapGraph::Node& node, std::optional<FacetNode> facet) {
     number_.push_back(facet ? int(graph_.nodes.size()) : -1);
     if (!facet) return;
-    const std::vector<std::size_t> sides =
-        facet->is_crossing ? std::vector<std::size_t>{} : sides_of(*facet, node);
-    for (std::size_t k = 0; k < node.ends.size(); ++k) {
-      facet->slots[facet->is_crossing ? k : sides[k]] = {node.ends[k].arc, node.ends[k].end};
+    const std::vector<std::size_t> sides = sides_of(*facet, node);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      facet->slots[sides[k]] = {node.ends[k].arc, node.ends[k].end};
     }
     graph_.nodes.push_back(std::move(*facet));
   }
@@ -252,7 +254,7 @@ class GraphSolver {
   }
 
   /// The side of a facet across which each of the node's arcs leaves: they follow each other as the
-  /// sides do that are not curved.
+  /// sides do that are not curved; a crossing has them in the arcs' order.
   std::vector<std::size_t> sides_of(const FacetNode& facet, const MapGraph::Node& node) const {
     std::vector<std::size_t> straight;
     for (std::size_t k = 0; k < facet.points.size(); ++k) {
@@ -260,6 +262,7 @@ class GraphSolver {
     }
     const std::size_t count = node.ends.size();
     if (straight.size() != count || count == 0) return {};
+    if (facet.is_crossing) return straight;
     const auto gap = [&](std::size_t end, std::size_t side) {
       const Ruling& r = known_.ruling_at(node.ends[end]);
       const dvec3& next = facet.points[(side + 1) % facet.points.size()];
