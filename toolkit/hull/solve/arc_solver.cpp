@@ -20,7 +20,7 @@ namespace {
 constexpr int division_limit = 40;
 /// Divisions of one way, after which its parts are taken as they are.
 constexpr int most_divisions = 100;
-/// Elements that a contact passes at once, or passes by, at most. They may be much smaller than
+/// Elements that a contact passes on one way, or passes by, at most. They may be much smaller than
 /// ways that are not divided, but those that lead so many times farther off are not passed.
 constexpr int most_passed = 256;
 constexpr double astray = 2;
@@ -144,7 +144,7 @@ ArcSolver::ArcSolver(const RulingSearch& search, const Ruling& first)
     : search_(search), geometry_(search.geometry()), pieces_({ArcPiece{{first}}}) {}
 
 void ArcSolver::go_on(const Ruling& to) {
-  divisions_ = 0;
+  divisions_ = passed_ = 0;
   go_on(to, 0);
 }
 
@@ -160,12 +160,13 @@ void ArcSolver::end_in_one_contact() {
 }
 
 void ArcSolver::go_on(const Ruling& to, int depth) {
-  if (depth == division_limit) return jump(to);
+  if (depth == division_limit || passed_ > most_passed) return jump(to);
   if (!same_elements(last(), to)) {
     const Ruling own = told_as_last(to);
     if (!same_elements(own, to)) return go_on(own, depth + 1);
     if (stays(to, geometry_.tie()) || step_over(to) || stays(to, search_.map().resolution)) {
-      return go_on(to, depth + 1);
+      ++passed_;
+      return go_on(to, depth);
     }
     return divide(to, depth);
   }

@@ -56,6 +56,7 @@ class ArcSolver {
   const ContactGeometry& geometry_;
   std::vector<ArcPiece> pieces_;
   int divisions_ = 0;
+  int passed_ = 0;  ///< changes of elements since the last ruling asked for
 };
 
 }  // namespace taut
