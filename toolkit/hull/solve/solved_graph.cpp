@@ -181,7 +181,9 @@ class GraphSolver {
       std::vector<Contact> contacts = corners.contacts;
       contacts[(k + 1) % contacts.size()] = r.contact[contact_beside(node.ends[k], 1)];
       TouchingPlane other = touching_plane(geometry_, query_, r.n, contacts);
-      if (other.off() <= map_.resolution && !other.in_line) return other;
+      if (other.off() <= map_.resolution && !other.in_line && !has_merged(other, corners)) {
+        return other;
+      }
     }
     return plane;
   }
