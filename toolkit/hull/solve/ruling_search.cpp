@@ -312,8 +312,8 @@ Ruling RulingSearch::settled(Ruling ruling) const {
   return ruling;
 }
 
-Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
-                               const Which& which) const {
+Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left, const Which& which,
+                               const dvec3& apart) const {
   const dvec3 across = glm::cross(right.n, left.n);
   for (int k = 0; k < bracket_halvings * secant_steps; ++k) {
     const bool halves = k % (secant_steps + 1) == secant_steps;
@@ -322,10 +322,7 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
       const double way = glm::dot(right.n, left.n);
       const bool is_between =
           glm::dot(found->n, right.n) >= way && glm::dot(found->n, left.n) >= way;
-      // Contacts that have left their elements may have come upon others.
-      const bool is_right = which({found->n, found->contact[0], found->point[0]}).side == 0 &&
-                            which({found->n, found->contact[1], found->point[1]}).side == 1;
-      if (is_between && is_right) return settled(*found);
+      if (is_between && is_right(*found, which, apart)) return settled(*found);
     }
     if (n == right.n || n == left.n) {
       if (halves) break;
@@ -346,14 +343,23 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left,
                        glm::distance(own[0].x, own[1].x) > map_.contact_extent();
     const bool tells = !go_on && like.side != Likeness::unknown;
     const std::size_t side = tells ? std::size_t(like.side) : higher;
-    // What is like neither is above both by no more than the resolution.
-    (side == 0 ? right : left) = !go_on && like.is_like ? top : own[side];
+    // What is like neither is above both by no more than the resolution; and of what is moved by
+    // little either may be told as what supports.
+    const bool is_told = apart != dvec3(0.0) && glm::dot(own[side].x, n) >= h - geometry_.tie();
+    (side == 0 ? right : left) = !go_on && !is_told && like.is_like ? top : own[side];
   }
   const dvec3 n = unit(right.n + left.n);
   if (const auto found = polished(n, {right.contact, left.contact}, across, map_.resolution)) {
     return *found;
   }
   return {n, {right.contact, left.contact}, {right.x, left.x}};
+}
+
+/// Contacts that have left their elements may have come upon others.
+bool RulingSearch::is_right(const Ruling& found, const Which& which, const dvec3& apart) {
+  if (apart != dvec3(0.0)) return glm::dot(found.point[0] - found.point[1], apart) > 0;
+  return which({found.n, found.contact[0], found.point[0]}).side == 0 &&
+         which({found.n, found.contact[1], found.point[1]}).side == 1;
 }
 
 /// Beyond a narrow region of either contact others support: from a contact that is like the one
@@ -389,7 +395,12 @@ Ruling RulingSearch::at(const MapCrossing& crossing) const {
   };
   const SupportingContact right = supporting(unit(crossing.ends[0]), {});
   const SupportingContact left = supporting(unit(crossing.ends[1]), right.contact);
-  return bracketed(right, left, which);
+  dvec3 apart(0.0);
+  const auto at = [&](int contact) { return cell.translates[std::size_t(contact)]; };
+  if (!cell.translates.empty() && at(first).of == at(second).of) {
+    apart = at(first).by - at(second).by;
+  }
+  return bracketed(right, left, which, apart);
 }
 
 std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to) const {
@@ -416,7 +427,8 @@ std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to
     const SupportingContact b = supporting(unit(n - width * way * right), from.contact[1]);
     if (which(a).side != 0 || which(b).side != 1) continue;
     const auto [right_one, left_one] = narrowed(a, b, which);
-    return bracketed(right_one, left_one, which);
+    const bool is_narrow = glm::distance(x[0], x[1]) <= map_.contact_extent();
+    return bracketed(right_one, left_one, which, is_narrow ? x[0] - x[1] : dvec3(0.0));
   }
   return found;
 }
