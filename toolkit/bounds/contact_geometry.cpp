@@ -90,6 +90,9 @@ constexpr double straight_share = 4;
 /// distance of a point from a line or plane of others (cover_share).
 constexpr double ruled_share = cover_share / tie_share;
 
+/// And copies: what rounding may do to the distance of two points that are one.
+constexpr double copy_share = cover_share / tie_share;
+
 }  // namespace
 
 std::optional<dvec2> parameter_rate(const ContactJet& j, const dvec3& n, const dvec3& dn) {
@@ -226,7 +229,7 @@ void ContactGeometry::find_repeated_elements(double same) {
     add(SourceKind::edge, part.pieces().size());
     add(SourceKind::vertex, part.vertices().size());
   }
-  repeated_elements_ = RepeatedElements(all, std::max(tie_, same));
+  repeated_elements_ = RepeatedElements(all, std::max(tie_, copy_share * same));
   for (const Contact& c : repeated_elements_.all()) share(c);
   place_points(all);
 }

@@ -86,6 +86,8 @@ class ContactGeometry {
   bool is_repeated(const Contact& c) const {
     return scene_.first_instance(c.instance) != c.instance || repeated_elements_.repeats(c);
   }
+  /// How far elements are from the first ones, at most.
+  double copies_apart() const { return repeated_elements_.farthest(); }
 
   /// A side of a patch, not a ruled one, that lies on an edge's piece.
   struct PieceSide {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "taut/surface/bezier.h"
 
@@ -24,23 +25,27 @@ const dvec4& point_at(const PlacedElement& e, int i, int j, bool swapped, bool r
   return e.points[std::size_t(i) * std::size_t(e.degree_v + 1) + std::size_t(j)];
 }
 
-bool agree(const PlacedElement& a, const PlacedElement& b, bool swapped, bool reversed_u,
-           bool reversed_v, double tolerance) {
+/// How far their control points are apart, if no farther than the tolerance and of the same
+/// weights.
+std::optional<double> apart(const PlacedElement& a, const PlacedElement& b, bool swapped,
+                            bool reversed_u, bool reversed_v, double tolerance) {
   const int p = swapped ? b.degree_v : b.degree_u;
   const int q = swapped ? b.degree_u : b.degree_v;
-  if (a.degree_u != p || a.degree_v != q) return false;
+  if (a.degree_u != p || a.degree_v != q) return std::nullopt;
+  double largest = 0;
   const double factor = a.points.front().w / point_at(b, 0, 0, swapped, reversed_u, reversed_v).w;
   for (int i = 0; i <= p; ++i) {
     for (int j = 0; j <= q; ++j) {
       const dvec4& x = point_at(a, i, j, false, false, false);
       const dvec4& y = point_at(b, i, j, swapped, reversed_u, reversed_v);
-      if (!(glm::distance(euclidean(x), euclidean(y)) <= tolerance) ||
-          !(std::abs(x.w - factor * y.w) <= tolerance * x.w)) {
-        return false;
+      const double distance = glm::distance(euclidean(x), euclidean(y));
+      if (!(distance <= tolerance) || !(std::abs(x.w - factor * y.w) <= tolerance * x.w)) {
+        return std::nullopt;
       }
+      largest = std::max(largest, distance);
     }
   }
-  return true;
+  return largest;
 }
 
 }  // namespace
@@ -63,7 +68,8 @@ RepeatedElements::RepeatedElements(const std::vector<PlacedElement>& elements, d
       const bool swapped = (symmetry & 4) != 0;
       const bool reversed_u = (symmetry & 1) != 0;
       const bool reversed_v = (symmetry & 2) != 0;
-      if (agree(first, other, swapped, reversed_u, reversed_v, tolerance)) {
+      if (const auto found = apart(first, other, swapped, reversed_u, reversed_v, tolerance)) {
+        farthest_ = std::max(farthest_, *found);
         repeats_[key] = {first.instance, first.element, swapped, reversed_u, reversed_v};
         return;
       }

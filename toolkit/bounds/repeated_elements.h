@@ -34,6 +34,8 @@ class RepeatedElements {
   }
 
   bool empty() const { return repeats_.empty() && places_.empty(); }
+  /// How far control points are from those that they repeat, at most.
+  double farthest() const { return farthest_; }
   /// An earlier element is the same.
   bool repeats(const Contact& c) const {
     return !empty() && (repeats_.contains(key(c)) || places_.contains(key(c)));
@@ -58,6 +60,7 @@ class RepeatedElements {
 
   std::map<Key, Repeat> repeats_;
   std::map<Key, Contact> places_;
+  double farthest_ = 0;
 };
 
 }  // namespace taut

@@ -8,6 +8,7 @@
 #include "taut/core/error.h"
 #include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/near_copies.h"
 
 namespace taut {
 namespace {
@@ -18,6 +19,10 @@ double rounding_in(const Box& box) {
   const dvec3 reach = glm::max(glm::abs(box.lower), glm::abs(box.upper));
   return coordinate_rounding * (reach.x + reach.y + reach.z);
 }
+
+/// In units of the resolution that the model has otherwise: features that are no more apart may be
+/// told apart, or not.
+constexpr double most_apart = 4;
 
 /// The box that holds another one in a pose.
 Box placed(const Box& box, const RigidMotion& pose) {
@@ -64,7 +69,8 @@ std::string number(double x) {
 }  // namespace
 
 const char* name_of(ResolutionSource source) {
-  constexpr std::array names = {"rounding", "floor", "coordinates", "joins", "stand-ins", "option"};
+  constexpr std::array names = {"rounding", "floor",     "coordinates", "joins",
+                                "joins",    "stand-ins", "option"};
   return names[to_size(int(source))];
 }
 
@@ -88,6 +94,11 @@ Resolution resolution_of(const Model& model, double diagonal, std::optional<doub
   ask(grid_resolution * 0.5 * found.grid.step, ResolutionSource::coordinates);
   ask(join_resolution * found.join_gap, ResolutionSource::joins);
   ask(found.deviation, ResolutionSource::stand_ins);
+  // Copies that miss each other by little more than what is one anyway are meant to be one.
+  if (!share && !model.polyhedral()) {
+    result.worst_copy = copies_apart(model, most_apart * result.of_model);
+    ask(result.worst_copy / cover_share, ResolutionSource::copies);
+  }
   if (share) result.source = ResolutionSource::option;
   result.rho =
       std::max(rounding, share ? *share * diagonal
@@ -107,6 +118,8 @@ std::string reason_of(const Resolution& resolution) {
                  : "coordinates have " + std::to_string(resolution.grid.decimals) + " decimals";
     case ResolutionSource::joins:
       return "joined borders miss each other by up to " + number(resolution.worst_join);
+    case ResolutionSource::copies:
+      return "copies of surfaces miss each other by up to " + number(resolution.worst_copy);
     case ResolutionSource::stand_ins:
       return "surfaces are known to within " + number(resolution.of_model);
     default:

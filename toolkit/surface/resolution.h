@@ -14,10 +14,12 @@ enum class ResolutionSource {
   floor,        ///< resolution_floor of the diagonal
   coordinates,  ///< the grid that they were rounded to
   joins,        ///< joined borders miss each other
+  copies,       ///< surfaces that are one but for little do
   stand_ins,    ///< patches stand for surfaces that they meet within a tolerance only
   option,       ///< the caller
 };
-/// As in reports: "rounding", "floor", "coordinates", "joins", "stand-ins", "option".
+/// As in reports: "rounding", "floor", "coordinates", "joins" (also of copies), "stand-ins",
+/// "option".
 const char* name_of(ResolutionSource source);
 
 /// The resolution of a model: what is nearer than that may be taken for one. Lengths in model
@@ -31,6 +33,9 @@ struct Resolution {
   CoordinateGrid grid;
   /// The largest gap in a part that is placed (Part::join_gap).
   double worst_join = 0;
+  /// How far copies of patches are apart that may be told to be one (copies_apart); 0 where the
+  /// resolution is stated.
+  double worst_copy = 0;
 
   bool capped() const { return source != ResolutionSource::option && of_model > rho; }
 };
@@ -39,11 +44,12 @@ struct Resolution {
 ///
 /// It is the largest of what rounding to doubles does to coordinates (coordinate_rounding);
 /// resolution_floor of the diagonal, if there is more than points and polygons; what the grid of a
-/// part's coordinates tells (grid_resolution), and the gaps of its joins (join_resolution); and the
-/// deviation of its stand-ins. All but the first, the smallest that has a meaning, are capped at
-/// coarsest_resolution of the diagonal. Only parts that are placed count, with their own numbers
-/// whatever the pose, and all of these, be they on the hull or not. The order of parts does not
-/// matter.
+/// part's coordinates tells (grid_resolution), and the gaps of its joins (join_resolution); the
+/// deviation of its stand-ins; and, where copies of patches miss each other by no more than four
+/// times all that, what makes them one (cover_share). All but the first, the smallest that has a
+/// meaning, are capped at coarsest_resolution of the diagonal. Only parts that are placed count,
+/// with their own numbers whatever the pose, and all of these, be they on the hull or not. The
+/// order of parts does not matter.
 ///
 /// `share`: this fraction of the diagonal instead; 0: nothing but the rounding to doubles.
 /// @pre 0 <= diagonal, finite @throws InvalidInput if the share is not in [0, 1]

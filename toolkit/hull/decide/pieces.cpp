@@ -38,6 +38,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
     : geometry_(geometry), resolution_(resolution), joins_(geometry) {
   const Scene& scene = geometry.scene();
   const Model& model = scene.model();
+  std::vector<Contact> copies;
   first_.resize(model.instances().size(), {-1, -1, -1});
   for (const int i : scene.distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
@@ -49,6 +50,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
       for (int k = 0; k < int(counts[std::size_t(kind)]); ++k) {
         geometry.check_stop();
         const Contact c{i, kind, k, 0, 0};
+        if (geometry.is_repeated(c)) copies.push_back(c);
         if (geometry.is_repeated(c) || joins_.passes(c)) continue;
         const std::size_t before = elements_.size();
         if (kind == SourceKind::face) {
@@ -77,8 +79,11 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
   }
   rounds_ = std::move(found.rounds);
   cover_straight(resolution);
-  any_covered_ = any_bent_ || std::any_of(elements_.begin(), elements_.end(),
-                                          [](const auto& e) { return e.likeness.covered; });
+  const bool are_apart = geometry.copies_apart() > geometry.tie();
+  any_covered_ = any_bent_ || are_apart ||
+                 std::any_of(elements_.begin(), elements_.end(),
+                             [](const auto& e) { return e.likeness.covered; });
+  if (are_apart) std::for_each(copies.begin(), copies.end(), [&](const auto& c) { let_stand(c); });
   let_ends_stand();
 }
 

@@ -138,7 +138,9 @@ void SmoothJoins::pair_sides(const Contact& edge) {
   if (geometry_.piece(edge).edge < 0 || geometry_.is_straight(edge)) return;
   std::vector<ContactGeometry::PieceSide> all;
   std::vector<Contact> patches;
+  std::size_t count = 0;  // of copies, too
   for (const auto* list : {&geometry_.sides(edge), &geometry_.ruled_sides(edge)}) {
+    count += list->size();
     for (const ContactGeometry::PieceSide& side : *list) {
       const int instance = side.instance < 0 ? edge.instance : side.instance;
       const Contact patch{instance, SourceKind::face, side.patch, 0, 0};
@@ -147,7 +149,7 @@ void SmoothJoins::pair_sides(const Contact& edge) {
       patches.push_back(patch);
     }
   }
-  if (all.size() <= 2) return;
+  if (count <= 2) return;
   std::vector<Meeting> meetings;
   meetings.reserve(all.size());
   for (const auto& side : all) meetings.push_back(meeting_of(geometry_, edge, side));
