@@ -98,6 +98,10 @@ inline constexpr double tie_share = 1.0 / 8;
 /// points and theirs may each be off by sqrt(3) half steps of a grid, of which grid_resolution is
 /// the resolution: together by 0.866 of it.
 inline constexpr double cover_share = 7.0 / 8;
+
+/// In units of the resolution that a model has otherwise, how far copies of patches that are meant
+/// to be one miss each other at most: features that are no more apart may be told apart, or not.
+inline constexpr double copies_apart_limit = 4;
 /// @}
 
 /// Largest share of the diagonal that is ever put down to rounding (2^-33, about 1.2e-10): points

@@ -472,7 +472,8 @@ void Part::connect(double smooth_angle, const Progress& progress) {
   const double apart = meet ? 0 : bent;
   split_crests(faces_, patches_, box_, apart, progress);
   split_junctions(faces_, patches_, box_, apart, progress);
-  find_repeated_patches(patches_, box_, progress);
+  find_repeated_patches(patches_, box_, meet ? 0 : copies_apart_limit * grid_resolution * half_step,
+                        progress);
   Connector connector(patches_, pieces_, edges_, vertices_, box_, join_tolerance(box_, apart),
                       smooth_angle, meet ? 0 : 2 * half_step, bent, progress);
   connector.run();

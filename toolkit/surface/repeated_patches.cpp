@@ -12,6 +12,9 @@
 namespace taut {
 namespace {
 
+/// Patches so many times as large as the distance of copies are no neighbours of these.
+constexpr double large_patch = 16;
+
 /// Patches that are the same within a tolerance have it in common within the same: the middle of
 /// the control points, apart from others with the same middle by their extent.
 dvec3 place_of(const BezierPatch& patch) {
@@ -65,14 +68,19 @@ dvec2 place_in_repeated(const Patch& patch, dvec2 uv) {
 
 }  // namespace
 
-void find_repeated_patches(std::vector<Patch>& patches, const Box& box, const Progress& progress) {
-  const double tolerance =
+void find_repeated_patches(std::vector<Patch>& patches, const Box& box, double apart,
+                           const Progress& progress) {
+  const double least =
       std::max(repeated_patch_distance * diagonal(box), std::numeric_limits<double>::min());
   // Cells of the join tolerance are fine enough to tell patches apart, and coarse enough to number.
-  PointGrid places(box, 2 * join_tolerance(box));
+  PointGrid places(box, 2 * std::max(join_tolerance(box), apart));
   for (std::size_t i = 0; i < patches.size(); ++i) {
     Patch& patch = patches[i];
     const dvec3 place = place_of(patch.bezier);
+    Box own;
+    for (const dvec4& p : patch.bezier.points) own.include(euclidean(p));
+    const bool is_large = diagonal(own) > large_patch * apart;
+    const double tolerance = is_large ? std::max(least, apart) : least;
     places.visit_near(place, [&](int earlier) {
       progress.check();
       const Patch& first = patches[std::size_t(earlier)];

@@ -20,10 +20,6 @@ double rounding_in(const Box& box) {
   return coordinate_rounding * (reach.x + reach.y + reach.z);
 }
 
-/// In units of the resolution that the model has otherwise: features that are no more apart may be
-/// told apart, or not.
-constexpr double most_apart = 4;
-
 /// The box that holds another one in a pose.
 Box placed(const Box& box, const RigidMotion& pose) {
   Box result;
@@ -96,7 +92,7 @@ Resolution resolution_of(const Model& model, double diagonal, std::optional<doub
   ask(found.deviation, ResolutionSource::stand_ins);
   // Copies that miss each other by little more than what is one anyway are meant to be one.
   if (!share && !model.polyhedral()) {
-    result.worst_copy = copies_apart(model, most_apart * result.of_model);
+    result.worst_copy = copies_apart(model, copies_apart_limit * result.of_model);
     ask(result.worst_copy / cover_share, ResolutionSource::copies);
   }
   if (share) result.source = ResolutionSource::option;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "taut/verify/document_geometry.h"
@@ -41,31 +42,48 @@ struct ClosestOnSurface {
 };
 
 /// The point of a surface over [0, 1]^2 that is nearest to p, by Newton's method from the nearest
-/// of some samples. `jet(t)` is the surface's SourceJet.
+/// of some samples; where that ends in a point that a side is collapsed to, whence steps lead along
+/// one parameter only, also from the nearest inside. `jet(t)` is the surface's SourceJet.
 template <class Jet>
 ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet) {
   constexpr int samples = 8;
   constexpr int steps = 40;
   constexpr double least_share = 1.0 / 64;
+  constexpr double collapsed = 1e-6;
   ClosestOnSurface best;
   const auto consider = [&](const dvec2& at) {
     const double distance = glm::distance(jet(at).x, p);
     if (distance < best.distance) best = {at, distance};
   };
+  const auto approach = [&] {
+    for (int i = 0; i < steps && best.distance > 0; ++i) {
+      const double before = best.distance;
+      const dvec2 from = best.t;
+      const dvec2 step = step_to_nearest(jet(from), p, from);
+      // Where the surface degenerates, at corners, a whole step may lead astray.
+      for (double share = 1; share >= least_share && !(best.distance < before); share *= 0.5) {
+        consider(glm::clamp(from + share * step, dvec2(0.0), dvec2(1.0)));
+      }
+      if (!(best.distance < before)) break;
+    }
+  };
+  const auto is_point = [&](const dvec2& t) {
+    const SourceJet j = jet(t);
+    const auto [least, most] = std::minmax({glm::length(j.dx[0]), glm::length(j.dx[1])});
+    return least <= collapsed * most;
+  };
   for (int i = 0; i <= samples; ++i) {
     for (int k = 0; k <= samples; ++k) consider(dvec2(i, k) / double(samples));
   }
-  for (int i = 0; i < steps && best.distance > 0; ++i) {
-    const double before = best.distance;
-    const dvec2 from = best.t;
-    const dvec2 step = step_to_nearest(jet(from), p, from);
-    // Where the surface degenerates, at corners, a whole step may lead astray.
-    for (double share = 1; share >= least_share && !(best.distance < before); share *= 0.5) {
-      consider(glm::clamp(from + share * step, dvec2(0.0), dvec2(1.0)));
-    }
-    if (!(best.distance < before)) break;
+  approach();
+  if (best.distance == 0 || !is_point(best.t)) return best;
+  const ClosestOnSurface point = best;
+  best = {};
+  for (int i = 0; i < samples; ++i) {
+    for (int k = 0; k < samples; ++k) consider((dvec2(i, k) + 0.5) / double(samples));
   }
-  return best;
+  approach();
+  return best.distance < point.distance ? best : point;
 }
 
 template <class Jet>

@@ -96,8 +96,12 @@ bool Coverage::is_near(const dvec3& p) const {
         if (!may_be_within(boxes_[to_size(source)][to_size(patch)], x, limit_)) return false;
         const auto jet = [&](const dvec2& t) { return geometry_.jet(source, {patch, t}); };
         const ClosestOnSurface nearest = closest_on_surface(x, jet);
-        return nearest.distance <= limit_ &&
-               region.may_contain(geometry_.parameters(source, {patch, nearest.t}));
+        if (nearest.distance > limit_) return false;
+        const dvec2 uv = geometry_.parameters(source, {patch, nearest.t});
+        if (region.may_contain(uv)) return true;
+        // A copy's points may be beyond the outline by as much as these are off the patch.
+        const dvec2 border = geometry_.place(source, patch, region.nearest(uv));
+        return glm::distance(jet(border).x, x) <= limit_;
       });
 }
 

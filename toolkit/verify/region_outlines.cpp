@@ -87,6 +87,19 @@ bool RegionOutline::may_contain(const dvec2& uv) const {
   return location.near || location.winding != 0;
 }
 
+dvec2 RegionOutline::nearest(const dvec2& uv) const {
+  dvec2 best = pieces_.front().from;
+  for (const Piece& piece : pieces_) {
+    const dvec2 a = (piece.from - uv) / size_;
+    const dvec2 side = (piece.to - piece.from) / size_;
+    const double square = glm::dot(side, side);
+    const double s = square > 0 ? std::clamp(-glm::dot(a, side) / square, 0.0, 1.0) : 0;
+    const dvec2 there = glm::mix(piece.from, piece.to, s);
+    if (glm::length((there - uv) / size_) < glm::length((best - uv) / size_)) best = there;
+  }
+  return best;
+}
+
 double RegionOutline::area() const {
   double sum = 0;
   for (const Piece& piece : pieces_) {

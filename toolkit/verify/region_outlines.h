@@ -42,6 +42,9 @@ class RegionOutline {
   Location locate(const dvec2& uv) const;
   /// Inside, or too near to tell.
   bool may_contain(const dvec2& uv) const;
+  /// The place of the outline, about, that is nearest in shares of the Bezier patch's domain.
+  /// @pre the outline has places
+  dvec2 nearest(const dvec2& uv) const;
   const dvec2& lower() const { return lower_; }
   const dvec2& upper() const { return upper_; }
   /// Area in the source's parameters.

@@ -323,8 +323,12 @@ void tell_corners(std::vector<ArcPiece>& pieces, double extent) {
       const Contact corner = piece.rulings.front().contact[i];
       const dvec3 end = piece.rulings.front().point[i];
       const Contact& last = piece.rulings.back().contact[i];
-      const bool comes_back = corner.kind == SourceKind::face && same_element(corner, last) &&
-                              corner.u == last.u && corner.v == last.v;
+      const bool is_back =
+          corner.kind == SourceKind::edge
+              ? glm::distance(end, piece.rulings.back().point[i]) <= longest_empty_piece
+              : corner.u == last.u && corner.v == last.v;
+      const bool comes_back =
+          corner.kind != SourceKind::vertex && same_element(corner, last) && is_back;
       const bool stays =
           comes_back && std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
             return glm::distance(r.point[i], end) <= extent;
