@@ -42,13 +42,9 @@ class TolerantPlaces {
     }
     const bool is_exact = !is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie();
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
-      const Ruling& from = piece.rulings[k - 1];
-      const Ruling& to = piece.rulings[k];
-      const RulingsBetween between(system_, from, to);
-      if (between.empty()) continue;
-      const auto depth_at = [&](double share) { return depth_between(between, from, to, share); };
-      if (is_exact && depth_at(0.5) <= geometry_.tie()) continue;
-      deepest = std::max(deepest, deepest_along(depth_at));
+      const RulingsBetween between(system_, piece.rulings[k - 1], piece.rulings[k]);
+      if (between.empty() || (is_exact && depth_at(between, 0.5) <= geometry_.tie())) continue;
+      deepest = std::max(deepest, deepest_of(between));
     }
     return deepest <= geometry_.tie() ? 0 : bound_of(deepest);
   }
@@ -115,25 +111,13 @@ class TolerantPlaces {
     return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
   }
 
-  /// Of the exact ruling. Where none is found, what there is has no depth that could be looked at;
-  /// where it is none that supports, as between two contacts at one n, the straight way counts.
-  double depth_between(const RulingsBetween& between, const Ruling& from, const Ruling& to,
-                       double share) {
+  /// Of exact rulings; where none is found, what there is has no depth that could be looked at.
+  double depth_at(const RulingsBetween& between, double share) {
     const std::optional<MovingRuling> exact = between(between.at_share(share));
-    if (!exact) return resolution_ / near_places;
-    const double deep = depth(exact->at.ruling());
-    return deep <= resolution_ ? deep : std::min(deep, depth(straight(from, to, share)));
+    return exact ? depth(exact->at.ruling()) : resolution_ / near_places;
   }
-
-  Ruling straight(const Ruling& from, const Ruling& to, double share) const {
-    Ruling r = from;
-    r.n = unit(glm::mix(from.n, to.n, share));
-    for (std::size_t i = 0; i < 2; ++i) {
-      r.contact[i].u = glm::mix(from.contact[i].u, to.contact[i].u, share);
-      r.contact[i].v = glm::mix(from.contact[i].v, to.contact[i].v, share);
-      r.point[i] = geometry_.point(r.contact[i]);
-    }
-    return r;
+  double deepest_of(const RulingsBetween& between) {
+    return deepest_along([&](double share) { return depth_at(between, share); });
   }
 
   /// Between 0 and 1; about the deepest place it is looked closer.
