@@ -76,6 +76,21 @@ TEST(ArcPieces, ContactsThatComeBackToACornerStayThere) {
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.5);
 }
 
+/// Of an edge, to within what may be nothing.
+TEST(ArcPieces, ContactsThatComeBackToAPlaceOfAnEdgeStayThere) {
+  const auto piece = [](double back) {
+    ArcPiece result = {{ruling_at(0), ruling_at(0, 1e-4), ruling_at(0, back)}};
+    for (Ruling& r : result.rulings) {
+      for (Contact& c : r.contact) c = {0, SourceKind::edge, 0, 0.25 + r.point[0].y, 0};
+    }
+    return result;
+  };
+  std::vector<ArcPiece> pieces = {piece(1e-8), piece(1e-5)};
+  tell_corners(pieces, 1e-3);
+  for (const Ruling& r : pieces[0].rulings) EXPECT_EQ(r.contact[0].u, 0.25);
+  EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.25 + 1e-4);
+}
+
 /// Along a join a contact is told as one of the patch into which its region extends: to the left of
 /// contact 1, to the right of contact 0, seen from outside.
 TEST(ArcPieces, AlongJoinsContactsAreOfTheirRegionsPatch) {

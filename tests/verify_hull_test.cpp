@@ -175,6 +175,27 @@ TEST(VerifyHull, DistancesFromSurfaces) {
   EXPECT_NEAR(distance_to_surface({1, -2, 2}, jet), 2, 1e-15);
 }
 
+/// Near a point that a side is collapsed to, whatever meridian the nearest sample is on.
+TEST(VerifyHull, FindsPointsOfPatchesNearPoles) {
+  const auto at = [](const dvec2& t) {
+    const double along = std::numbers::pi / 2 * t.x, up = std::numbers::pi / 2 * t.y;
+    return dvec3(std::cos(up) * std::cos(along), std::cos(up) * std::sin(along), std::sin(up));
+  };
+  const auto jet = [&](const dvec2& t) {
+    const double along = std::numbers::pi / 2 * t.x, up = std::numbers::pi / 2 * t.y;
+    const dvec3 east(-std::sin(along), std::cos(along), 0);
+    const dvec3 north(-std::sin(up) * std::cos(along), -std::sin(up) * std::sin(along),
+                      std::cos(up));
+    const double rate = std::numbers::pi / 2;
+    return SourceJet{2, at(t), {t.y == 1 ? dvec3(0.0) : rate * std::cos(up) * east, rate * north}};
+  };
+  for (const double u : {0.0, 0.31, 0.999}) {
+    for (const double v : {0.95, 0.98, 0.9999}) {
+      EXPECT_LE(distance_to_surface(at({u, v}), jet), 1e-15) << u << " " << v;
+    }
+  }
+}
+
 /// A hull may name any of the copies in one place, though queries know the first only.
 TEST(VerifyHull, AnyOfExactCopiesMayBeNamed) {
   for (const Shape& shape : {two_spheres(1, 0.5, 3), filleted_box(3, 2, 1, 0.25)}) {

@@ -112,7 +112,8 @@ class VerifyStated : public testing::TestWithParam<Stated> {};
 /// (blade), pieces of one ruling or none (thread), edges off their faces (cut_by_edges), rulings to
 /// and fro in a plane (wing, thread), widths (balls_in_a_row), labels (filleted_plate), stand-ins
 /// (loop_cage), arcs that leave a cell and come back (bolt_circle), edges that turn sharply
-/// (wires), ends of curved sides beside other places (terrain).
+/// (wires), ends of curved sides beside other places, and contacts that come back to a place of an
+/// edge (terrain), points of copies that the hull does not name (copies_...).
 TEST_P(VerifyStated, HoldsWhatIsStated) {
   taut_test::Random random(GetParam().seed);
   for (const FamilyGroup& group : family_groups()) {
@@ -143,7 +144,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Stated{"balls_in_a_row", Variant::float32},
                     Stated{"filleted_plate", Variant::float32}, Stated{"loop_cage", Variant::clean},
                     Stated{"bolt_circle", Variant::clean, 2}, Stated{"wires", Variant::turned, 2},
-                    Stated{"terrain", Variant::turned, 2},
+                    Stated{"terrain", Variant::turned, 2}, Stated{"terrain", Variant::float32},
+                    Stated{"copies_all_but_in_place", Variant::float32},
+                    Stated{"copies_all_but_in_place", Variant::clean, 2},
+                    Stated{"copies_turned_a_little", Variant::decimals},
+                    Stated{"cut_by_edges", Variant::float32},
                     Stated{"plate_of_bosses", Variant::float32}, Stated{"cup", Variant::float32}),
     [](const auto& info) {
       return std::string(info.param.family) + "_" + name_of(info.param.variant);
