@@ -325,7 +325,8 @@ void tell_corners(std::vector<ArcPiece>& pieces, double extent) {
       const Contact& last = piece.rulings.back().contact[i];
       const bool is_back =
           corner.kind == SourceKind::edge
-              ? glm::distance(end, piece.rulings.back().point[i]) <= longest_empty_piece
+              ? 0 < corner.u && corner.u < 1 &&
+                    glm::distance(end, piece.rulings.back().point[i]) <= longest_empty_piece
               : corner.u == last.u && corner.v == last.v;
       const bool comes_back =
           corner.kind != SourceKind::vertex && same_element(corner, last) && is_back;

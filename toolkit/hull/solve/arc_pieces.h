@@ -26,8 +26,8 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent);
 /// is in one plane to within the resolution, rulings that are exact are so in any order.
 void drop_turns(std::vector<Ruling>& rulings, double extent);
 
-/// Contacts that leave a place of a patch or an edge and come back to it, no farther than `extent`
-/// from it, stay there.
+/// Contacts that leave a place of a patch, or one between the ends of an edge, and come back to it,
+/// no farther than `extent` from it, stay there.
 void tell_corners(std::vector<ArcPiece>& pieces, double extent);
 
 /// A contact that has come to run along a smooth join, or no farther than `extent` from it where
