@@ -89,6 +89,11 @@ TEST(ArcPieces, ContactsThatComeBackToAPlaceOfAnEdgeStayThere) {
   tell_corners(pieces, 1e-3);
   for (const Ruling& r : pieces[0].rulings) EXPECT_EQ(r.contact[0].u, 0.25);
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.25 + 1e-4);
+  // At an end of it they may be a vertex's.
+  std::vector<ArcPiece> at_end = {piece(0)};
+  for (Ruling& r : at_end[0].rulings) r.contact[0].u -= 0.25;
+  tell_corners(at_end, 1e-3);
+  EXPECT_NEAR(at_end[0].rulings[1].contact[0].u, 1e-4, 1e-15);
 }
 
 /// Along a join a contact is told as one of the patch into which its region extends: to the left of

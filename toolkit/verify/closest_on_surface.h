@@ -49,6 +49,8 @@ ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet) {
   constexpr int samples = 8;
   constexpr int steps = 40;
   constexpr double least_share = 1.0 / 64;
+  // Of the lengths of the derivatives; at regular points of patches they differ by much less. What
+  // is taken for collapsed though it is not costs time only.
   constexpr double collapsed = 1e-6;
   ClosestOnSurface best;
   const auto consider = [&](const dvec2& at) {

@@ -88,6 +88,7 @@ bool RegionOutline::may_contain(const dvec2& uv) const {
 }
 
 dvec2 RegionOutline::nearest(const dvec2& uv) const {
+  if (pieces_.empty()) return uv;
   dvec2 best = pieces_.front().from;
   for (const Piece& piece : pieces_) {
     const dvec2 a = (piece.from - uv) / size_;

@@ -42,8 +42,8 @@ class RegionOutline {
   Location locate(const dvec2& uv) const;
   /// Inside, or too near to tell.
   bool may_contain(const dvec2& uv) const;
-  /// The place of the outline, about, that is nearest in shares of the Bezier patch's domain.
-  /// @pre the outline has places
+  /// The place of the outline, about, that is nearest in shares of the Bezier patch's domain; the
+  /// place itself where there is no outline.
   dvec2 nearest(const dvec2& uv) const;
   const dvec2& lower() const { return lower_; }
   const dvec2& upper() const { return upper_; }

@@ -83,6 +83,7 @@ class RulingSearch {
                                             const Which& which) const;
   /// `apart`: the way from the left contact to the right one where these are on translates of each
   /// other, or hardly farther from each other than such: directions do not tell which one it is.
+  /// Zero where these tell.
   Ruling bracketed(SupportingContact right, SupportingContact left, const Which& which,
                    const dvec3& apart) const;
   static bool is_right(const Ruling& found, const Which& which, const dvec3& apart);
