@@ -212,6 +212,21 @@ TEST_F(Cli, MeanWidthBelowDimensionThree) {
   EXPECT_NEAR(mean_width("0 0 1\n3 0 1\n3 4 1\n0 4 1\n"), 14 / 4.0, 1e-14);
   EXPECT_NEAR(mean_width("0 0 1\n3 4 1\n"), 2.5, 1e-14);
   EXPECT_EQ(mean_width("1 2 3\n"), 0);
+  // A cube, and points that lie 1e-8 beyond its edges, in slivers whose normals are rounded.
+  std::string cube;
+  for (const char* x : {"10", "11"}) {
+    for (const char* y : {"20", "21"}) {
+      for (const char* z : {"30", "30.5", "31"}) {
+        const bool middle = z == std::string("30.5");
+        const auto beyond = [&](const std::string& at) {
+          return !middle ? at : at.back() == '0' ? std::to_string(std::stoi(at) - 1) + ".99999999"
+                                                 : at + ".00000001";
+        };
+        cube += beyond(x) + " " + beyond(y) + " " + z + "\n";
+      }
+    }
+  }
+  EXPECT_NEAR(mean_width(cube), 1.5, 1e-7);
 }
 
 TEST_F(Cli, FlatCurvesHaveNoExactHullYet) {

@@ -1,6 +1,7 @@
 #include "taut/core/geometry.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace taut {
 namespace {
@@ -46,6 +47,25 @@ dvec3 polygon_normal(const std::vector<dvec3>& points) {
     sum += glm::cross(points[k] - points[0], points[k + 1] - points[0]);
   }
   return unit(sum);
+}
+
+dvec3 plane_normal(const std::vector<dvec3>& points) {
+  const dvec3 normal = polygon_normal(points);
+  dvec3 longest(0.0);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const dvec3 side = points[(k + 1) % points.size()] - points[k];
+    if (glm::length(side) > glm::length(longest)) longest = side;
+  }
+  const dvec3 along = unit(longest);
+  return unit(normal - glm::dot(normal, along) * along);
+}
+
+double exterior_angle(const dvec3& m, const dvec3& n, const dvec3& along) {
+  const double sine = glm::dot(glm::cross(m, n), along);
+  const double cosine = glm::dot(m, n) - glm::dot(m, along) * glm::dot(n, along);
+  const double angle = std::atan2(sine, cosine);
+  // Those of both sides of a plane polygon, or of a thin wedge, are half a turn but for rounding.
+  return angle < -0.5 * std::numbers::pi ? angle + 2 * std::numbers::pi : angle;
 }
 
 std::array<dvec3, 2> tangent_frame(const dvec3& n) {

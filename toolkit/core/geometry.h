@@ -69,6 +69,14 @@ double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b);
 /// method); zero where it has no area.
 dvec3 polygon_normal(const std::vector<dvec3>& points);
 
+/// The unit normal of a plane polygon, from whose tip it is counter-clockwise, perpendicular to its
+/// longest side: as that of a sliver is not where points round. Zero where it has no area.
+dvec3 plane_normal(const std::vector<dvec3>& points);
+
+/// The angle by which the normals m and n of the faces to the left and right of an edge of a convex
+/// polyhedron differ, about the unit vector along the edge; below zero by rounding only.
+double exterior_angle(const dvec3& m, const dvec3& n, const dvec3& along);
+
 /// The vector, or its opposite where the vector points against `side`.
 inline dvec3 aligned(const dvec3& v, const dvec3& side) { return glm::dot(v, side) < 0 ? -v : v; }
 

@@ -181,14 +181,9 @@ void warn_of_unresolved(const HullBoundary& boundary, Console& console) {
 /// over 4 pi, the sum of its edges' lengths times the angles by which the normal turns there.
 double mean_width(const HullMesh& mesh) {
   const auto normal = [&](OpenMesh::FaceHandle face) {
-    dvec3 sum(0.0);
-    const auto from = mesh.cfv_begin(face);
-    const dvec3 origin = position(mesh, *from);
-    for (const auto h : mesh.fh_range(face)) {
-      sum += glm::cross(position(mesh, mesh.from_vertex_handle(h)) - origin,
-                        position(mesh, mesh.to_vertex_handle(h)) - origin);
-    }
-    return unit(sum);
+    std::vector<dvec3> corners;
+    for (const auto v : mesh.fv_range(face)) corners.push_back(position(mesh, v));
+    return plane_normal(corners);
   };
   std::vector<dvec3> normals;
   for (const auto face : mesh.faces()) normals.push_back(normal(face));
@@ -197,14 +192,14 @@ double mean_width(const HullMesh& mesh) {
     const auto h = mesh.halfedge_handle(edge, 0);
     const auto a = mesh.face_handle(h);
     const auto b = mesh.face_handle(mesh.opposite_halfedge_handle(h));
+    const dvec3 side = position(mesh, mesh.to_vertex_handle(h)) -
+                       position(mesh, mesh.from_vertex_handle(h));
     double turn = 2 * std::numbers::pi;  // about a segment
     if (a.is_valid() && b.is_valid()) {
-      const dvec3& m = normals[std::size_t(a.idx())];
-      const dvec3& n = normals[std::size_t(b.idx())];
-      turn = std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n));
+      turn = exterior_angle(normals[std::size_t(a.idx())], normals[std::size_t(b.idx())],
+                            unit(side));
     }
-    sum += turn * glm::distance(position(mesh, mesh.from_vertex_handle(h)),
-                                position(mesh, mesh.to_vertex_handle(h)));
+    sum += turn * glm::length(side);
   }
   return sum / (4 * std::numbers::pi);
 }

@@ -95,8 +95,7 @@ void add_creases(const HullBoundary& boundary, Sums& sums) {
     const dvec3 side = curve.points.back() - curve.points.front();
     const dvec3& m = boundary.faces[std::size_t(curve.faces[0])].n;
     const dvec3& n = boundary.faces[std::size_t(curve.faces[1])].n;
-    const double sine = glm::dot(glm::cross(m, n), unit(side));
-    sums.value[curvature] += 0.5 * glm::length(side) * std::atan2(sine, glm::dot(m, n));
+    sums.value[curvature] += 0.5 * glm::length(side) * exterior_angle(m, n, unit(side));
   }
 }
 

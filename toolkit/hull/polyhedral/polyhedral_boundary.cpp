@@ -70,7 +70,7 @@ class PolyhedralBoundary {
         facet.points.push_back(point(v));
         h = next_side(h);
       } while (h != start);
-      facet.n = polygon_normal(facet.points);
+      facet.n = plane_normal(facet.points);
       facet.offset = glm::dot(facet.points[0], facet.n);
       for (const dvec3& p : facet.points)
         facet.offset = std::max(facet.offset, glm::dot(p, facet.n));

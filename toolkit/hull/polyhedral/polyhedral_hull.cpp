@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <tuple>
 
@@ -220,16 +219,11 @@ void PolyhedralHull::make_polytope(const PointHull& hull, const std::vector<int>
 }
 
 dvec3 PolyhedralHull::normal_of(OpenMesh::FaceHandle f) const {
-  dvec3 normal(0.0);
-  std::optional<dvec3> first;
-  dvec3 before(0.0);
+  std::vector<dvec3> corners;
   for (const auto v : result_.mesh.fv_range(f)) {
-    const dvec3 p = points_.product_scale() * point_at(v);
-    if (!first) first = before = p;
-    normal += glm::cross(before - *first, p - *first);
-    before = p;
+    corners.push_back(points_.product_scale() * point_at(v));
   }
-  return unit(normal);
+  return plane_normal(corners);
 }
 
 /// Puts the vertices, which are these points, in their places, and labels them and the faces.
