@@ -212,21 +212,23 @@ TEST_F(Cli, MeanWidthBelowDimensionThree) {
   EXPECT_NEAR(mean_width("0 0 1\n3 0 1\n3 4 1\n0 4 1\n"), 14 / 4.0, 1e-14);
   EXPECT_NEAR(mean_width("0 0 1\n3 4 1\n"), 2.5, 1e-14);
   EXPECT_EQ(mean_width("1 2 3\n"), 0);
-  // A cube, and points that lie 1e-8 beyond its edges, in slivers whose normals are rounded.
-  std::string cube;
-  for (const char* x : {"10", "11"}) {
-    for (const char* y : {"20", "21"}) {
-      for (const char* z : {"30", "30.5", "31"}) {
-        const bool middle = z == std::string("30.5");
-        const auto beyond = [&](const std::string& at) {
-          return !middle ? at : at.back() == '0' ? std::to_string(std::stoi(at) - 1) + ".99999999"
-                                                 : at + ".00000001";
-        };
-        cube += beyond(x) + " " + beyond(y) + " " + z + "\n";
-      }
-    }
-  }
-  EXPECT_NEAR(mean_width(cube), 1.5, 1e-7);
+}
+
+/// Points of a grid, rounded, so that edges of the hull are slivers whose normals are rounded; the
+/// right value is that of exact arithmetic.
+TEST_F(Cli, MeanWidthOfAGridThatIsRounded) {
+  const std::string points =
+      "-1.333991 -3.243868 -0.743447\n"
+      "2.716230 -1.258002 0.228605\n"
+      "6.766450 0.727863 1.200657\n"
+      "2.936855 -11.322555 -2.034201\n"
+      "5.072278 -15.361898 -2.679578\n"
+      "-3.626649 -7.309095 17.114409\n"
+      "0.423572 -5.323229 18.086461\n"
+      "4.473793 -3.337363 19.058513\n"
+      "10.880061 -15.455393 17.122382\n";
+  const Json report = Json::parse(run("hull " + plant("p.xyz", points) + " --json").out);
+  EXPECT_NEAR(report["hull"]["mean_width"].get<double>(), 19.442105919462399, 1e-13);
 }
 
 TEST_F(Cli, FlatCurvesHaveNoExactHullYet) {

@@ -149,7 +149,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Stated{"copies_all_but_in_place", Variant::clean, 2},
                     Stated{"copies_turned_a_little", Variant::decimals},
                     Stated{"cut_by_edges", Variant::float32},
-                    Stated{"plate_of_bosses", Variant::float32}, Stated{"cup", Variant::float32}),
+                    Stated{"plate_of_bosses", Variant::float32}, Stated{"cup", Variant::float32},
+                    Stated{"car_body", Variant::float32}, Stated{"car_body", Variant::decimals},
+                    Stated{"thread", Variant::float32}, Stated{"dome", Variant::float32, 2},
+                    Stated{"grid_of_points", Variant::decimals, 2}),
     [](const auto& info) {
       return std::string(info.param.family) + "_" + name_of(info.param.variant);
     });
@@ -230,6 +233,51 @@ TEST(VerifyTolerant, ReportsTellTheFacesAndTheirBound) {
   EXPECT_EQ(failed(verified(stated.hull, stated.scene)), report);
   state(stated.hull, resolution, 1, bound);
   EXPECT_TRUE(failed(verified(stated.hull, stated.scene)).empty());
+}
+
+/// A sliver across one of the tetrahedron's edges, whose corners run the wrong way about: told
+/// apart or not by the resolution alone.
+TEST(VerifyTolerant, SliversWithinTheResolutionHaveNoSense) {
+  const auto faults = [](double width, double resolution, double bound) {
+    KnownBoundary known = tetrahedron_boundary();
+    HullDocument hull = hull_document(known.scene, known.boundary);
+    HullDocument::Face& facet = hull.faces[0];
+    const dvec3 a = facet.boundary[0];
+    const dvec3 b = facet.boundary[1];
+    const dvec3 inward = unit(glm::cross(facet.normal, b - a));
+    facet.boundary.insert(facet.boundary.begin() + 1,
+                          0.5 * (a + b) + width * hull.diagonal * inward);
+    facet.tolerant = bound * hull.diagonal;
+    if (resolution > 0) state(hull, resolution * hull.diagonal, 1, facet.tolerant);
+    return failed(verified(hull, known.scene));
+  };
+  EXPECT_TRUE(faults(1e-8, 0, 0).contains("outlines"));
+  EXPECT_TRUE(faults(1e-8, 1e-7, 0).contains("outlines"));
+  EXPECT_FALSE(faults(1e-8, 1e-7, 1e-9).contains("outlines"));
+  EXPECT_TRUE(faults(1e-6, 1e-7, 1e-9).contains("outlines"));
+}
+
+/// Rulings beside each other whose order is changed: their contacts are one to the resolution or
+/// not.
+TEST(VerifyTolerant, RulingsWithOneContactHaveNoOrder) {
+  const KnownBoundary known = two_spheres_boundary();
+  const auto faults = [&](double resolution, double bound) {
+    HullDocument hull = hull_document(known.scene, known.boundary);
+    HullDocument::Face& scroll = hull.faces[2];
+    std::swap(scroll.rulings[4], scroll.rulings[5]);
+    scroll.tolerant = bound * hull.diagonal;
+    state(hull, resolution * hull.diagonal, tolerant_faces(hull), scroll.tolerant);
+    return failed(verified(hull, known.scene));
+  };
+  const HullDocument sound = hull_document(known.scene, known.boundary);
+  const HullDocument::Ruling& from = sound.faces[2].rulings[4];
+  const HullDocument::Ruling& to = sound.faces[2].rulings[5];
+  const double depth =
+      std::max(glm::dot(from.a.p - to.a.p, from.n), glm::dot(from.b.p - to.b.p, from.n)) /
+      sound.diagonal;
+  EXPECT_TRUE(faults(1.001 * depth, 0).contains("order"));
+  EXPECT_TRUE(faults(0.999 * depth, 1e-9).contains("order"));
+  EXPECT_FALSE(faults(1.001 * depth, 1e-9).contains("order"));
 }
 
 /// Contacts of tolerant faces need not be tangent, others may be off by the resolution.

@@ -28,11 +28,12 @@ std::string at(const char* list, std::size_t i) {
 class OutlineCheck {
  public:
   OutlineCheck(const DocumentGeometry& geometry, const DocumentOutlines& outlines, double tolerance,
-               HullFaults& faults)
+               double resolution, HullFaults& faults)
       : geometry_(geometry),
         outlines_(outlines),
         hull_(geometry.hull()),
         tolerance_(tolerance),
+        resolution_(resolution),
         listed_(listed_share * tolerance),
         faults_(faults) {}
   double run();
@@ -69,7 +70,11 @@ class OutlineCheck {
   std::optional<SideJet> side_jet(const Face& facet, std::size_t side) const;
   void check_facet(std::size_t face);
   void check_facet_sides(std::size_t face);
-  bool is_convex(const std::vector<dvec3>& points, const dvec3& normal) const;
+  bool is_convex(const std::vector<dvec3>& points, const Face& facet) const;
+  /// The length within which the face's structure is not told apart; zero where it is exact.
+  double untold(const Face& face) const {
+    return face.tolerant > 0 ? std::max(face.tolerant, resolution_) : 0;
+  }
   std::vector<dvec3> points_of(const std::vector<int>& curves) const;
   std::vector<dvec3> points_of(const std::vector<DirectedCurve>& curves) const;
 
@@ -77,6 +82,7 @@ class OutlineCheck {
   const DocumentOutlines& outlines_;
   const HullDocument& hull_;
   double tolerance_;
+  double resolution_;
   double listed_;  ///< a point is one of those listed; else what lies between them is asked
   HullFaults& faults_;
   double bound_ = 0;
@@ -151,9 +157,29 @@ double OutlineCheck::distance_to_edge(int edge, const dvec3& p) const {
   return best;
 }
 
-/// From one ruling to the next, n and the contacts go on: no step makes an obtuse angle with the
-/// one before, but for what the tolerance leaves of either's direction. Where a contact comes to an
-/// end in which its edge does not bend, n stands still before it turns: the angle is a right one.
+/// Whether the contacts of either ruling support within the length where those of the other do.
+bool has_same_contacts(const HullDocument::Ruling& from, const HullDocument::Ruling& to,
+                       double length) {
+  const auto is_same = [&](const dvec3& step) {
+    return std::abs(glm::dot(step, from.n)) <= length && std::abs(glm::dot(step, to.n)) <= length;
+  };
+  return length > 0 && is_same(to.a.p - from.a.p) && is_same(to.b.p - from.b.p);
+}
+
+/// Whether n and both contacts go on to the scroll's left, seen along contact a: on a convex hull
+/// they do, also where a contact comes from an edge and leaves it at a sharp angle.
+bool goes_on(const HullDocument::Ruling& from, const HullDocument::Ruling& to, double tolerance) {
+  const dvec3 d = 0.5 * (from.b.p - from.a.p + to.b.p - to.a.p);
+  const dvec3 on = unit(glm::cross(d, from.n + to.n));
+  return glm::dot(to.n - from.n, on) > 0 && glm::dot(to.a.p - from.a.p, on) >= -tolerance &&
+         glm::dot(to.b.p - from.b.p, on) >= -tolerance;
+}
+
+/// From one ruling to the next, n and the contacts go on: a step that makes an obtuse angle with
+/// the one before, but for what the tolerance leaves of either's direction, goes on to the left.
+/// Where a contact comes to an end in which its edge does not bend, n stands still before it turns:
+/// the angle is a right one. Of a tolerant scroll, rulings with the same contacts to the resolution
+/// have no order.
 void OutlineCheck::check_order(std::size_t f) {
   const std::vector<HullDocument::Ruling>& rulings = hull_.faces[f].rulings;
   const double size = hull_.diagonal > 0 ? hull_.diagonal : 1;
@@ -175,7 +201,9 @@ void OutlineCheck::check_order(std::size_t f) {
     }
     length = std::sqrt(length);
     if (!(length > tolerance_ / size)) continue;
-    if (any && !(along > -(tolerance_ / size) * (length + last_length))) {
+    const bool is_obtuse = any && !(along > -(tolerance_ / size) * (length + last_length));
+    if (is_obtuse && !goes_on(from, to, tolerance_)) {
+      if (has_same_contacts(from, to, untold(hull_.faces[f]))) continue;
       faults_.add("order", at("faces", f) + "its rulings turn back after rulings[" +
                                std::to_string(i) + "]");
     }
@@ -455,9 +483,10 @@ std::vector<dvec3> OutlineCheck::points_of(const std::vector<DirectedCurve>& cur
   return line;
 }
 
-/// Points that run about a convex polygon, counter-clockwise seen against the normal.
-bool OutlineCheck::is_convex(const std::vector<dvec3>& points, const dvec3& normal) const {
-  const auto [e, g] = tangent_frame(unit(normal));
+/// Points that run about a convex polygon, counter-clockwise seen against the normal; of a tolerant
+/// facet, one that is convex if its points are no farther off than the resolution.
+bool OutlineCheck::is_convex(const std::vector<dvec3>& points, const Face& facet) const {
+  const auto [e, g] = tangent_frame(unit(facet.normal));
   std::vector<dvec2> flat;
   flat.reserve(points.size());
   double girth = 0;
@@ -466,7 +495,7 @@ bool OutlineCheck::is_convex(const std::vector<dvec3>& points, const dvec3& norm
     flat.emplace_back(glm::dot(from_first, e), glm::dot(from_first, g));
     girth += glm::distance(points[k], points[(k + 1) % points.size()]);
   }
-  return lack_of_area(flat) <= tolerance_ * girth;
+  return lack_of_area(flat) <= (tolerance_ + untold(facet)) * girth;
 }
 
 /// The facet's curves run along its sides, and these the same way about.
@@ -491,7 +520,7 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
     }
   }
   for (const double distance : off) see(distance);
-  if (!is_convex(polygon, face.normal)) {
+  if (!is_convex(polygon, face)) {
     faults_.add("outlines", at("faces", f) + "the facet's sides are not convex");
   }
 }
@@ -526,7 +555,7 @@ void OutlineCheck::check_facet(std::size_t f) {
   if (face.boundary.size() < 3) {
     return faults_.add("outlines", at("faces", f) + "a facet without a boundary");
   }
-  if (!is_convex(face.boundary, face.normal)) {
+  if (!is_convex(face.boundary, face)) {
     faults_.add("outlines", at("faces", f) + "the facet's boundary is not convex");
   }
   check_facet_sides(f);
@@ -541,8 +570,8 @@ void OutlineCheck::check_facet(std::size_t f) {
 }  // namespace
 
 double check_outlines(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                      double tolerance, HullFaults& faults) {
-  return OutlineCheck(geometry, outlines, tolerance, faults).run();
+                      double tolerance, double resolution, HullFaults& faults) {
+  return OutlineCheck(geometry, outlines, tolerance, resolution, faults).run();
 }
 
 }  // namespace taut

@@ -15,8 +15,9 @@ namespace taut {
 ///
 /// Returns the largest distance by which a curve is off one of its two faces, or a face's own
 /// outline off its curves, beyond the bounds that these faces state. `tolerance`: in model units,
-/// for what is one point or a straight line.
+/// for what is one point or a straight line. `resolution`: likewise, for the order of rulings and
+/// contacts of tolerant faces.
 double check_outlines(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                      double tolerance, HullFaults& faults);
+                      double tolerance, double resolution, HullFaults& faults);
 
 }  // namespace taut

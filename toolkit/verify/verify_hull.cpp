@@ -296,7 +296,8 @@ void HullVerifier::check_faces() {
   std::optional<DocumentMeasures> measures;
   if (hull_.dimension >= 2) {
     const double tolerance = (same_point + rounding_) * diagonal_;
-    raise(result_.off_outline, relative(check_outlines(geometry_, outlines, tolerance, faults_)));
+    raise(result_.off_outline,
+          relative(check_outlines(geometry_, outlines, tolerance, resolution_, faults_)));
     check_labels(geometry_, scene_, resolution_, faults_);
   }
   if (hull_.dimension == 3) {
