@@ -93,8 +93,8 @@ void ReportCheck::compare_bounds(const HullDocument& hull) {
 void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasures& measures,
                                    double accuracy) {
   const Json* exact = find(&report_, "hull");
-  // Two facets within their bounds enclose volumes that differ by what is between them, and strips
-  // between their outlines.
+  // Two facets or scrolls within their bounds enclose volumes that differ by what is between them,
+  // and strips between their outlines.
   compare("volume", exact, measures.volume,
           accuracy + measures.volume_error + measures.volume_bound / std::abs(measures.volume));
   compare("area", exact, measures.area,

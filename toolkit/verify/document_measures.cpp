@@ -156,8 +156,8 @@ class MeasureSums {
   Terms sums_;
   Fit fit_;
   bool interpolated_ = false;
-  /// What the vector area lacks by facets' outlines off their planes, and the volume between these
-  /// and others that the bounds allow.
+  /// What the vector area lacks by facets' outlines off their planes, and the volume between
+  /// facets and scrolls and others that the bounds allow.
   double open_ = 0, between_ = 0;
 };
 
@@ -335,6 +335,7 @@ Terms MeasureSums::patch_terms(const SourceJet& j, int sign) const {
 }
 
 void MeasureSums::add_scroll(const Face& face, const std::vector<RulingInterval>& intervals) {
+  const double before = sums_.value[area];
   for (const RulingInterval& interval : intervals) {
     see(interval);
     for (const RulingPanel& panel : interval.panels) {
@@ -342,6 +343,7 @@ void MeasureSums::add_scroll(const Face& face, const std::vector<RulingInterval>
           [&](double s) { return scroll_terms(interval, panel.at(s, fit_)); });
     }
   }
+  between_ += face.tolerant / unit_ * std::abs(sums_.value[area] - before);
   if (face.rulings.empty()) return;
   const HullDocument::Ruling& first = face.rulings.front();
   const HullDocument::Ruling& last = face.rulings.back();

@@ -15,8 +15,8 @@ struct DocumentMeasures {
   double mean_width = 0;
   /// Integral of the outward unit normal over all faces: zero if they make up a closed surface.
   dvec3 vector_area = dvec3(0.0);
-  /// How large that may be, and how far off the volume, since outlines of facets are off their
-  /// planes by what is stated.
+  /// How large that may be, since outlines of facets are off their planes by what is stated, and
+  /// how far off the volume, since facets and scrolls are off by it.
   double vector_area_bound = 0;
   double volume_bound = 0;
   /// Estimated relative errors: of the quadrature, and of curves that are interpolated, twice what
