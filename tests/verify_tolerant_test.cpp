@@ -151,7 +151,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Stated{"cut_by_edges", Variant::float32},
                     Stated{"plate_of_bosses", Variant::float32}, Stated{"cup", Variant::float32},
                     Stated{"car_body", Variant::float32}, Stated{"car_body", Variant::decimals},
-                    Stated{"thread", Variant::float32}, Stated{"dome", Variant::float32, 2},
+                    Stated{"thread", Variant::float32}, Stated{"thread", Variant::decimals},
+                    Stated{"dome", Variant::float32, 2}, Stated{"terrain", Variant::decimals},
+                    Stated{"filleted_plate", Variant::decimals, 2},
+                    Stated{"gear", Variant::decimals, 2},
                     Stated{"grid_of_points", Variant::decimals, 2}),
     [](const auto& info) {
       return std::string(info.param.family) + "_" + name_of(info.param.variant);

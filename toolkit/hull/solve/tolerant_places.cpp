@@ -16,6 +16,8 @@ constexpr int places = 8;
 constexpr int closer_looks = 5;
 /// How many times the resolution of exact models that is that rounding makes of a model's numbers.
 constexpr double rounded_depths = 2;
+/// Up to which share of that the grid of its numbers does not tell.
+constexpr double rounded_share = 1.0 / 16;
 /// How many times deeper it may be elsewhere than in the deepest place that was found.
 constexpr double other_places = 1.25;
 /// How many times deeper it may be beside the deepest place, where it was looked closer: what a
@@ -190,8 +192,11 @@ void bound_joints(SeparatingArc& arc, double tie) {
 bool is_rounded(const Scene& scene, double resolution) {
   const double floor = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
   const std::vector<Part>& parts = scene.model().parts();
-  return resolution > rounded_depths * floor &&
-         std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.cages().empty(); });
+  const bool is_coarse = resolution > rounded_depths * floor;
+  return std::any_of(parts.begin(), parts.end(), [&](const Part& p) {
+    const double step = scene.frame().length_to_frame(p.coordinate_grid().step);
+    return p.cages().empty() && (is_coarse || step > rounded_share * floor);
+  });
 }
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
