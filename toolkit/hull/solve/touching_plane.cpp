@@ -95,11 +95,11 @@ double risen_over(double depth) { return std::sqrt(depth); }
 class LineTurn {
  public:
   LineTurn(const ContactGeometry& geometry, const TouchingPlane& plane,
-           const std::vector<Contact>& contacts)
+           const std::vector<Contact>& contacts, double rounding = 0)
       : geometry_(geometry),
         plane_(plane),
         contacts_(contacts),
-        parted_(std::max(least_parted, parted_depths * plane.off())) {
+        parted_(std::max({least_parted, parted_depths * plane.off(), rounding})) {
     for (const ClimbedContact& a : plane.contacts) {
       for (const ClimbedContact& b : plane.contacts) {
         if (glm::distance(a.x, b.x) > glm::distance(from_, to_)) {
@@ -120,23 +120,22 @@ class LineTurn {
   }
   /// A contact has left the line.
   bool parts(double angle) const {
-    const dvec3 n = turned(angle);
-    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
-      return off_line(climb(geometry_, c, n).x) > parted_;
-    });
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [&](const Contact& c) { return parts(c, angle); });
   }
   /// The plane at which the first leaves the line, between an angle at which none has and one at
-  /// which some have; with contacts as they are on that side, but for the distance.
+  /// which some have; with contacts where they leave it, but for the distance.
   TouchingPlane found(double together, double apart, double depth) const {
-    for (int k = 0; k < turn_halvings; ++k) {
-      const double middle = 0.5 * (together + apart);
-      (parts(middle) ? apart : together) = middle;
-    }
     TouchingPlane found = plane_;
-    found.n = turned(together);
+    double first = apart;
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
-      const Contact parted_one = climb(geometry_, contacts_[k], turned(apart)).contact;
-      found.contacts[k].contact = on_border(parted_one, found.n, risen_over(depth), depth);
+      const double own = parting_angle(contacts_[k], together, apart);
+      if (std::abs(own - together) < std::abs(first - together)) first = own;
+      found.contacts[k].contact = climb(geometry_, contacts_[k], turned(own)).contact;
+    }
+    found.n = turned(first);
+    for (ClimbedContact& c : found.contacts) {
+      c.contact = on_border(c.contact, found.n, risen_over(depth), depth);
     }
     take_heights(found);
     return found;
@@ -175,6 +174,18 @@ class LineTurn {
   std::size_t first_to_part() const { return farthest(plane_.contacts); }
 
  private:
+  bool parts(const Contact& c, double angle) const {
+    return off_line(climb(geometry_, c, turned(angle)).x) > parted_;
+  }
+  /// The least angle found at which a contact has left the line; `apart` if it has not even there.
+  double parting_angle(const Contact& c, double together, double apart) const {
+    for (int k = 0; k < turn_halvings && parts(c, apart); ++k) {
+      const double middle = 0.5 * (together + apart);
+      (parts(c, middle) ? apart : together) = middle;
+    }
+    return apart;
+  }
+
   void take_heights(TouchingPlane& plane) const {
     double lowest = infinity;
     double highest = -infinity;
@@ -342,7 +353,7 @@ void find_above(SupportQuery& query, TouchingPlane& plane) {
 TouchingPlane turned_to_part(const ContactGeometry& geometry, SupportQuery& query,
                              const TouchingPlane& plane, const std::vector<Contact>& contacts,
                              const std::vector<dvec3>& beside, double depth) {
-  const LineTurn turn(geometry, plane, contacts);
+  const LineTurn turn(geometry, plane, contacts, depth);
   std::optional<double> together, apart;
   for (const dvec3& n : beside) {
     const double angle = turn.angle(n);
