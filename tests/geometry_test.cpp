@@ -40,9 +40,8 @@ TEST(Geometry, ExteriorAngles) {
   EXPECT_NEAR(exterior_angle({1, 0, 0}, {-1, -0.0, 0}, -along), std::numbers::pi, 1e-15);
   EXPECT_NEAR(exterior_angle({1, 0, 0}, {std::cos(1e-9), -std::sin(1e-9), 0}, along), -1e-9, 1e-20);
   const dvec3 between = unit({0.6, -0.1, 0.3});
-  EXPECT_NEAR(
-      exterior_angle({1, 0, 0}, between, along) + exterior_angle(between, {0, 1, 0}, along),
-      std::numbers::pi / 2, 1e-15);
+  EXPECT_NEAR(exterior_angle({1, 0, 0}, between, along) + exterior_angle(between, {0, 1, 0}, along),
+              std::numbers::pi / 2, 1e-15);
 }
 
 }  // namespace

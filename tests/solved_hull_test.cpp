@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "exact_checks.h"
 #include "freeform.h"
@@ -304,6 +306,30 @@ TEST(SolvedHull, NodesAreTangent) {
   const Scene scene(posed_teapots(5, 5), {.threads = 1, .progress = {}});
   const BoundaryFacts facts = boundary_facts(scene, solved_hull_of(scene), 300);
   EXPECT_TRUE(facts.sound()) << facts;
+}
+
+/// Contacts that leave a rounded border come back within some resolutions of it: no place is off by
+/// more than the resolution that is told, which is the model's own only where it is stated.
+TEST(SolvedHull, IsToldAtACoarserResolutionWhereTheModelsDoesNotDo) {
+  const Scene scene = scene_of("domes_in_a_row", Variant::decimals);
+  HullOptions options;
+  options.relative = 1e-2;
+  options.threads = 1;
+  std::vector<std::string> warnings;
+  options.progress.warn = [&](std::string_view code, std::string_view) {
+    warnings.emplace_back(code);
+  };
+  const Hull hull = precise_hull(scene, options);
+  const double own = resolution_of(scene.model(), scene.diagonal()).rho;
+  EXPECT_EQ(hull.resolution.raised_from, own) << "it is exact by now: take another";
+  EXPECT_GT(hull.resolution.rho, own);
+  EXPECT_EQ(hull.resolution.source, ResolutionSource::coordinates);
+  EXPECT_EQ(warnings, std::vector<std::string>{"coarser-resolution"});
+  EXPECT_LE(hull.boundary->frame.length_to_model(deepest_tolerant(*hull.boundary)),
+            hull.resolution.rho);
+  EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{2, 5, 5}));
+  options.resolution = own / scene.diagonal();
+  EXPECT_THROW(precise_hull(scene, options), HullNotConverged);
 }
 
 /// It is told, and there is a closed boundary with its depth all the same.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -69,13 +70,74 @@ Hull with_boundary(const Scene& scene, const ContactGeometry& geometry, HullBoun
   throw HullNotConverged(broken + "; its faces are those of the mesh", std::move(facetted));
 }
 
+/// A boundary, and what it was found with.
+struct Found {
+  ContactGeometry geometry;
+  HullBoundary boundary;
+  HullOptions options;
+};
+
+std::unique_ptr<Found> found_with(const Scene& scene, const HullOptions& options,
+                                  HullStatistics& statistics) {
+  auto found = std::make_unique<Found>(
+      Found{ContactGeometry(scene, options.progress.stop, same_elements_of(scene, options)),
+            {},
+            options});
+  const DirectionMap directions = directions_of(found->geometry, options, statistics);
+  found->boundary = exact_boundary(found->geometry, directions, options, statistics);
+  return found;
+}
+
+/// The resolution with which a model's own is replaced where places of its hull are not told apart
+/// by it, in turn.
+constexpr std::array coarser_resolutions = {4.0, 16.0};
+
+/// The first coarser resolution at which the boundary is what it promises; none if one is stated,
+/// or there is none.
+std::unique_ptr<Found> found_coarser(const Scene& scene, const HullOptions& options,
+                                     const Resolution& own, HullStatistics& statistics) {
+  if (options.resolution) return nullptr;
+  Resolution coarser = own;
+  for (const double times : coarser_resolutions) {
+    coarser.rho = times * own.rho;
+    if (coarser.rho > coarsest_resolution * scene.diagonal()) break;
+    HullOptions with = options;
+    with.resolution = coarser.rho / scene.diagonal();
+    std::unique_ptr<Found> found = found_with(scene, with, statistics);
+    if (broken_promise(found->boundary, coarser).empty()) return found;
+  }
+  return nullptr;
+}
+
+void warn_of_coarser(const Resolution& own, const Resolution& coarser, const Progress& progress) {
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                "places of the exact hull are not told apart at the model's resolution of %.3g: "
+                "the hull's is %.3g",
+                own.rho, coarser.rho);
+  progress.warning("coarser-resolution", text.data());
+}
+
 /// The hull with its exact boundary. What it took until then is added to the statistics, also where
 /// it throws.
 Hull exact_hull(const Scene& scene, const HullOptions& options, HullStatistics& statistics) {
-  const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
-  const DirectionMap directions = directions_of(geometry, options, statistics);
-  HullBoundary boundary = exact_boundary(geometry, directions, options, statistics);
-  return with_boundary(scene, geometry, std::move(boundary), options);
+  const Resolution own = resolution_for(options, scene.model(), scene.diagonal());
+  std::unique_ptr<Found> found = found_with(scene, options, statistics);
+  std::unique_ptr<Found> coarser;
+  if (!broken_promise(found->boundary, own).empty()) {
+    coarser = found_coarser(scene, options, own, statistics);
+  }
+  if (!coarser) {
+    return with_boundary(scene, found->geometry, std::move(found->boundary), options);
+  }
+  Hull hull =
+      with_boundary(scene, coarser->geometry, std::move(coarser->boundary), coarser->options);
+  const double rho = hull.resolution.rho;
+  hull.resolution = own;
+  hull.resolution.rho = rho;
+  hull.resolution.raised_from = own.rho;
+  warn_of_coarser(own, hull.resolution, options.progress);
+  return hull;
 }
 
 /// The mesh with its faces as the boundary, within the tolerance or as far as a share of what the

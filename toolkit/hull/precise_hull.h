@@ -14,9 +14,11 @@ namespace taut {
 /// has no boundary: its hull is that of sampled_hull().
 ///
 /// The boundary is closed always, and faces that are below supporting planes say by how much
-/// (HullFace::tolerant). Where none is found that is exact to within the resolution
-/// HullNotConverged says why, and the boundary of the best hull is the one that was found or, if
-/// that is not closed or farther off, the faces of the mesh.
+/// (HullFace::tolerant). Where none is found that is exact to within the model's resolution, one
+/// four or 16 times as coarse is tried unless the options state one: the hull then has that one,
+/// and a warning (coarser-resolution) says so. Where none is found at all HullNotConverged says
+/// why, and the boundary of the best hull is the one that was found or, if that is not closed or
+/// farther off, the faces of the mesh.
 ///
 /// Under limits (HullOptions, Progress::stop) a mesh comes first, for which a quarter of them is
 /// kept; where one is met HullLimitExceeded has the nearer of that, with its faces as the boundary,

@@ -103,6 +103,11 @@ Resolution resolution_of(const Model& model, double diagonal, std::optional<doub
 }
 
 std::string reason_of(const Resolution& resolution) {
+  if (resolution.raised_from > 0) {
+    Resolution own = resolution;
+    own.rho = std::exchange(own.raised_from, 0.0);
+    return "at " + number(own.rho) + " (" + reason_of(own) + ") not all is told apart";
+  }
   switch (resolution.source) {
     case ResolutionSource::rounding:
       return "coordinates are doubles";

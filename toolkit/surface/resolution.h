@@ -36,6 +36,8 @@ struct Resolution {
   /// How far copies of patches are apart that may be told to be one (copies_apart); 0 where the
   /// resolution is stated.
   double worst_copy = 0;
+  /// The model's resolution, where places of its hull are told apart at the coarser rho only; or 0.
+  double raised_from = 0;
 
   bool capped() const { return source != ResolutionSource::option && of_model > rho; }
 };

@@ -23,7 +23,8 @@ struct Hull {
   /// model as it stands, in model units, rounding included. What patches that stand for other
   /// surfaces miss (Model::deviation_bound, of control cages) comes on top.
   double distance_bound = 0;
-  /// What is nearer than this may be taken for one: as the options ask, or as the model tells.
+  /// What is nearer than this may be taken for one: as the options ask, or as the model tells, or
+  /// coarser than that (Resolution::raised_from).
   Resolution resolution;
   /// The exact boundary, where the method finds it.
   std::shared_ptr<const HullBoundary> boundary;
