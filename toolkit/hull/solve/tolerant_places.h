@@ -6,10 +6,9 @@
 
 namespace taut {
 
-/// Rounding of a model's numbers has made its resolution what it is, or a good share of it: surfaces
-/// are known to it only, also between rulings. Those of cages are computed, whatever the cages'
-/// points were rounded to.
-/// `resolution`: in the scene's frame.
+/// Rounding of a model's numbers has made its resolution what it is, or a good share of it:
+/// surfaces are known to it only, also between rulings. Those of cages are computed, whatever the
+/// cages' points were rounded to. `resolution`: in the scene's frame.
 bool is_rounded(const Scene& scene, double resolution);
 
 /// Finds out how far arcs and faces of a boundary are below the supporting planes with their
