@@ -147,6 +147,7 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"wires", Variant::turned, 2}, Stated{"terrain", Variant::turned, 2},
         Stated{"terrain", Variant::float32}, Stated{"copies_all_but_in_place", Variant::float32},
         Stated{"copies_all_but_in_place", Variant::clean, 2},
+        Stated{"copies_all_but_in_place", Variant::turned},
         Stated{"copies_turned_a_little", Variant::decimals},
         Stated{"cut_by_edges", Variant::float32}, Stated{"plate_of_bosses", Variant::float32},
         Stated{"cup", Variant::float32}, Stated{"car_body", Variant::float32},

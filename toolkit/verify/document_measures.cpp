@@ -369,7 +369,8 @@ Terms MeasureSums::scroll_terms(const RulingInterval& interval,
   terms.value[volume] = glm::dot(x[0], A) / 3;
   terms.value[area] = glm::dot(n, A);
   add_vector_area(terms, A);
-  terms.value[curvature] = 0.5 * glm::length(d) * glm::length(slope.n - glm::dot(slope.n, n) * n);
+  // Half the ruling's length times the turn about it, which may go back and forth by a little.
+  terms.value[curvature] = 0.5 * glm::dot(slope.n, glm::cross(d, n));
   terms.add(1, outline_terms(x[0], dx[0], n));
   terms.add(1, outline_terms(x[1], -dx[1], n));
   return terms;
