@@ -23,8 +23,10 @@ constexpr double other_places = 1.25;
 /// How many times deeper it may be beside the deepest place, where it was looked closer: what a
 /// parabola over the last steps tops it by.
 constexpr double near_places = 1.001;
-/// Places of a region at which it is looked, along each of the patch's parameters.
+/// Places of a region at which it is looked, along each of the patch's parameters; and where one
+/// of them is deep.
 constexpr int region_places = 3;
+constexpr int closer_region_places = 6;
 /// How many slacks of its outline a place is inside: rulings may be few.
 constexpr double region_slacks = 2;
 
@@ -79,23 +81,18 @@ class TolerantPlaces {
 
   /// Places as near to the outline as that may be off are as deep as the arcs there.
   double of(const HullBoundary& boundary, const PatchRegion& region) {
-    const RegionOutline outline = outline_of(boundary, region);
-    double deepest = 0;
-    for (int k = 0; k < region_places * region_places; ++k) {
-      const dvec2 uv = (dvec2(k % region_places, k / region_places) + 0.5) / double(region_places);
-      if (depth_in(outline, uv) < region_slacks * outline_slack) continue;
-      deepest = std::max(deepest, own_depth(region, uv));
+    double of_arcs = 0;
+    for (const std::vector<TrimStretch>& loop : region.loops) {
+      for (const TrimStretch& s : loop) {
+        if (s.arc >= 0) of_arcs = std::max(of_arcs, piece_of(boundary, s).tolerant);
+      }
     }
-    deepest = deepest <= geometry_.tie() ? 0 : bound_of(deepest);
+    double deepest = deepest_in(outline_of(boundary, region), region, of_arcs > 0);
+    deepest = std::max(of_arcs, deepest <= geometry_.tie() ? 0 : bound_of(deepest));
     // How what stands for others ripples, places do not tell.
     const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
     if (geometry_.patch(any).stand_in) {
       deepest = std::max(deepest, deviation_of(geometry_.part(any)));
-    }
-    for (const std::vector<TrimStretch>& loop : region.loops) {
-      for (const TrimStretch& s : loop) {
-        if (s.arc >= 0) deepest = std::max(deepest, piece_of(boundary, s).tolerant);
-      }
     }
     return deepest;
   }
@@ -103,6 +100,38 @@ class TolerantPlaces {
  private:
   static const ArcPiece& piece_of(const HullBoundary& boundary, const TrimStretch& s) {
     return boundary.arcs[std::size_t(s.arc)].pieces[std::size_t(s.piece)];
+  }
+
+  /// Inside the outline; if that is tolerant or a place is deep, it is looked closer, most about
+  /// the deepest place.
+  double deepest_in(const RegionOutline& outline, const PatchRegion& region, bool closer) {
+    double deepest = 0;
+    dvec2 at(0.5);
+    const auto look = [&](const dvec2& uv) {
+      const bool is_inside = std::min({uv.x, uv.y, 1 - uv.x, 1 - uv.y}) > 0 &&
+                             depth_in(outline, uv) >= region_slacks * outline_slack;
+      const double found = is_inside ? own_depth(region, uv) : 0;
+      if (found > deepest) at = uv;
+      deepest = std::max(deepest, found);
+    };
+    const auto look_at_grid = [&](int places) {
+      for (int k = 0; k < places * places; ++k) {
+        look((dvec2(k % places, k / places) + 0.5) / double(places));
+      }
+    };
+    look_at_grid(region_places);
+    if (!closer && deepest <= geometry_.tie()) return deepest;
+    look_at_grid(closer_region_places);
+    double step = 1.0 / closer_region_places;
+    for (int k = 0; k < closer_looks; ++k) {
+      step *= 0.5;
+      const dvec2 middle = at;
+      for (const double side : {-step, step}) {
+        look(middle + dvec2(side, 0));
+        look(middle + dvec2(0, side));
+      }
+    }
+    return deepest;
   }
 
   /// Of the patch by its own normal.
