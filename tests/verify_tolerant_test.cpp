@@ -155,7 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"thread", Variant::decimals}, Stated{"dome", Variant::float32, 2},
         Stated{"terrain", Variant::decimals}, Stated{"filleted_plate", Variant::decimals, 2},
         Stated{"gear", Variant::decimals, 2}, Stated{"open_cage", Variant::turned},
-        Stated{"domes_in_a_row", Variant::decimals}, Stated{"mirrored_domes", Variant::decimals, 2},
+        Stated{"open_cage", Variant::float32}, Stated{"domes_in_a_row", Variant::decimals},
+        Stated{"mirrored_domes", Variant::decimals, 2},
         Stated{"grid_of_points", Variant::decimals, 2}),
     [](const auto& info) {
       return std::string(info.param.family) + "_" + name_of(info.param.variant);

@@ -38,6 +38,10 @@ constexpr double accuracy = 1e-13;
 /// On half of a stretch polynomials of degree five miss smooth functions by 1/64.
 constexpr double least_gain = 0.25;
 
+/// Where a contact's element ends in the other's, both may be in one point, which is no ruling: as
+/// a share of the shorter one of those that it is between.
+constexpr double shortest_between = 0.1;
+
 constexpr int max_depth = 10;
 constexpr int max_steps = 20;
 
@@ -161,7 +165,8 @@ std::optional<RulingState> RulingSolver::solve(const RulingState& from, const Ru
     if (way <= rounding_unit) break;
   }
   if (!is_ruling(at) || length(at - guess) > length(chord)) return std::nullopt;
-  return at;
+  const double shorter = std::min(span(interval_.first), span(interval_.last));
+  return span(at) < shortest_between * shorter ? std::nullopt : std::optional(at);
 }
 
 /// Solves the equations' linear forms: slopes along the free parameters, height of one contact
@@ -208,6 +213,10 @@ RulingState RulingSolver::newton_step(const RulingState& at, const RulingState& 
     }
   }
   return change;
+}
+
+double RulingSolver::span(const RulingState& at) const {
+  return glm::distance(jet(0, at).x, jet(1, at).x);
 }
 
 bool RulingSolver::is_ruling(const RulingState& at) const {

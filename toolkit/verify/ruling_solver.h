@@ -35,6 +35,8 @@ class RulingSolver {
   std::optional<RulingState> solve(const RulingState& from, const RulingState& chord, double share,
                                    const RulingState& guess) const;
   RulingState newton_step(const RulingState& at, const RulingState& chord, double off) const;
+  /// How far apart its contacts are.
+  double span(const RulingState& at) const;
   bool is_ruling(const RulingState& at) const;
 
   const DocumentGeometry& geometry_;
