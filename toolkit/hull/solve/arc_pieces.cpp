@@ -71,15 +71,18 @@ double reach(const ContactGeometry& geometry, const Ruling& r) {
 
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements. False if
 /// one of these is a patch that does not reach there but for rounding, so that no curve in it would
-/// end where the next one begins; it stays as it is then.
-bool move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place) {
+/// end where the next one begins, or an edge or vertex that is farther off than `distance`; it stays
+/// as it is then.
+bool move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place,
+             double distance) {
   Ruling moved = place;
   for (std::size_t i = 0; i < 2; ++i) {
     const Contact c = snapped(geometry, place.contact[i], reach(geometry, place));
     const auto own = in_element(geometry, c, ruling.contact[i]);
     const double off = glm::distance(ruling.point[i], place.point[i]);
     const bool is_face = ruling.contact[i].kind == SourceKind::face;
-    if (!own && is_face && off > reach(geometry, place)) return false;
+    const double most = std::max(reach(geometry, place), is_face ? 0 : distance);
+    if (!own && off > most) return false;
     moved.contact[i] = own.value_or(ruling.contact[i]);
   }
   ruling = moved;
@@ -209,6 +212,7 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
   // At its ends, where heights tie over as much.
   const double tied =
       std::max({longest_empty_piece, std::sqrt(geometry.rounding()), reach, extent});
+  const double off = std::max(longest_empty_piece, reach);
   const auto is_empty = [&](std::size_t k) {
     const std::vector<Ruling>& rulings = pieces[k].rulings;
     const bool ends = k == 0 || k + 1 == pieces.size();
@@ -227,8 +231,8 @@ void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& p
       // What begins and ends the arc is told by its first ruling and its last.
       const Ruling& first = pieces[k].rulings.front();
       const Ruling& last = pieces[k].rulings.back();
-      if (k == 0 && !move_to(geometry, pieces[1].rulings.front(), first)) continue;
-      if (k + 1 == pieces.size() && !move_to(geometry, pieces[k - 1].rulings.back(), last)) {
+      if (k == 0 && !move_to(geometry, pieces[1].rulings.front(), first, off)) continue;
+      if (k + 1 == pieces.size() && !move_to(geometry, pieces[k - 1].rulings.back(), last, off)) {
         continue;
       }
       if (k > 0 && k + 1 < pieces.size()) {
