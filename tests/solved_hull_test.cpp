@@ -96,6 +96,25 @@ void expect_counts(const Shape& shape, const FaceCounts& counts) {
   EXPECT_TRUE(found.is_hull(tolerance)) << text_of(found);
 }
 
+/// Walls of one radius over each other: the rims that lie on the other wall are held by the two
+/// that do not, also where rounding makes them reach a little farther.
+TEST(SolvedHull, OfOverlappingWallsIsThatOfTheOuterRims) {
+  for (const unsigned long seed : {1UL, 2UL, 3UL}) {
+    for (const Variant variant : all_variants) {
+      SCOPED_TRACE(std::to_string(seed) + " " + name_of(variant));
+      const Scene scene = scene_of("overlapping_walls", variant, seed);
+      const Hull hull = solved_hull_of(scene);
+      ASSERT_TRUE(hull.boundary);
+      EXPECT_TRUE(hull.boundary->unresolved.empty());
+      EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 1, 2}));
+      EXPECT_EQ(hull.boundary->curves.size(), 2U);
+      EXPECT_EQ(hull.resolution.raised_from, 0);
+      EXPECT_LE(deepest_tolerant(*hull.boundary),
+                scene.frame().length_to_frame(hull.resolution.rho));
+    }
+  }
+}
+
 /// Three equal shapes in a row, of which the middle one touches planes with the two others.
 TEST(SolvedHull, OfThreeInARowIsThatOfTwo) {
   const std::vector<std::pair<std::string, FaceCounts>> families = {{"balls_in_a_row", {2, 1, 0}},

@@ -156,6 +156,8 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"terrain", Variant::decimals}, Stated{"filleted_plate", Variant::decimals, 2},
         Stated{"gear", Variant::decimals, 2}, Stated{"open_cage", Variant::turned},
         Stated{"open_cage", Variant::float32}, Stated{"domes_in_a_row", Variant::decimals},
+        Stated{"overlapping_walls", Variant::float32, 2},
+        Stated{"overlapping_walls", Variant::decimals, 3},
         Stated{"mirrored_domes", Variant::decimals, 2},
         Stated{"grid_of_points", Variant::decimals, 2}),
     [](const auto& info) {

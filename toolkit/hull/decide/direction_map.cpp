@@ -50,6 +50,7 @@ class MapMaker {
     map_.resolution = options_.resolution;
     map_.bent = pieces_.bent_above();
     map_.covered = pieces_.covered_patches();
+    map_.covered_edges = pieces_.covered_edges();
     return std::move(map_);
   }
 

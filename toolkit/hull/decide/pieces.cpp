@@ -162,6 +162,14 @@ std::vector<Contact> MapPieces::covered_patches() const {
   return found;
 }
 
+std::vector<Contact> MapPieces::covered_edges() const {
+  std::vector<Contact> found;
+  for (const MapElement& e : elements_) {
+    if (e.contact.kind == SourceKind::edge && e.likeness.covered) found.push_back(e.contact);
+  }
+  return found;
+}
+
 double MapPieces::budget_left() const { return any_covered_ ? 1 - cover_share : cover_share; }
 
 void MapPieces::find_beside() {

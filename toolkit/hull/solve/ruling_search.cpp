@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
@@ -101,13 +100,41 @@ double RulingSearch::least_way() const {
 
 SupportingContact RulingSearch::supporting(const dvec3& n, const Contact& hint) const {
   const Support s = query_(n, hint);
-  const Contact c = geometry_.first(at_rest(geometry_, s.contact, n));
+  const Contact c = uncovered(at_rest(geometry_, s.contact, n), n);
   return {n, c, geometry_.point(c)};
 }
 
+Contact RulingSearch::uncovered(const Contact& c, const dvec3& n) const {
+  const Contact own = geometry_.first(c);
+  const auto is_covered = [&](const Contact& edge) {
+    return std::any_of(map_.covered_edges.begin(), map_.covered_edges.end(),
+                       [&](const Contact& covered) { return same_element(covered, edge); });
+  };
+  if (own.kind != SourceKind::edge || !is_covered(own)) return own;
+  std::optional<Contact> best;
+  for (const ContactGeometry::PieceSide& side : geometry_.ruled_sides(own)) {
+    Contact across = on_side(own, side);
+    double& t = along_v(side.side) ? across.u : across.v;
+    t = 1 - t;
+    const Contact end = geometry_.first(geometry_.canonical(across));
+    if (is_covered(end)) continue;
+    if (!best || glm::dot(geometry_.point(end) - geometry_.point(*best), n) > 0) best = end;
+  }
+  return best.value_or(own);
+}
+
+ClimbedContact RulingSearch::uncovered_climb(const Contact& c, const dvec3& n) const {
+  const ClimbedContact there = climb(geometry_, c, n);
+  const Contact at = geometry_.first(there.contact);
+  const Contact own = uncovered(at, n);
+  if (same_element(own, at)) return {at, there.x, there.h};
+  const dvec3 x = geometry_.point(own);
+  return {own, x, glm::dot(x, n)};
+}
+
 SupportingContact RulingSearch::climbed_from(const SupportingContact& s, const dvec3& n) const {
-  const ClimbedContact c = climb(geometry_, s.contact, n);
-  return {n, geometry_.first(c.contact), c.x};
+  const ClimbedContact c = uncovered_climb(s.contact, n);
+  return {n, c.contact, c.x};
 }
 
 double RulingSearch::depth(const Ruling& ruling) const {
@@ -292,18 +319,17 @@ Ruling RulingSearch::settled(Ruling ruling) const {
     if (own.kind == SourceKind::vertex) {
       // It stays there along the curve, be its own region an edge's or not.
       const dvec3 ahead = beside_turn * glm::cross(ruling.n, right);
-      if (same_element(climb(geometry_, own, unit(ruling.n + ahead)).contact, own) &&
-          same_element(climb(geometry_, own, unit(ruling.n - ahead)).contact, own)) {
+      if (same_element(uncovered_climb(own, unit(ruling.n + ahead)).contact, own) &&
+          same_element(uncovered_climb(own, unit(ruling.n - ahead)).contact, own)) {
         ruling.contact[i] = own;
         continue;
       }
     }
     const dvec3 beside = unit(ruling.n + (i == 0 ? beside_turn : -beside_turn) * right);
-    const Contact there = geometry_.first(climb(geometry_, own, beside).contact);
+    const Contact there = uncovered_climb(own, beside).contact;
     // At a vertex another edge's contact may have ended, but for a height that is lost in rounding.
-    const Contact at = own.kind == SourceKind::vertex
-                           ? geometry_.first(climb(geometry_, there, ruling.n).contact)
-                           : own;
+    const Contact at =
+        own.kind == SourceKind::vertex ? uncovered_climb(there, ruling.n).contact : own;
     if (const auto expressed = expressed_in(geometry_, at, there)) {
       ruling.contact[i] = *expressed;
       ruling.point[i] = geometry_.point(*expressed);
@@ -412,7 +438,7 @@ std::optional<Ruling> RulingSearch::between(const Ruling& from, const Ruling& to
   const dvec3 across = glm::cross(n, right);
   std::array<Contact, 2> contacts;
   for (std::size_t i = 0; i < 2; ++i) {
-    contacts[i] = geometry_.first(climb(geometry_, from.contact[i], n).contact);
+    contacts[i] = uncovered_climb(from.contact[i], n).contact;
   }
   const auto found = polished(n, contacts, across, touching());
   if (found && is_between(from, to, *found)) return settled(*found);

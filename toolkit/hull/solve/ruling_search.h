@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "taut/bounds/contact_climb.h"
 #include "taut/bounds/support_query.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/decide/map_graph.h"
@@ -52,7 +53,14 @@ class RulingSearch {
 
  private:
   /// By how much others may be above contacts that support.
-  double touching() const { return std::max(geometry_.tie(), map_.bent); }
+  double touching() const {
+    return std::max({geometry_.tie(), map_.bent, map_.covered_edges.empty() ? 0 : map_.resolution});
+  }
+  /// The other end of the line of a ruled patch that ends in a covered edge, where that is not
+  /// covered; else the contact itself.
+  Contact uncovered(const Contact& c, const dvec3& n) const;
+  /// A climb that ends so.
+  ClimbedContact uncovered_climb(const Contact& c, const dvec3& n) const;
 
   /// The ruling with contacts near these, n in the plane across `across`. None if Newton's method
   /// does not converge, the contacts are one, or something is higher by more than so much.
