@@ -157,6 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"gear", Variant::decimals, 2}, Stated{"open_cage", Variant::turned},
         Stated{"open_cage", Variant::float32}, Stated{"domes_in_a_row", Variant::decimals},
         Stated{"overlapping_walls", Variant::float32, 2},
+        Stated{"balls_in_a_row", Variant::decimals, 3},
         Stated{"overlapping_walls", Variant::decimals, 3},
         Stated{"mirrored_domes", Variant::decimals, 2},
         Stated{"grid_of_points", Variant::decimals, 2}),
