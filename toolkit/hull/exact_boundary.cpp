@@ -22,6 +22,12 @@ long candidate_limit(const ContactGeometry& geometry) {
   return map_candidates + map_candidates_a_patch * geometry.scene().patch_count();
 }
 
+/// Pieces that may be looked at, some ten seconds' worth, where what was left undecided keeps the
+/// boundary from being found: dents of flat cages about their ends. Not where it is more cells than
+/// these, which ties all along curves leave.
+constexpr long thorough_candidates = 12'000'000;
+constexpr long few_undecided = 4096;
+
 /// Finer maps that are asked, as shares of the resolution, and for how many times as many pieces,
 /// together.
 constexpr std::array finer_maps = {1. / 2, 1. / 4, 1. / 16, 1. / 64};
@@ -99,13 +105,26 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 }
 
 HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap& directions,
-                            const HullOptions& options, HullStatistics& statistics) {
+                            const HullOptions& options, HullStatistics& statistics,
+                            MapEffort effort) {
   const double rho = directions.resolution;
   HullBoundary boundary = solved(geometry, directions, rho, options, statistics);
-  if (is_within(boundary, rho) || boundary.unresolved.size() > few_open_spots) return boundary;
-  // What is left undecided is not decided by finer maps either, and what is bent stays so.
-  if (undecided(directions) > 0 || directions.bent > 0) return boundary;
+  if (is_within(boundary, rho)) return boundary;
   long left = finer_map_times * candidate_limit(geometry);
+  if (const long open = undecided(directions); open > 0) {
+    const bool helps = open <= few_undecided && left < thorough_candidates;
+    if (effort == MapEffort::usual || !helps) return boundary;
+    left = thorough_candidates;
+    const DirectionMap whole = map_of(geometry, rho, left, options, statistics);
+    left -= whole.statistics.candidates;
+    // What is left undecided then is not decided by finer maps either.
+    if (undecided(whole) > 0) return boundary;
+    HullBoundary other = solved(geometry, whole, rho, options, statistics);
+    if (is_within(other, rho)) return other;
+    boundary = std::move(other);
+  }
+  // What is bent stays so in finer maps.
+  if (boundary.unresolved.size() > few_open_spots || directions.bent > 0) return boundary;
   for (const double share : finer_maps) {
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
     left -= finer.statistics.candidates;

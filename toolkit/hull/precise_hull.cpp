@@ -78,13 +78,13 @@ struct Found {
 };
 
 std::unique_ptr<Found> found_with(const Scene& scene, const HullOptions& options,
-                                  HullStatistics& statistics) {
+                                  HullStatistics& statistics, MapEffort effort) {
   auto found = std::make_unique<Found>(
       Found{ContactGeometry(scene, options.progress.stop, same_elements_of(scene, options)),
             {},
             options});
   const DirectionMap directions = directions_of(found->geometry, options, statistics);
-  found->boundary = exact_boundary(found->geometry, directions, options, statistics);
+  found->boundary = exact_boundary(found->geometry, directions, options, statistics, effort);
   return found;
 }
 
@@ -103,7 +103,7 @@ std::unique_ptr<Found> found_coarser(const Scene& scene, const HullOptions& opti
     if (coarser.rho > coarsest_resolution * scene.diagonal()) break;
     HullOptions with = options;
     with.resolution = coarser.rho / scene.diagonal();
-    std::unique_ptr<Found> found = found_with(scene, with, statistics);
+    std::unique_ptr<Found> found = found_with(scene, with, statistics, MapEffort::usual);
     if (broken_promise(found->boundary, coarser).empty()) return found;
   }
   return nullptr;
@@ -122,7 +122,7 @@ void warn_of_coarser(const Resolution& own, const Resolution& coarser, const Pro
 /// it throws.
 Hull exact_hull(const Scene& scene, const HullOptions& options, HullStatistics& statistics) {
   const Resolution own = resolution_for(options, scene.model(), scene.diagonal());
-  std::unique_ptr<Found> found = found_with(scene, options, statistics);
+  std::unique_ptr<Found> found = found_with(scene, options, statistics, MapEffort::thorough);
   std::unique_ptr<Found> coarser;
   if (!broken_promise(found->boundary, own).empty()) {
     coarser = found_coarser(scene, options, own, statistics);
