@@ -71,8 +71,8 @@ double reach(const ContactGeometry& geometry, const Ruling& r) {
 
 /// Puts a ruling in the place of one very near to it, its contacts in their own elements. False if
 /// one of these is a patch that does not reach there but for rounding, so that no curve in it would
-/// end where the next one begins, or an edge or vertex that is farther off than `distance`; it stays
-/// as it is then.
+/// end where the next one begins, or an edge or vertex that is farther off than `distance`; it
+/// stays as it is then.
 bool move_to(const ContactGeometry& geometry, Ruling& ruling, const Ruling& place,
              double distance) {
   Ruling moved = place;
