@@ -108,6 +108,8 @@ inline constexpr std::array<Side, 4> all_sides = {Side::u0, Side::u1, Side::v0, 
 inline bool along_v(Side side) { return side == Side::u0 || side == Side::u1; }
 /// The other parameter is one there, rather than zero.
 inline bool at_upper_end(Side side) { return side == Side::u1 || side == Side::v1; }
+/// The side across from it.
+inline Side opposite(Side side) { return Side(int(side) ^ 1); }
 /// (u, v) of the side's point with the free parameter t.
 inline dvec2 on_side(Side side, double t) {
   const double fixed = at_upper_end(side) ? 1 : 0;

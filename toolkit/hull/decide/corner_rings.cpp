@@ -3,12 +3,6 @@
 #include <algorithm>
 
 namespace taut {
-namespace {
-
-Side opposite(Side side) { return Side(int(side) ^ 1); }
-
-}  // namespace
-
 void CornerRings::find(const Branches& branches, const Branch& branch,
                        const ChartGlue::Table& glued) {
   branches_ = &branches;

@@ -27,7 +27,7 @@ struct DirectionMap {
   double resolution = 0;  ///< at which it is decided, in the scene's frame
   /// Patches, with their borders, that are in the convex hull of the rest to within the resolution.
   std::vector<Contact> covered;
-  /// Edges' pieces that are, of which patches may go on to others that are not.
+  /// Edges' pieces that are, though lines of a ruled patch go on from there to others that are not.
   std::vector<Contact> covered_edges;
   /// By how much ruled patches that are bent may be above the ends of their lines.
   double bent = 0;

@@ -165,7 +165,17 @@ std::vector<Contact> MapPieces::covered_patches() const {
 std::vector<Contact> MapPieces::covered_edges() const {
   std::vector<Contact> found;
   for (const MapElement& e : elements_) {
-    if (e.contact.kind == SourceKind::edge && e.likeness.covered) found.push_back(e.contact);
+    const Contact& c = e.contact;
+    if (c.kind != SourceKind::edge || !e.likeness.covered) continue;
+    const auto& sides = geometry_.ruled_sides(c);
+    const bool goes_on = std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+      const int instance = side.instance < 0 ? c.instance : side.instance;
+      const Patch& patch = geometry_.patch({instance, SourceKind::face, side.patch, 0, 0});
+      const int end = patch.borders[std::size_t(opposite(side.side))].piece;
+      const int own = end < 0 ? -1 : find({instance, SourceKind::edge, end, 0, 0});
+      return own >= 0 && !element(own).likeness.covered;
+    });
+    if (goes_on) found.push_back(c);
   }
   return found;
 }

@@ -91,7 +91,8 @@ class MapPieces {
 
   /// Patches that are covered with all their borders and corners.
   std::vector<Contact> covered_patches() const;
-  /// Edges' pieces that are covered, though patches beside them are not.
+  /// Edges' pieces that are covered, though lines of a ruled patch go on from there to others that
+  /// are not.
   std::vector<Contact> covered_edges() const;
 
   /// And by how much those of ruled patches that are bent.
