@@ -192,12 +192,12 @@ double mean_width(const HullMesh& mesh) {
     const auto h = mesh.halfedge_handle(edge, 0);
     const auto a = mesh.face_handle(h);
     const auto b = mesh.face_handle(mesh.opposite_halfedge_handle(h));
-    const dvec3 side = position(mesh, mesh.to_vertex_handle(h)) -
-                       position(mesh, mesh.from_vertex_handle(h));
+    const dvec3 side =
+        position(mesh, mesh.to_vertex_handle(h)) - position(mesh, mesh.from_vertex_handle(h));
     double turn = 2 * std::numbers::pi;  // about a segment
     if (a.is_valid() && b.is_valid()) {
-      turn = exterior_angle(normals[std::size_t(a.idx())], normals[std::size_t(b.idx())],
-                            unit(side));
+      turn =
+          exterior_angle(normals[std::size_t(a.idx())], normals[std::size_t(b.idx())], unit(side));
     }
     sum += turn * glm::length(side);
   }
