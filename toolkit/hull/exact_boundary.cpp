@@ -114,9 +114,7 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
   if (const long open = undecided(directions); open > 0) {
     const bool helps = open <= few_undecided && left < thorough_candidates;
     if (effort == MapEffort::usual || !helps) return boundary;
-    left = thorough_candidates;
-    const DirectionMap whole = map_of(geometry, rho, left, options, statistics);
-    left -= whole.statistics.candidates;
+    const DirectionMap whole = map_of(geometry, rho, thorough_candidates, options, statistics);
     // What is left undecided then is not decided by finer maps either.
     if (undecided(whole) > 0) return boundary;
     HullBoundary other = solved(geometry, whole, rho, options, statistics);
