@@ -127,17 +127,26 @@ Hull exact_hull(const Scene& scene, const HullOptions& options, HullStatistics& 
   if (!broken_promise(found->boundary, own).empty()) {
     coarser = found_coarser(scene, options, own, statistics);
   }
-  if (!coarser) {
-    return with_boundary(scene, found->geometry, std::move(found->boundary), options);
+  if (coarser) {
+    const auto raised = [&](Hull hull) {
+      const double rho = hull.resolution.rho;
+      hull.resolution = own;
+      hull.resolution.rho = rho;
+      hull.resolution.raised_from = own.rho;
+      return hull;
+    };
+    try {
+      Hull hull = raised(
+          with_boundary(scene, coarser->geometry, std::move(coarser->boundary), coarser->options));
+      warn_of_coarser(own, hull.resolution, options.progress);
+      return hull;
+    } catch (const HullLimitExceeded& met) {
+      throw HullLimitExceeded(met.what(), raised(*met.best));
+    } catch (const HullNotConverged&) {
+      // The mesh has shown that it lacks faces: what is wrong at the model's own is told.
+    }
   }
-  Hull hull =
-      with_boundary(scene, coarser->geometry, std::move(coarser->boundary), coarser->options);
-  const double rho = hull.resolution.rho;
-  hull.resolution = own;
-  hull.resolution.rho = rho;
-  hull.resolution.raised_from = own.rho;
-  warn_of_coarser(own, hull.resolution, options.progress);
-  return hull;
+  return with_boundary(scene, found->geometry, std::move(found->boundary), options);
 }
 
 /// The mesh with its faces as the boundary, within the tolerance or as far as a share of what the
