@@ -83,52 +83,66 @@ Contact passed_on_side(const ContactGeometry& geometry, Contact c, Side side, co
 }
 
 /// Borders from one element to another that a contact passes, in each as one of the element before
-/// and one of that beyond: always on from the element that has come the nearest. None if there are
+/// and one of that beyond: always on from the element that has come the nearest, over borders that
+/// are no farther than `depth` below the two along n, or else are the highest. None if there are
 /// more than some between the two.
 std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometry,
-                                                  const Contact& from, const Contact& to) {
+                                                  const Contact& from, const Contact& to,
+                                                  const dvec3& n, double depth) {
   struct Way {
     Contact at;
     int before = -1;
     Contact border;     ///< of the element before
     double left = 0;    ///< from where it goes
+    double low = 0;     ///< how far below the depth a border was on the way, at most
     bool done = false;  ///< it has been gone on from
   };
   const dvec3 aim = geometry.point(to);
+  const double least =
+      std::min(glm::dot(geometry.point(from), n), glm::dot(geometry.point(to), n)) - depth;
   std::vector<Way> ways = {{from, -1, from, glm::distance(geometry.point(from), aim)}};
+  const auto comes_first = [](const Way& a, const Way& b) {
+    return a.low != b.low ? a.low < b.low : a.left < b.left;
+  };
   const double reach = astray * ways.front().left;
   const auto nearest = [&] {
     int best = -1;
     for (int k = 0; k < int(ways.size()); ++k) {
       const Way& way = ways[std::size_t(k)];
-      if (!way.done && (best < 0 || way.left < ways[std::size_t(best)].left)) best = k;
+      if (!way.done && (best < 0 || comes_first(way, ways[std::size_t(best)]))) best = k;
     }
     return best;
   };
   for (int at = 0; at >= 0 && int(ways.size()) < most_passed; at = nearest()) {
     ways[std::size_t(at)].done = true;
-    const Contact here = ways[std::size_t(at)].at;
-    for (const ContactExit& exit : exits(geometry, here)) {
-      Contact border = at_exit(here, exit);
-      if (exit.kind == ContactExit::Kind::side) {
-        border = passed_on_side(geometry, border, Side(exit.index), geometry.point(here), aim);
-      }
-      const std::optional<Contact> over = beyond(geometry, border, exit);
-      if (!over || std::any_of(ways.begin(), ways.end(),
-                               [&](const Way& way) { return same_element(way.at, *over); })) {
-        continue;
-      }
-      const double left = glm::distance(geometry.point(*over), aim);
-      if (!same_element(*over, to)) {
-        if (at == 0 || left <= reach) ways.push_back({*over, at, border, left});
-        continue;
-      }
-      std::vector<std::array<Contact, 2>> steps = {{border, *over}};
+    const Way here = ways[std::size_t(at)];
+    if (same_element(here.at, to)) {
+      std::vector<std::array<Contact, 2>> steps;
       for (int k = at; ways[std::size_t(k)].before >= 0; k = ways[std::size_t(k)].before) {
         steps.push_back({ways[std::size_t(k)].border, ways[std::size_t(k)].at});
       }
       std::reverse(steps.begin(), steps.end());
       return steps;
+    }
+    for (const ContactExit& exit : exits(geometry, here.at)) {
+      Contact border = at_exit(here.at, exit);
+      if (exit.kind == ContactExit::Kind::side) {
+        border = passed_on_side(geometry, border, Side(exit.index), geometry.point(here.at), aim);
+      }
+      const std::optional<Contact> over = beyond(geometry, border, exit);
+      if (!over) continue;
+      const dvec3 x = geometry.point(*over);
+      const Way next = {*over, at, border, glm::distance(x, aim),
+                        std::max(here.low, least - glm::dot(x, n))};
+      if (at > 0 && next.left > reach && !same_element(*over, to)) continue;
+      const auto known = std::find_if(ways.begin(), ways.end(), [&](const Way& way) {
+        return same_element(way.at, *over);
+      });
+      if (known == ways.end()) {
+        ways.push_back(next);
+      } else if (!known->done && comes_first(next, *known)) {
+        *known = next;
+      }
     }
   }
   return {};
@@ -298,7 +312,8 @@ void ArcSolver::leap(const Ruling& to) {
   // Each contact over the borders between its elements, as far as these have one.
   for (std::size_t i = 0; i < 2; ++i) {
     if (same_element(last().contact[i], to.contact[i])) continue;
-    for (const auto& [from, over] : steps_between(geometry_, last().contact[i], to.contact[i])) {
+    for (const auto& [from, over] : steps_between(
+             geometry_, last().contact[i], to.contact[i], last().n, search_.map().resolution)) {
       Ruling before = last();
       before.contact[i] = from;
       before.point[i] = geometry_.point(from);

@@ -97,17 +97,41 @@ class ArcFinder {
     for (const MapGraph::Arc& arc : known_.graph.arcs) {
       progress_.check();
       std::vector<Ruling>& own = known_.rulings.emplace_back();
+      std::vector<bool> told;  // of each
       for (const MapCrossing& crossing : arc.crossings) {
         const Ruling& r = ruling_at(crossing);
-        if (own.empty() || glm::distance(own.back().n, r.n) > same_contact) own.push_back(r);
+        if (!own.empty() && glm::distance(own.back().n, r.n) <= same_contact) continue;
+        own.push_back(r);
+        told.push_back(is_told(crossing, r));
       }
       if (arc.is_closed()) continue;
+      drop_untold(own, told);
       drop_points(own);
       drop_jumps(own);
       std::reverse(own.begin(), own.end());
       drop_jumps(own);
       std::reverse(own.begin(), own.end());
     }
+  }
+
+  /// Its contacts are those that the cell tells there: beside where several in line support, others
+  /// may be as high as these to within the resolution.
+  bool is_told(const MapCrossing& crossing, const Ruling& r) const {
+    const std::vector<Box>& contacts = search_.map().cells[std::size_t(crossing.cell)].contacts;
+    for (const std::size_t i : {0u, 1u}) {
+      const Box& box = contacts[std::size_t(crossing.contact[i])];
+      if (distance(box, r.point[i]) > search_.map().contact_extent()) return false;
+    }
+    return true;
+  }
+
+  /// What begins and ends an arc and is none of its rulings, if there are any.
+  static void drop_untold(std::vector<Ruling>& own, const std::vector<bool>& told) {
+    const auto first = std::find(told.begin(), told.end(), true);
+    if (first == told.end()) return;
+    const auto last = std::find(told.rbegin(), told.rend(), true).base();
+    own.erase(own.begin() + (last - told.begin()), own.end());
+    own.erase(own.begin(), own.begin() + (first - told.begin()));
   }
 
   /// Beside free ends the two contacts may be found to be one; such rulings tell nothing.
