@@ -1,6 +1,7 @@
 #include "taut/hull/stitch/stitch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <span>
@@ -46,7 +47,8 @@ class Stitcher {
   static std::vector<TrimRegion> regions_of(const ContactGeometry& geometry, SupportQuery& query,
                                             const SeparatingGraph& graph, double depth,
                                             std::vector<Unresolved>& unresolved) {
-    std::vector<TrimRegion> regions = trim_regions(geometry, graph, unresolved);
+    std::vector<TrimRegion> regions =
+        trim_regions(geometry, graph, unresolved, std::sqrt(depth));
     add_whole_patches(geometry, query, graph, depth, regions, unresolved);
     return regions;
   }

@@ -87,8 +87,8 @@ TrimStretch on_border(int side, double from, double to) {
 class Trimmer {
  public:
   Trimmer(const ContactGeometry& geometry, const SeparatingGraph& graph,
-          std::vector<Unresolved>& unresolved)
-      : geometry_(geometry), graph_(graph), unresolved_(unresolved) {}
+          std::vector<Unresolved>& unresolved, double extent)
+      : geometry_(geometry), graph_(graph), unresolved_(unresolved), extent_(extent) {}
 
   std::vector<TrimRegion> run() {
     for (int a = 0; a < int(graph_.arcs.size()); ++a) {
@@ -112,11 +112,13 @@ class Trimmer {
   void add_border(const OrientedPatch& oriented, double from, double to, Loop& loop) const;
   void add_regions(const OrientedPatch& oriented, std::vector<Loop> loops);
   std::vector<dvec2> polyline(const Loop& loop) const;
+  bool is_sliver(const OrientedPatch& oriented, const std::vector<dvec2>& outline) const;
   void fail(const dvec3& n, const char* reason) { unresolved_.push_back({n, reason}); }
 
   const ContactGeometry& geometry_;
   const SeparatingGraph& graph_;
   std::vector<Unresolved>& unresolved_;
+  const double extent_;  ///< contacts no farther from each other may be one
   std::vector<TrimArc> trim_arcs_;
   std::vector<std::vector<int>> trim_arcs_of_;  // per half-arc 2 * arc + contact; -1: on no patch
   std::vector<OrientedPatch> patches_;
@@ -359,7 +361,26 @@ bool winds_about(const std::vector<dvec2>& polygon, const dvec2& x) {
   return inside;
 }
 
-/// Loops that run about a region, with those around its holes.
+/// It is nowhere wider than a contact extends, so that its area does not tell on which side of it
+/// the region is.
+bool Trimmer::is_sliver(const OrientedPatch& oriented, const std::vector<dvec2>& outline) const {
+  const auto jet = [&](const dvec2& p) {
+    return geometry_.jet({oriented.instance, SourceKind::face, oriented.patch, p.x, p.y});
+  };
+  double length = 0;
+  double widest = 0;
+  dvec3 before = jet(outline.back()).x;
+  for (const dvec2& p : outline) {
+    const ContactJet j = jet(p);
+    length += glm::distance(before, j.x);
+    before = j.x;
+    widest = std::max(widest, glm::length(glm::cross(j.dx[0], j.dx[1])));
+  }
+  return std::abs(signed_area(outline)) * widest <= extent_ * length;
+}
+
+/// Loops that run about a region, with those around its holes. One about a sliver that is in no
+/// other is the border of a region of its own, whichever way rounding makes it run.
 void Trimmer::add_regions(const OrientedPatch& oriented, std::vector<Loop> loops) {
   const std::size_t first = regions_.size();
   std::vector<std::vector<dvec2>> outlines;
@@ -377,6 +398,7 @@ void Trimmer::add_regions(const OrientedPatch& oriented, std::vector<Loop> loops
       holes.emplace_back(std::move(loop), outline.front());
     }
   }
+  std::vector<Loop> slivers;
   bool whole = false;
   if (oriented.meetings.empty() && !holes.empty()) {
     // Nothing meets the border: it lies on the hull all around, or nowhere.
@@ -402,10 +424,17 @@ void Trimmer::add_regions(const OrientedPatch& oriented, std::vector<Loop> loops
       }
     }
     if (owner == outlines.size()) {
+      if (is_sliver(oriented, polyline(loop))) {
+        slivers.push_back(std::move(loop));
+        continue;
+      }
       fail(trim_arcs_[std::size_t(oriented.trim_arcs.front())].n, "a trim loop lies in no other");
       return;
     }
     regions_[first + owner].loops.push_back(std::move(loop));
+  }
+  for (Loop& loop : slivers) {
+    regions_.push_back({oriented.instance, oriented.patch, oriented.sign, {std::move(loop)}});
   }
 }
 
@@ -442,8 +471,8 @@ std::vector<TrimStretch> whole_border(int sign) {
 }
 
 std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, const SeparatingGraph& graph,
-                                     std::vector<Unresolved>& unresolved) {
-  return Trimmer(geometry, graph, unresolved).run();
+                                     std::vector<Unresolved>& unresolved, double extent) {
+  return Trimmer(geometry, graph, unresolved, extent).run();
 }
 
 }  // namespace taut

@@ -34,8 +34,9 @@ std::vector<TrimStretch> whole_border(int sign);
 
 /// The regions of Bezier patches that lie on the hull and that contacts of separating curves bound,
 /// with the patches' borders. The pieces of the arcs are those that the walk leads along. Reasons
-/// why something does not fit are added to `unresolved`.
+/// why something does not fit are added to `unresolved`. `extent`: regions may be turned over where
+/// they are nowhere wider.
 std::vector<TrimRegion> trim_regions(const ContactGeometry& geometry, const SeparatingGraph& graph,
-                                     std::vector<Unresolved>& unresolved);
+                                     std::vector<Unresolved>& unresolved, double extent = 0);
 
 }  // namespace taut
