@@ -26,6 +26,17 @@ class EdgePlaces {
       return t;
     });
   }
+  /// What is told as a contact on a line is one on the other in its stead, also where it is told as
+  /// one of the patch on the line's other side.
+  void move(const Contact& from, const Contact& to) {
+    std::map<Line, double> there;
+    for_each_line(to, [&](const Line& line, double t) { return there[line] = t; });
+    for_each_line(from, [&](const Line& line, double t) {
+      const auto found = there.find(line);
+      if (found != there.end()) moved_[line][t] = found->second;
+      return t;
+    });
+  }
   void add(const EdgeStretch& s) {
     if (s.piece < 0) return;
     for (const double t : {s.from, s.to}) {
@@ -74,7 +85,8 @@ class EdgePlaces {
   }
 
   void settle(Contact& c) const {
-    for_each_line(c, [&](const Line& line, double t) {
+    for_each_line(c, [&](const Line& line, double told) {
+      const double t = place_of(line, told);
       const auto places = places_.find(line);
       const auto place =
           places == places_.end() ? decltype(places->second.end()){} : places->second.find(t);
@@ -127,6 +139,15 @@ class EdgePlaces {
   static void set(double& t, double to) { t = to; }
   static void set(const double&, double) {}
 
+  double place_of(const Line& line, double t) const {
+    const auto moved = moved_.find(line);
+    if (moved == moved_.end()) return t;
+    const auto at = moved->second.lower_bound(t - same_parameter);
+    return at != moved->second.end() && at->first <= t + same_parameter ? at->second : t;
+  }
+  /// Parameters of a join as its two patches have them differ by rounding.
+  static constexpr double same_parameter = 1e-15;
+
   double length(const Line& line) const {
     const auto& [instance, piece, patch, side] = line;
     double sum = 0;
@@ -147,6 +168,7 @@ class EdgePlaces {
   double level_distance_;
   std::map<Line, std::set<double>> level_;           // ends of curved sides
   std::map<Line, std::map<double, double>> places_;  // as they were: as they are
+  std::map<Line, std::map<double, double>> moved_;   // before they are places
 };
 
 template <class Visit>
@@ -169,7 +191,9 @@ void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, 
                        double level_distance) {
   EdgePlaces places(geometry, distance, std::max(distance, level_distance));
   for_each_end(graph, [&](Contact& c, const dvec3&) {
-    c = moved_to_bent(geometry, moved_to_border(geometry, c, distance), level_distance);
+    const Contact own = moved_to_border(geometry, c, distance);
+    c = moved_to_bent(geometry, own, level_distance);
+    if (parameters(c) != parameters(own)) places.move(own, c);
     places.add(c);
   });
   for (const FacetNode& node : graph.nodes) {
