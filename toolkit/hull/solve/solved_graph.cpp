@@ -56,12 +56,14 @@ class GraphSolver {
     const double reach =
         std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
     const double beside = std::max(extent, piece_ways * search_.least_way());
+    // So far contacts have moved to edges beside which ruled patches are bent.
+    const double moved = geometry_.bent() > 0 ? map_.contact_extent() : extent;
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
       for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, map_.contact_extent());
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
-      tell_corners(arc.pieces, extent);
+      tell_corners(arc.pieces, moved);
       tell_along_joins(geometry_, arc.pieces, extent);
       turn_ends(geometry_, arc.pieces);
       join_in_crossings(arc);
