@@ -142,10 +142,12 @@ class TolerantPlaces {
     return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
   }
 
-  /// Of exact rulings; where none is found, what there is has no depth that could be looked at.
+  /// Of exact rulings; where none is found, of the one that is interpolated, the resolution at
+  /// least: what there is may be deeper beside it.
   double depth_at(const RulingsBetween& between, double share) {
-    const std::optional<MovingRuling> exact = between(between.at_share(share));
-    return exact ? depth(exact->at.ruling()) : resolution_ / near_places;
+    const double s = between.at_share(share);
+    if (const std::optional<MovingRuling> exact = between(s)) return depth(exact->at.ruling());
+    return std::max(resolution_ / near_places, depth(between.interpolated(s).at.ruling()));
   }
   double deepest_of(const RulingsBetween& between) {
     return deepest_along([&](double share) { return depth_at(between, share); });
