@@ -1,15 +1,62 @@
 #include "taut/hull/solve/facet_corners.h"
 
+#include <optional>
+
 #include "taut/bounds/contact_forms.h"
+#include "taut/core/geometry.h"
 
 namespace taut {
 namespace {
+
+/// Places on an edge between two, at which it is seen how far it is from their segment.
+constexpr int places_between = 8;
 
 void erase(std::size_t k, FacetContacts& facet) {
   const auto at = std::ptrdiff_t(k);
   facet.contacts.erase(facet.contacts.begin() + at);
   facet.points.erase(facet.points.begin() + at);
   facet.sides.erase(facet.sides.begin() + at);
+}
+
+/// The parameter of a contact on an edge's piece, if it is there.
+std::optional<double> parameter_on(const ContactGeometry& geometry, const EdgeStretch& edge,
+                                   const Contact& c) {
+  if (c.instance != edge.instance) return std::nullopt;
+  if (c.kind == SourceKind::edge && c.element == edge.piece) return c.u;
+  const std::array<int, 2>& ends = geometry.piece(edge.at(0)).end_vertex;
+  for (const int end : {0, 1}) {
+    if (c.kind == SourceKind::vertex && c.element == ends[std::size_t(end)]) return end;
+  }
+  return std::nullopt;
+}
+
+bool is_near_segment(const ContactGeometry& geometry, const EdgeStretch& s, double depth) {
+  const dvec3 a = geometry.point(s.at(s.from));
+  const dvec3 b = geometry.point(s.at(s.to));
+  for (int k = 1; k < places_between; ++k) {
+    const double t = glm::mix(s.from, s.to, double(k) / places_between);
+    if (distance_to_segment(geometry.point(s.at(t)), a, b) > depth) return false;
+  }
+  return true;
+}
+
+/// The stretch of an edge that goes on from a curved side, forwards or backwards, to the other
+/// corner of a straight side beside it.
+std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const EdgeStretch& beside,
+                                       bool forwards, const Contact& corner) {
+  if (beside.piece < 0) return std::nullopt;
+  const std::optional<double> t = parameter_on(geometry, beside, corner);
+  if (!t) return std::nullopt;
+  EdgeStretch s = beside;
+  if (forwards) {
+    s.from = beside.to;
+    s.to = *t;
+  } else {
+    s.from = *t;
+    s.to = beside.from;
+  }
+  const bool goes_on = (s.to - s.from) * (beside.to - beside.from) > 0;
+  return goes_on ? std::optional(s) : std::nullopt;
 }
 
 }  // namespace
@@ -37,6 +84,33 @@ void unite_corners(const ContactGeometry& geometry, double distance, FacetContac
     } else {
       ++k;
     }
+  }
+}
+
+void fill_dents(const ContactGeometry& geometry, double depth, FacetContacts& facet) {
+  for (std::size_t k = 0; k < facet.sides.size() && facet.sides.size() > 1;) {
+    const std::size_t count = facet.sides.size();
+    const std::size_t next = (k + 1) % count;
+    const std::size_t before = (k + count - 1) % count;
+    const bool is_straight = !facet.is_curved(k);
+    const auto after =
+        is_straight ? across_dent(geometry, facet.sides[before], true, facet.contacts[next])
+                    : std::nullopt;
+    if (after && is_near_segment(geometry, *after, depth)) {
+      facet.sides[before].to = after->to;
+      erase(k, facet);
+      continue;
+    }
+    const auto ahead = is_straight
+                           ? across_dent(geometry, facet.sides[next], false, facet.contacts[k])
+                           : std::nullopt;
+    if (ahead && is_near_segment(geometry, *ahead, depth)) {
+      facet.sides[k] = facet.sides[next];
+      facet.sides[k].from = ahead->from;
+      erase(next, facet);
+      continue;
+    }
+    ++k;
   }
 }
 

@@ -9,4 +9,8 @@ namespace taut {
 /// for their ends.
 void unite_corners(const ContactGeometry& geometry, double distance, FacetContacts& facet);
 
+/// Straight sides across dents of an edge, along which the facet's outline runs beside them, run
+/// along it, too, where it is nowhere farther from them than so much.
+void fill_dents(const ContactGeometry& geometry, double depth, FacetContacts& facet);
+
 }  // namespace taut

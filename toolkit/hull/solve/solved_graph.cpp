@@ -153,6 +153,7 @@ class GraphSolver {
                                 is_rounded ? map_.resolution : 0);
     if (!found || !found->is_facet()) return std::nullopt;
     if (is_rounded) unite_corners(geometry_, map_.contact_extent(), *found);
+    fill_dents(geometry_, map_.resolution, *found);
     FacetNode facet{level.n, found->contacts, found->points, found->sides, {}};
     facet.slots.assign(facet.contacts.size(), {});
     return facet;
