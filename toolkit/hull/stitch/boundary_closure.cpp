@@ -37,7 +37,10 @@ int vertex_count(const HullBoundary& boundary) {
   for (int k = 0; k < int(ends.size()); ++k) {
     const End& own = ends[std::size_t(k)];
     places.visit_near(own.x, [&](int other) {
-      if (share_face(*own.curve, *ends[std::size_t(other)].curve)) vertices.unite(k, other);
+      const End& there = ends[std::size_t(other)];
+      if (own.curve != there.curve && share_face(*own.curve, *there.curve)) {
+        vertices.unite(k, other);
+      }
     });
     places.insert(own.x, k);
   }

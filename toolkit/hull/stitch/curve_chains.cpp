@@ -11,8 +11,8 @@ namespace {
 /// Puts elements together, each into one chain.
 class Chainer {
  public:
-  explicit Chainer(const std::vector<CurveElement>& elements)
-      : elements_(elements), used_(elements.size(), false) {}
+  Chainer(const std::vector<CurveElement>& elements, const std::vector<dvec3>& corners)
+      : elements_(elements), corners_(corners), used_(elements.size(), false) {}
 
   bool is_used(std::size_t k) const { return used_[k]; }
 
@@ -39,7 +39,13 @@ class Chainer {
 
  private:
   bool follows(std::size_t a, std::size_t b) const {
-    return glm::distance(elements_[a].points.back(), elements_[b].points.front()) < same_curve_end;
+    const dvec3& end = elements_[a].points.back();
+    return are_one(end, elements_[b].points.front()) &&
+           std::none_of(corners_.begin(), corners_.end(),
+                        [&](const dvec3& corner) { return are_one(corner, end); });
+  }
+  static bool are_one(const dvec3& a, const dvec3& b) {
+    return glm::distance(a, b) < same_curve_end;
   }
   template <class Matches>
   std::vector<std::size_t>::const_iterator unused(const std::vector<std::size_t>& group,
@@ -49,17 +55,19 @@ class Chainer {
   }
 
   const std::vector<CurveElement>& elements_;
+  const std::vector<dvec3>& corners_;
   std::vector<bool> used_;
 };
 
 }  // namespace
 
-std::vector<CurveChain> chains(const std::vector<CurveElement>& elements) {
+std::vector<CurveChain> chains(const std::vector<CurveElement>& elements,
+                               const std::vector<dvec3>& corners) {
   std::map<std::tuple<int, int, int>, std::vector<std::size_t>> alike;
   for (std::size_t k = 0; k < elements.size(); ++k) {
     alike[{elements[k].left, elements[k].right, elements[k].source}].push_back(k);
   }
-  Chainer chainer(elements);
+  Chainer chainer(elements, corners);
   std::vector<CurveChain> result;
   for (const auto& [key, group] : alike) {
     for (const std::size_t start : group) {

@@ -36,8 +36,9 @@ struct CurveChain {
 };
 
 /// Chains of the elements that have the same faces and source: every element in one of them, each
-/// as long as it can be. In the order of faces and source.
-std::vector<CurveChain> chains(const std::vector<CurveElement>& elements);
+/// as long as it can be, but none over one of the corners. In the order of faces and source.
+std::vector<CurveChain> chains(const std::vector<CurveElement>& elements,
+                               const std::vector<dvec3>& corners = {});
 
 /// The points along the whole chain; the first one again at the end of a closed one.
 std::vector<dvec3> points_along(const CurveChain& chain, const std::vector<CurveElement>& elements);

@@ -62,6 +62,13 @@ class Stitcher {
   void make_joins();
   void make_creases();
   CurveElement crease(const EdgeIncidence::Stretch& c) const;
+  /// A ruling between two faces, as they follow each other along an arc.
+  struct Cut {
+    int before, after;
+    Ruling ruling;
+  };
+  std::vector<Cut> cuts() const;
+  std::vector<dvec3> corners_of_scrolls() const;
   void make_rulings();
   void make_scroll_curves();
   int curve_of(int stretch) const { return stretches_.curve_of(stretch); }
@@ -88,6 +95,7 @@ class Stitcher {
   std::vector<std::size_t> place_of_region_;  // among those of its face
   std::vector<std::vector<int>> scroll_of_;   // per arc and piece; -1 between vertices
   std::vector<int> facet_of_;                 // per node
+  std::vector<dvec3> corners_;                // in which curves end
   /// By arc, piece and contact: the curves along it, with their order.
   std::map<std::tuple<int, int, int>, std::vector<std::pair<double, int>>> along_scroll_;
 };
@@ -259,7 +267,7 @@ void Stitcher::make_bitangents() {
 
 /// Chains elements, and adds the curves that they make.
 void Stitcher::add_chains(HullCurveKind kind, const std::vector<CurveElement>& elements) {
-  for (const CurveChain& chain : chains(elements)) {
+  for (const CurveChain& chain : chains(elements, corners_)) {
     const CurveElement& e = elements[chain.elements.front()];
     const int curve =
         add_curve(kind, e.left, e.right, e.source, points_along(chain, elements), chain.closed);
@@ -346,15 +354,11 @@ void Stitcher::make_creases() {
 
 /// The ends of scrolls: segments between a scroll and a facet, another scroll beyond a segment
 /// between vertices, or two facets.
-void Stitcher::make_rulings() {
+std::vector<Stitcher::Cut> Stitcher::cuts() const {
+  std::vector<Cut> cuts;
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
     const int count = int(arc.pieces.size());
-    struct Cut {
-      int before, after;  // faces
-      Ruling ruling;
-    };
-    std::vector<Cut> cuts;
     const auto scroll = [&](int piece) { return scroll_of(a, piece); };
     const auto facet = [&](int end) {
       const int node = arc.facet[std::size_t(end)];
@@ -387,13 +391,26 @@ void Stitcher::make_rulings() {
             {scroll(before), scroll(next), arc.pieces[std::size_t(next)].rulings.front()});
       }
     }
-    for (const Cut& cut : cuts) {
-      // Along n x d the faces follow each other; from contact 0 to contact 1 the next is to the
-      // right.
-      add_curve(HullCurveKind::ruling, cut.before, cut.after, -1,
-                {cut.ruling.point[0], cut.ruling.point[1]}, false);
-    }
   }
+  return cuts;
+}
+
+/// Along n x d the faces follow each other; from contact 0 to contact 1 the next is to the right.
+void Stitcher::make_rulings() {
+  for (const Cut& cut : cuts()) {
+    add_curve(HullCurveKind::ruling, cut.before, cut.after, -1,
+              {cut.ruling.point[0], cut.ruling.point[1]}, false);
+  }
+}
+
+/// Where a ruling ends between two parts of one scroll, the curves along it have a corner.
+std::vector<dvec3> Stitcher::corners_of_scrolls() const {
+  std::vector<dvec3> corners;
+  for (const Cut& cut : cuts()) {
+    if (cut.before != cut.after) continue;
+    corners.insert(corners.end(), cut.ruling.point.begin(), cut.ruling.point.end());
+  }
+  return corners;
 }
 
 /// The curves along a scroll's contacts, in the order of its rulings.
@@ -510,6 +527,7 @@ HullBoundary Stitcher::run() {
   make_patches();
   make_scrolls();
   make_facets();
+  corners_ = corners_of_scrolls();
   make_bitangents();
   make_joins();
   make_creases();
