@@ -113,6 +113,10 @@ std::optional<MapCellKind> CellDecider::kind_of_cell(const MapCell& cell,
   if (!kind) kind = decided_sharply(cell.level);
   if (is_open_row() && !planes_.is_spot() && is_facet()) kind = MapCellKind::facet;
   if (kind == MapCellKind::node || is_open_row()) kind = kind_by_border();
+  // What others are dominated by touches one plane: elsewhere they may be what supports.
+  if (kind == MapCellKind::node && !dominated_.empty() && !planes_.is_near(planes_.node().normal)) {
+    kind.reset();
+  }
   if (!kind && cell.level >= options_.level_limit) kind = MapCellKind::undecided;
   return kind;
 }

@@ -25,12 +25,13 @@ class CellPlanes {
   std::optional<Plane> facet();
   /// That which touches three branches. @pre there are three
   Plane node() const;
+  /// The normal is in the cell or beside it.
+  bool is_near(const dvec3& normal) const;
   /// What is left is near one plane because it is small: a few levels below it is near all planes.
   bool is_spot() const;
 
  private:
   void collect_points();
-  bool is_near(const dvec3& normal) const;
   double width() const;
 
   const CellView& view_;
