@@ -37,6 +37,9 @@ constexpr int side_steps = 3;
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
 /// How far from a border, in units of the resolution, what is tolerant may be told to be on it.
 constexpr double border_depths = 4;
+/// Rates at which a contact moves over an exit, as shares of those at which it moves, that are
+/// rounding where it runs along it.
+constexpr double along_border = 1e-9;
 /// How far before the way or beyond it a change may be by rounding, as a share; beside the
 /// resolution.
 constexpr double way_slack = 1e-9;
@@ -364,7 +367,8 @@ bool ArcSolver::leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
   const LinearEquation margin = exit_margin(geometry_, s, int(i), exit);
   double rate = glm::dot(margin.n, tangent->n);
   for (const std::size_t k : {0u, 1u}) rate += glm::dot(margin.parameter[k], tangent->parameter[k]);
-  return sense * rate < 0;
+  const double along = glm::length(tangent->n) + glm::length(tangent->parameter[i]);
+  return sense * rate < -std::abs(sense) * along * along_border;
 }
 
 /// The ruling with which contact i stands at the exit. Before an end in which contacts merge the
