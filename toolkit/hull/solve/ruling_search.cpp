@@ -72,6 +72,12 @@ double place_extent_of(const Scene& scene, const DirectionMap& map) {
   return is_rounded(scene, map.resolution) && map.resolution <= coarsest ? map.contact_extent() : 0;
 }
 
+/// The point of a round shape that supports in a direction.
+dvec3 top_of(const MapCell::Round& round, const dvec3& n) {
+  const dvec3 x = round.root * n;
+  return round.center + round.root * x / glm::length(x);
+}
+
 /// Where the great arc between two directions passes the plane in which both points are as high;
 /// in the middle, where it does not.
 dvec3 exchange(const SupportingContact& a, const SupportingContact& b) {
@@ -425,6 +431,11 @@ Ruling RulingSearch::at(const MapCrossing& crossing) const {
   const auto at = [&](int contact) { return cell.translates[std::size_t(contact)]; };
   if (!cell.translates.empty() && at(first).of == at(second).of) {
     apart = at(first).by - at(second).by;
+  } else if (!cell.rounds.empty()) {
+    const dvec3 n = unit(crossing.ends[0] + crossing.ends[1]);
+    const dvec3 way = top_of(cell.rounds[std::size_t(first)], n) -
+                      top_of(cell.rounds[std::size_t(second)], n);
+    if (glm::length(way) <= map_.contact_extent()) apart = way;
   }
   return bracketed(right, left, which, apart);
 }
