@@ -64,8 +64,8 @@ class GraphSolver {
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       tell_corners(arc.pieces, moved);
-      tell_along_joins(geometry_, arc.pieces, extent);
       turn_ends(geometry_, arc.pieces);
+      tell_along_joins(geometry_, arc.pieces, extent);
       join_in_crossings(arc);
     }
     graph_.newton_iterations = system_.iterations();
