@@ -55,6 +55,9 @@ struct Arc {
 
 /// The state of Part::connect. Points are numbered: the patches' corners, 4 * patch + corner, then
 /// the ends of the free curves' pieces.
+/// A line that is bent no more than with a radius of so many diagonals of its part was straight.
+constexpr double straight_radius = 100;
+
 class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,
@@ -67,6 +70,7 @@ class Connector {
         box_(box),
         progress_(progress),
         tolerance_(tolerance),
+        bent_(bent),
         free_piece_count_(to_int(pieces.size())),
         sides_(side_curves(patches, tolerance_)),
         smoothness_(patches, sides_, tolerance_, smooth_angle, grid, bent),
@@ -124,6 +128,7 @@ class Connector {
   const Box box_;
   const Progress& progress_;
   const double tolerance_;
+  const double bent_;  ///< so far off rounding may have moved straight segments
   const int free_piece_count_;
   const std::vector<SideCurve> sides_;
   const JoinSmoothness smoothness_;
@@ -275,11 +280,16 @@ void Connector::add_vertices(const std::vector<bool>& has_vertex) {
   }
 }
 
+/// Or was, before the part's numbers were rounded.
 bool Connector::is_straight(int end) const {
   const Arc& arc = arcs_[to_size(end / 2)];
-  return taut::is_straight(arc.join < 0
-                               ? pieces_[to_size(arc.piece)].bezier
-                               : sides_[to_size(joins_[to_size(arc.join)].front().side)].curve);
+  const BezierCurve& curve = arc.join < 0
+                                 ? pieces_[to_size(arc.piece)].bezier
+                                 : sides_[to_size(joins_[to_size(arc.join)].front().side)].curve;
+  if (taut::is_straight(curve)) return true;
+  const double off = distance_from_segment(curve);
+  const dvec3 chord = euclidean(curve.points.back()) - euclidean(curve.points.front());
+  return off <= bent_ && glm::dot(chord, chord) >= 8 * straight_radius * diagonal(box_) * off;
 }
 
 bool Connector::goes_straight_on(int end_a, int end_b) const {
@@ -414,9 +424,6 @@ void Connector::fill_repeated() {
     }
   }
 }
-
-/// A line that is bent no more than with a radius of so many diagonals of its part was straight.
-constexpr double straight_radius = 100;
 
 /// By how much the patch misses being ruled along u and v, where rounding alone may have made it.
 std::array<double, 2> distances_from_ruled(const BezierPatch& patch, double bent, double size) {

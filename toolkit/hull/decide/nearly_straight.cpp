@@ -106,75 +106,6 @@ std::optional<std::array<int, 2>> ends_if_straight(const MapPieces& pieces, cons
   return is_straight ? std::optional(ends) : std::nullopt;
 }
 
-/// Pieces one behind the other that lie along the segment between the two ends of all of them, each
-/// along its own: between two that bend away from it, or vertices.
-class StraightRun {
- public:
-  StraightRun(const MapPieces& pieces, int element, double budget)
-      : pieces_(pieces), budget_(budget), elements_({element}) {
-    if (!is_straight(element)) return;
-    const std::optional<dvec3> a = follow(element, 0);
-    const std::optional<dvec3> b = a ? follow(element, 1) : std::nullopt;
-    is_whole_ = b && std::all_of(elements_.begin(), elements_.end(),
-                                 [&](int k) { return is_along(k, *a, *b); });
-  }
-
-  bool is_whole() const { return is_whole_; }
-  const std::vector<int>& elements() const { return elements_; }
-  /// What it ends in.
-  const std::vector<int>& ends() const { return ends_; }
-
- private:
-  const Contact& contact(int element) const { return pieces_.element(element).contact; }
-  bool is_along(int element, const dvec3& a, const dvec3& b) const {
-    const StoredNet& net = pieces_.element(element).root->exact;
-    const dvec4* p = net.points;
-    return std::all_of(p, p + net.shape.size(), [&](const dvec4& x) {
-      return distance_to_segment(euclidean(x), a, b) <= budget_;
-    });
-  }
-  dvec3 end(int element, int number) const {
-    const StoredNet& net = pieces_.element(element).root->exact;
-    return euclidean(net.points[number == 0 ? 0 : net.shape.size() - 1]);
-  }
-  bool is_straight(int element) const {
-    return is_along(element, end(element, 0), end(element, 1));
-  }
-
-  /// From an end of a piece on; where it ends, and none if it is not told in what.
-  std::optional<dvec3> follow(int element, int number) {
-    for (;;) {
-      const Contact own = contact(element);
-      const EdgePiece& piece = pieces_.geometry().piece(own);
-      const int next = piece.end_neighbor[std::size_t(number)];
-      const int vertex = piece.end_vertex[std::size_t(number)];
-      const dvec3 there = end(element, number);
-      if (next < 0 && vertex < 0) return std::nullopt;
-      const Contact beyond = {own.instance, next < 0 ? SourceKind::vertex : SourceKind::edge,
-                              next < 0 ? vertex : next, 0, 0};
-      const int found = next < 0 ? pieces_.find_first(beyond) : pieces_.find(beyond);
-      if (found < 0 || std::count(elements_.begin(), elements_.end(), found) > 0) {
-        return std::nullopt;
-      }
-      if (next < 0 || !is_straight(found)) {
-        ends_.push_back(found);
-        return there;
-      }
-      const std::array<int, 2>& back = pieces_.geometry().piece(beyond).end_neighbor;
-      if (back[0] == back[1]) return std::nullopt;  // it cannot be told which end is the nearer
-      elements_.push_back(found);
-      number = back[0] == own.element ? 1 : 0;
-      element = found;
-    }
-  }
-
-  const MapPieces& pieces_;
-  double budget_;
-  std::vector<int> elements_;
-  std::vector<int> ends_;
-  bool is_whole_ = false;
-};
-
 }  // namespace
 
 NearlyStraight nearly_straight(const MapPieces& pieces, double budget) {
@@ -197,11 +128,6 @@ NearlyStraight nearly_straight(const MapPieces& pieces, double budget) {
       for (const int element : chain.elements()) result.edges[std::size_t(element)] = true;
       for (const int end : *ends) result.ends[std::size_t(end)] = true;
     }
-    if (result.edges[std::size_t(k)]) continue;
-    const StraightRun run(pieces, k, budget);
-    if (!run.is_whole()) continue;
-    for (const int element : run.elements()) result.edges[std::size_t(element)] = true;
-    for (const int end : run.ends()) result.ends[std::size_t(end)] = true;
   }
   return result;
 }
