@@ -77,7 +77,10 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   SupportQuery query(geometry.scene(), options.progress.stop);
   HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
   boundary.gap = directions.resolution;
-  find_tolerant_places(ContactSystem(geometry), query, boundary, rho);
+  // What is not closed is not known to anything.
+  if (boundary.unresolved.empty()) {
+    find_tolerant_places(ContactSystem(geometry), query, boundary, rho);
+  }
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();

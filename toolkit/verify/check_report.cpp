@@ -112,8 +112,7 @@ void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasu
   const double width = std::abs(measures.mean_width);
   // Along creases across which normals are not those of their faces the two widths differ by more:
   // by no more than is stated.
-  const double stated =
-      deepest > 0 ? number(find(exact, "measures_accuracy")).value_or(0) : 0;
+  const double stated = deepest > 0 ? number(find(exact, "measures_accuracy")).value_or(0) : 0;
   compare("mean_width", exact, measures.mean_width,
           accuracy + measures.mean_width_error + std::max(stated, 4 * deviation / width));
   // The area between parallel surfaces so far apart, by Steiner's formula, of either.

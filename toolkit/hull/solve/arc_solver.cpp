@@ -138,9 +138,8 @@ std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometr
       const Way next = {*over, at, border, glm::distance(x, aim),
                         std::max(here.low, least - glm::dot(x, n))};
       if (at > 0 && next.left > reach && !same_element(*over, to)) continue;
-      const auto known = std::find_if(ways.begin(), ways.end(), [&](const Way& way) {
-        return same_element(way.at, *over);
-      });
+      const auto known = std::find_if(ways.begin(), ways.end(),
+                                      [&](const Way& way) { return same_element(way.at, *over); });
       if (known == ways.end()) {
         ways.push_back(next);
       } else if (!known->done && comes_first(next, *known)) {
@@ -274,6 +273,7 @@ Ruling ArcSolver::inside(Ruling r) const {
 
 void ArcSolver::divide(const Ruling& to, int depth) {
   ++divisions_;
+  ++all_divisions_;
   const double way = gap(last(), to);
   if (!(way > search_.least_way())) return jump(to);
   const std::optional<Ruling> middle = search_.between(last(), to);
@@ -315,8 +315,8 @@ void ArcSolver::leap(const Ruling& to) {
   // Each contact over the borders between its elements, as far as these have one.
   for (std::size_t i = 0; i < 2; ++i) {
     if (same_element(last().contact[i], to.contact[i])) continue;
-    for (const auto& [from, over] : steps_between(
-             geometry_, last().contact[i], to.contact[i], last().n, search_.map().resolution)) {
+    for (const auto& [from, over] : steps_between(geometry_, last().contact[i], to.contact[i],
+                                                  last().n, search_.map().resolution)) {
       Ruling before = last();
       before.contact[i] = from;
       before.point[i] = geometry_.point(from);

@@ -19,6 +19,8 @@ class ArcSolver {
   /// Goes on to a ruling of the same curve: with others between, so dense that they follow each
   /// other smoothly, and a piece for each pair of elements that the contacts are in.
   void go_on(const Ruling& to);
+  /// How often ways between rulings have been divided.
+  int divisions() const { return all_divisions_; }
 
   /// Ends where one of the two contacts is, that of the lowest kind: the other goes straight there.
   void end_in_one_contact();
@@ -56,6 +58,7 @@ class ArcSolver {
   const ContactGeometry& geometry_;
   std::vector<ArcPiece> pieces_;
   int divisions_ = 0;
+  int all_divisions_ = 0;
   int passed_ = 0;  ///< changes of elements since the last ruling asked for
 };
 

@@ -93,9 +93,9 @@ void fill_dents(const ContactGeometry& geometry, double depth, FacetContacts& fa
     const std::size_t next = (k + 1) % count;
     const std::size_t before = (k + count - 1) % count;
     const bool is_straight = !facet.is_curved(k);
-    const auto after =
-        is_straight ? across_dent(geometry, facet.sides[before], true, facet.contacts[next])
-                    : std::nullopt;
+    const auto after = is_straight
+                           ? across_dent(geometry, facet.sides[before], true, facet.contacts[next])
+                           : std::nullopt;
     if (after && is_near_segment(geometry, *after, depth)) {
       facet.sides[before].to = after->to;
       erase(k, facet);

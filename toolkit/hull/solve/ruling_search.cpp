@@ -433,8 +433,8 @@ Ruling RulingSearch::at(const MapCrossing& crossing) const {
     apart = at(first).by - at(second).by;
   } else if (!cell.rounds.empty()) {
     const dvec3 n = unit(crossing.ends[0] + crossing.ends[1]);
-    const dvec3 way = top_of(cell.rounds[std::size_t(first)], n) -
-                      top_of(cell.rounds[std::size_t(second)], n);
+    const dvec3 way =
+        top_of(cell.rounds[std::size_t(first)], n) - top_of(cell.rounds[std::size_t(second)], n);
     if (glm::length(way) <= map_.contact_extent()) apart = way;
   }
   return bracketed(right, left, which, apart);

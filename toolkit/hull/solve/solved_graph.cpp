@@ -31,6 +31,11 @@ constexpr double place_depths = 8;
 /// Pieces of rounded models that may be none, in units of the way from one ruling to the next.
 constexpr double piece_ways = 4;
 
+/// Divisions of ways between rulings, and for each that is known, after which it is seen that what
+/// the map tells is no graph of arcs: as of maps that are left undecided.
+constexpr int divisions_limit = 1000;
+constexpr int divisions_limit_each = 4;
+
 /// Places between two on an edge at which it is seen whether it touches a plane.
 constexpr int places_along = 4;
 
@@ -44,11 +49,18 @@ class GraphSolver {
         system_(geometry),
         search_(system_, query, map),
         progress_(progress),
-        known_(with_ears_cut(search_, progress)) {}
+        known_(with_ears_cut(search_, progress)),
+        most_divisions_(divisions_limit + divisions_limit_each * int(known_count())) {}
 
   SeparatingGraph run() {
     find_facets();
-    for (std::size_t k = 0; k < known_.graph.arcs.size(); ++k) solve(k);
+    for (std::size_t k = 0; k < known_.graph.arcs.size() && !is_spent(); ++k) solve(k);
+    if (is_spent()) {
+      SeparatingGraph none;
+      none.unresolved.push_back({dvec3(0.0), "curves between contacts are not found"});
+      none.newton_iterations = system_.iterations();
+      return none;
+    }
     drop_arcs();
     const double resolution = search_.place_resolution();
     unite_edge_places(geometry_, graph_, place_depths * resolution, map_.contact_extent());
@@ -78,6 +90,13 @@ class GraphSolver {
     cut_ears(search, known);
     return known;
   }
+
+  std::size_t known_count() const {
+    std::size_t count = 0;
+    for (const std::vector<Ruling>& own : known_.rulings) count += own.size();
+    return count;
+  }
+  bool is_spent() const { return divisions_ > most_divisions_; }
 
   void fail(const dvec3& n, const char* reason) { graph_.unresolved.push_back({n, reason}); }
 
@@ -372,7 +391,11 @@ class GraphSolver {
     }
     if (arc.closed) known.push_back(known.front());
     ArcSolver solver(search_, known.front());
-    for (std::size_t i = 1; i < known.size(); ++i) solver.go_on(known[i]);
+    const int before = divisions_;
+    for (std::size_t i = 1; i < known.size() && !is_spent(); ++i) {
+      solver.go_on(known[i]);
+      divisions_ = before + solver.divisions();
+    }
     arc.pieces = solver.take();
     for (const int end : {1, 0}) {
       if (!merges[std::size_t(end)]) continue;
@@ -432,8 +455,10 @@ class GraphSolver {
   RulingSearch search_;
   const Progress& progress_;
   KnownArcs known_;
+  const int most_divisions_;
   std::vector<int> number_;  // of a told node in the graph, -1: a free end
   SeparatingGraph graph_;
+  int divisions_ = 0;
 };
 
 }  // namespace

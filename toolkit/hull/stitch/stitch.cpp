@@ -47,8 +47,7 @@ class Stitcher {
   static std::vector<TrimRegion> regions_of(const ContactGeometry& geometry, SupportQuery& query,
                                             const SeparatingGraph& graph, double depth,
                                             std::vector<Unresolved>& unresolved) {
-    std::vector<TrimRegion> regions =
-        trim_regions(geometry, graph, unresolved, std::sqrt(depth));
+    std::vector<TrimRegion> regions = trim_regions(geometry, graph, unresolved, std::sqrt(depth));
     add_whole_patches(geometry, query, graph, depth, regions, unresolved);
     return regions;
   }
