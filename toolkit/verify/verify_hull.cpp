@@ -98,7 +98,6 @@ class HullVerifier {
  private:
   void check_bounds();
   void check_structure();
-  double risen(int source, const SourcePlace& place, const dvec3& n) const;
   void check_contact(const HullDocument::Contact& c, const dvec3& n, double bound);
   void check_height(double length, double bound);
   void check_facet(const HullDocument::Face& facet);
@@ -206,26 +205,6 @@ double rise(const SourceJet& jet, const dvec2& t, const dvec3& n,
   return steepest;
 }
 
-/// How far a source is above one of its places at most, along its parameters: at steps of all
-/// sizes, between which it may be higher by a fourth.
-double HullVerifier::risen(int source, const SourcePlace& place, const dvec3& n) const {
-  constexpr int halvings = 40;
-  constexpr double between_steps = 4.0 / 3;
-  const SourceJet own = geometry_.jet(source, place);
-  double most = 0;
-  for (int k = 0; k < own.dimension; ++k) {
-    for (const double end : {0.0, 1.0}) {
-      double way = end - place.t[k];
-      for (int step = 0; step < halvings && way != 0; ++step, way *= 0.5) {
-        SourcePlace there = place;
-        there.t[k] = place.t[k] + way;
-        raise(most, between_steps * glm::dot(geometry_.jet(source, there).x - own.x, n));
-      }
-    }
-  }
-  return most;
-}
-
 /// The contact is on one of its patches, and none that meet there rises, where it is told to
 /// support exactly: what is within a bound below the supporting plane need not be tangent.
 void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n, double bound) {
@@ -243,12 +222,7 @@ void HullVerifier::check_contact(const HullDocument::Contact& c, const dvec3& n,
     // Patches that are no neighbours may have these parameters too.
     if (off[i] > least + geometry_.noise()) continue;
     const SourceJet jet = geometry_.jet(c.source, places[i]);
-    const double slope = rise(jet, places[i].t, n, stated_);
-    const dvec2& t = places[i].t;
-    const bool is_end = std::min({t.x, t.y, 1 - t.x, 1 - t.y}) <= 0;
-    const bool height_counts = slope > geometry_.noise() && (stated_.is_of_model || is_end);
-    raise(result_.tangency,
-          relative(height_counts ? std::min(slope, risen(c.source, places[i], n)) : slope));
+    raise(result_.tangency, relative(rise(jet, places[i].t, n, stated_)));
   }
 }
 
