@@ -53,6 +53,17 @@ TEST(CurveChains, Close) {
   EXPECT_FALSE(chains({element(0, 1, {a, b, far})})[0].closed);
 }
 
+/// A corner is where other curves end.
+TEST(CurveChains, EndInCorners) {
+  const std::vector<CurveElement> elements = {element(0, 1, {a, b}), element(0, 1, {b, c}),
+                                              element(0, 1, {c, a})};
+  const std::vector<CurveChain> one = chains(elements, {b});
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_FALSE(one[0].closed);
+  EXPECT_EQ(points_along(one[0], elements), (std::vector<dvec3>{b, c, a, b}));
+  EXPECT_EQ(chains(elements, {a, c}).size(), 2U);
+}
+
 TEST(CurveChains, KeepFacesAndSourcesApart) {
   std::vector<CurveElement> elements = {element(1, 2, {a, b}), element(0, 2, {b, c}),
                                         element(1, 2, {b, d}), element(1, 2, {d, c})};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "exact_checks.h"
 #include "freeform.h"
 #include "judge/families.h"
+#include "judge/sweeps.h"
 #include "models.h"
 #include "sound_hull.h"
 #include "taut/bounds/support_query.h"
@@ -349,6 +351,96 @@ TEST(SolvedHull, IsToldAtACoarserResolutionWhereTheModelsDoesNotDo) {
   EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{2, 5, 5}));
   options.resolution = own / scene.diagonal();
   EXPECT_THROW(precise_hull(scene, options), HullNotConverged);
+}
+
+BoundaryMeasures measured(const Scene& scene, const Hull& hull) {
+  return measure(scene, ContactGeometry(scene), *hull.boundary);
+}
+
+/// A cubic in a plane, that bends in before its end by less than the resolution or more, and a
+/// point: its plane's facet closes with what it spans, and the cone has no other face.
+TEST(SolvedHull, OfACurveThatBendsInBeforeItsEndAndAPoint) {
+  for (const double in : {1e-5, 1e-4, 3e-4, 1e-3, 2e-3}) {
+    SCOPED_TRACE(in);
+    const NurbsCurve curve = {3,
+                              {0, 0, 0, 0, 1, 1, 1, 1},
+                              {{0, 0, 0, 1}, {1, 0, 1, 1}, {2, 0, 0.6, 1}, {3, 0, 0.2 + in, 1}}};
+    const Scene scene = make_scene({{}, {curve}, {{1, 3, 0}}});
+    const Hull hull = solved_hull_of(scene);
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 1, 2}));
+    EXPECT_LE(hull.boundary->frame.length_to_model(deepest_tolerant(*hull.boundary)),
+              hull.resolution.rho);
+    // Above the chord, but for the dent.
+    const double base = 3 * (1 + 0.6 + 0.2 + in) / 4 - 1.5 * (0.2 + in);
+    EXPECT_NEAR(measured(scene, hull).volume, base, 1e-7);
+  }
+}
+
+/// A profile that is closed in a corner: the wall is one scroll, which begins and ends there, and
+/// the curves along it do.
+TEST(SolvedHull, OfAWallThatIsClosedInACorner) {
+  // In two pieces: (12 t (1 - t), 9 t (1 - t) (1 - 2 t)).
+  NurbsCurve drop = {3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}, {}};
+  for (const dvec2& p : {dvec2(0, 0), {2, 1.5}, {3, 0.75}, {3, 0}, {3, -0.75}, {2, -1.5}, {0, 0}}) {
+    drop.points.emplace_back(p, 0, 1);
+  }
+  const Scene scene = make_scene({{extruded(drop, dvec3(0, 0, 2))}, {}, {}});
+  const Hull hull = solved_hull_of(scene);
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 1, 2}));
+  ASSERT_EQ(hull.boundary->curves.size(), 3U);
+  for (const HullCurve& curve : hull.boundary->curves) EXPECT_FALSE(curve.closed);
+  EXPECT_NEAR(measured(scene, hull).volume, 2 * 3.6, 1e-10);
+}
+
+/// A profile of one curve with straight parts, as files have it: rounding bends these.
+TEST(SolvedHull, OfStraightPartsOfCurvesIsTheSameWhenRounded) {
+  const std::vector<dvec2> profile = {{3, 0},   {3, 2},  {0, 2},    {-1.5, 2}, {-3, 2}, {-3, 0},
+                                      {-3, -2}, {0, -2}, {1.5, -2}, {3, -2},   {3, 0}};
+  NurbsCurve slot = {2, {0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9}, {}};
+  for (const dvec2& p : profile) slot.points.emplace_back(p, 0, 1);
+  const Shape shape = {{extruded(slot, dvec3(0, 0, 4))}, {}, {}};
+  Random random(7);
+  std::optional<FaceCounts> counts;
+  for (const Variant variant : all_variants) {
+    SCOPED_TRACE(name_of(variant));
+    const Hull hull = solved_hull_of(make_scene(placed({shape, {}, {}}, variant, random).shape));
+    ASSERT_TRUE(hull.boundary);
+    if (!counts) counts = face_counts(*hull.boundary);
+    EXPECT_EQ(face_counts(*hull.boundary), *counts);
+    EXPECT_EQ(hull.statistics.map_undecided, 0);
+    EXPECT_LE(hull.boundary->frame.length_to_model(deepest_tolerant(*hull.boundary)),
+              hull.resolution.rho);
+  }
+}
+
+/// Contacts of equal spheres run along a join on both, and those of others all but in one place are
+/// told by the shapes.
+TEST(SolvedHull, OfSpheresNextToEachOther) {
+  for (const double way : {1e-6, 1e-3}) {
+    SCOPED_TRACE(way);
+    const Scene scene = make_scene(sphere(1) + shifted(sphere(1), dvec3(0, 0, way)));
+    const Hull hull = solved_hull_of(scene);
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{2, 1, 0}));
+    EXPECT_NEAR(measured(scene, hull).volume, 4 * pi / 3 + pi * way, 1e-11);
+  }
+  const Hull hull = solved_hull_of(make_scene(sphere(1) + shifted(sphere(1 - 1e-6), {0, 0, 1e-5})));
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_TRUE(hull.boundary->unresolved.empty());
+  EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{2, 1, 0}));
+}
+
+/// Planes of three of them are far from the cells in which they are the highest.
+TEST(SolvedHull, OfSpheresNearlyInARow) {
+  const Scene scene = make_scene(
+      shifted(sphere(1), dvec3(5, 0.05, 0.045)) + shifted(sphere(1), dvec3(7.5, 0.065, 0.079)) +
+      shifted(sphere(1), dvec3(10, 0.009, 0.003)) + shifted(sphere(1), dvec3(12.5, 0.084, 0.043)));
+  const Hull hull = solved_hull_of(scene);
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_TRUE(hull.boundary->unresolved.empty());
+  EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{4, 6, 4}));
 }
 
 /// It is told, and there is a closed boundary with its depth all the same.
