@@ -85,13 +85,32 @@ Contact passed_on_side(const ContactGeometry& geometry, Contact c, Side side, co
   return c;
 }
 
-/// Borders from one element to another that a contact passes, in each as one of the element before
-/// and one of that beyond: always on from the element that has come the nearest, over borders that
-/// are no farther than `depth` below the two along n, or else are the highest. None if there are
-/// more than some between the two.
-std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometry,
-                                                  const Contact& from, const Contact& to,
-                                                  const dvec3& n, double depth) {
+/// Ways over borders from one element to another: always on from the element that has come the
+/// nearest, over borders that are no farther than some depth below the two along n, or else are the
+/// highest.
+class WaySearch {
+ public:
+  WaySearch(const ContactGeometry& geometry, const Contact& from, const Contact& to, const dvec3& n,
+            double depth)
+      : geometry_(geometry),
+        to_(to),
+        aim_(geometry.point(to)),
+        n_(n),
+        least_(std::min(glm::dot(geometry.point(from), n), glm::dot(aim_, n)) - depth),
+        ways_({{from, -1, from, glm::distance(geometry.point(from), aim_)}}) {}
+
+  /// Borders that are passed, in each the contact as one of the element before and one of that
+  /// beyond. None if there are more than some elements between the two.
+  std::vector<std::array<Contact, 2>> run() {
+    for (int at = 0; at >= 0 && int(ways_.size()) < most_passed; at = nearest()) {
+      way(at).done = true;
+      if (same_element(way(at).at, to_)) return steps_to(at);
+      for (const ContactExit& exit : exits(geometry_, way(at).at)) go_on(at, exit);
+    }
+    return {};
+  }
+
+ private:
   struct Way {
     Contact at;
     int before = -1;
@@ -99,56 +118,58 @@ std::vector<std::array<Contact, 2>> steps_between(const ContactGeometry& geometr
     double left = 0;    ///< from where it goes
     double low = 0;     ///< how far below the depth a border was on the way, at most
     bool done = false;  ///< it has been gone on from
+
+    bool comes_before(const Way& other) const {
+      return low != other.low ? low < other.low : left < other.left;
+    }
   };
-  const dvec3 aim = geometry.point(to);
-  const double least =
-      std::min(glm::dot(geometry.point(from), n), glm::dot(geometry.point(to), n)) - depth;
-  std::vector<Way> ways = {{from, -1, from, glm::distance(geometry.point(from), aim)}};
-  const auto comes_first = [](const Way& a, const Way& b) {
-    return a.low != b.low ? a.low < b.low : a.left < b.left;
-  };
-  const double reach = astray * ways.front().left;
-  const auto nearest = [&] {
+  Way& way(int k) { return ways_[std::size_t(k)]; }
+
+  int nearest() {
     int best = -1;
-    for (int k = 0; k < int(ways.size()); ++k) {
-      const Way& way = ways[std::size_t(k)];
-      if (!way.done && (best < 0 || comes_first(way, ways[std::size_t(best)]))) best = k;
+    for (int k = 0; k < int(ways_.size()); ++k) {
+      if (!way(k).done && (best < 0 || way(k).comes_before(way(best)))) best = k;
     }
     return best;
-  };
-  for (int at = 0; at >= 0 && int(ways.size()) < most_passed; at = nearest()) {
-    ways[std::size_t(at)].done = true;
-    const Way here = ways[std::size_t(at)];
-    if (same_element(here.at, to)) {
-      std::vector<std::array<Contact, 2>> steps;
-      for (int k = at; ways[std::size_t(k)].before >= 0; k = ways[std::size_t(k)].before) {
-        steps.push_back({ways[std::size_t(k)].border, ways[std::size_t(k)].at});
-      }
-      std::reverse(steps.begin(), steps.end());
-      return steps;
+  }
+
+  void go_on(int from, const ContactExit& exit) {
+    const Way here = way(from);
+    Contact border = at_exit(here.at, exit);
+    if (exit.kind == ContactExit::Kind::side) {
+      border = passed_on_side(geometry_, border, Side(exit.index), geometry_.point(here.at), aim_);
     }
-    for (const ContactExit& exit : exits(geometry, here.at)) {
-      Contact border = at_exit(here.at, exit);
-      if (exit.kind == ContactExit::Kind::side) {
-        border = passed_on_side(geometry, border, Side(exit.index), geometry.point(here.at), aim);
-      }
-      const std::optional<Contact> over = beyond(geometry, border, exit);
-      if (!over) continue;
-      const dvec3 x = geometry.point(*over);
-      const Way next = {*over, at, border, glm::distance(x, aim),
-                        std::max(here.low, least - glm::dot(x, n))};
-      if (at > 0 && next.left > reach && !same_element(*over, to)) continue;
-      const auto known = std::find_if(ways.begin(), ways.end(),
-                                      [&](const Way& way) { return same_element(way.at, *over); });
-      if (known == ways.end()) {
-        ways.push_back(next);
-      } else if (!known->done && comes_first(next, *known)) {
-        *known = next;
-      }
+    const std::optional<Contact> over = beyond(geometry_, border, exit);
+    if (!over) return;
+    const dvec3 x = geometry_.point(*over);
+    const Way next = {*over, from, border, glm::distance(x, aim_),
+                      std::max(here.low, least_ - glm::dot(x, n_))};
+    const double reach = astray * ways_.front().left;
+    if (from > 0 && next.left > reach && !same_element(*over, to_)) return;
+    const auto known = std::find_if(ways_.begin(), ways_.end(),
+                                    [&](const Way& w) { return same_element(w.at, *over); });
+    if (known == ways_.end()) {
+      ways_.push_back(next);
+    } else if (!known->done && next.comes_before(*known)) {
+      *known = next;
     }
   }
-  return {};
-}
+
+  std::vector<std::array<Contact, 2>> steps_to(int end) {
+    std::vector<std::array<Contact, 2>> steps;
+    for (int k = end; way(k).before >= 0; k = way(k).before) {
+      steps.push_back({way(k).border, way(k).at});
+    }
+    std::reverse(steps.begin(), steps.end());
+    return steps;
+  }
+
+  const ContactGeometry& geometry_;
+  const Contact& to_;
+  const dvec3 aim_, n_;
+  const double least_;
+  std::vector<Way> ways_;
+};
 
 bool are_vertices(const Ruling& r) {
   return r.contact[0].kind == SourceKind::vertex && r.contact[1].kind == SourceKind::vertex;
@@ -315,8 +336,9 @@ void ArcSolver::leap(const Ruling& to) {
   // Each contact over the borders between its elements, as far as these have one.
   for (std::size_t i = 0; i < 2; ++i) {
     if (same_element(last().contact[i], to.contact[i])) continue;
-    for (const auto& [from, over] : steps_between(geometry_, last().contact[i], to.contact[i],
-                                                  last().n, search_.map().resolution)) {
+    WaySearch search(geometry_, last().contact[i], to.contact[i], last().n,
+                     search_.map().resolution);
+    for (const auto& [from, over] : search.run()) {
       Ruling before = last();
       before.contact[i] = from;
       before.point[i] = geometry_.point(from);
