@@ -53,11 +53,11 @@ struct Arc {
   int piece = -1;                          ///< its number in Part::pieces
 };
 
-/// The state of Part::connect. Points are numbered: the patches' corners, 4 * patch + corner, then
-/// the ends of the free curves' pieces.
 /// A line that is bent no more than with a radius of so many diagonals of its part was straight.
 constexpr double straight_radius = 100;
 
+/// The state of Part::connect. Points are numbered: the patches' corners, 4 * patch + corner, then
+/// the ends of the free curves' pieces.
 class Connector {
  public:
   Connector(std::vector<Patch>& patches, std::vector<EdgePiece>& pieces, std::vector<Edge>& edges,

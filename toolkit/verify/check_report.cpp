@@ -110,11 +110,8 @@ void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasu
   for (const HullDocument::Face& face : hull.faces) raise(deepest, face.tolerant);
   raise(deviation, deepest);
   const double width = std::abs(measures.mean_width);
-  // Along creases across which normals are not those of their faces the two widths differ by more:
-  // by no more than is stated.
-  const double stated = deepest > 0 ? number(find(exact, "measures_accuracy")).value_or(0) : 0;
   compare("mean_width", exact, measures.mean_width,
-          accuracy + measures.mean_width_error + std::max(stated, 4 * deviation / width));
+          accuracy + measures.mean_width_error + 4 * deviation / width);
   // The area between parallel surfaces so far apart, by Steiner's formula, of either.
   const double of_places = 8 * std::numbers::pi * deepest * width;
   compare(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -145,8 +146,8 @@ class EdgePlaces {
     const auto at = moved->second.lower_bound(t - same_parameter);
     return at != moved->second.end() && at->first <= t + same_parameter ? at->second : t;
   }
-  /// Parameters of a join as its two patches have them differ by rounding.
-  static constexpr double same_parameter = 1e-15;
+  /// Parameters t of a join differ so much by being told as 1 - (1 - t).
+  static constexpr double same_parameter = std::numeric_limits<double>::epsilon();
 
   double length(const Line& line) const {
     const auto& [instance, piece, patch, side] = line;

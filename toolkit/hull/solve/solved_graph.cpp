@@ -196,7 +196,7 @@ class GraphSolver {
   /// From the middle of the directions beside the node or, where that leads nowhere, from each.
   TouchingPlane plane_of(const MapGraph::Node& node, const NodeCorners& corners) {
     TouchingPlane plane = touching_plane(geometry_, query_, corners.n, corners.contacts);
-    const bool is_lost = has_merged(plane, corners);
+    const bool is_lost = plane.in_line && has_merged(plane, corners);
     if (plane.off() <= map_.resolution && !is_lost) return plane;
     for (std::size_t k = 0; k < node.ends.size(); ++k) {
       const Ruling& r = known_.ruling_at(node.ends[k]);
