@@ -28,6 +28,13 @@ double curvature_of(const SeparatingArc& arc) {
   return double(sums.value[curvature]);
 }
 
+void expect_joints(const HullBoundary& boundary, double value, double error) {
+  Sums sums;
+  add_joints(boundary, sums);
+  EXPECT_NEAR(double(sums.value[curvature]), value, 1e-15);
+  EXPECT_NEAR(sums.error[curvature], error, 1e-15);
+}
+
 TEST(ArcJoints, ACreaseIsHalfOfLengthTimesAngle) {
   const SeparatingArc arc{{piece(x, y, dvec3(0.0), 3.0 * z)}};
   EXPECT_NEAR(curvature_of(arc), 0.5 * 3 * pi / 2, 1e-15);
@@ -44,10 +51,11 @@ TEST(ArcJoints, VerticesInLineAreOneCrease) {
   EXPECT_NEAR(curvature_of(arc), 0.5 * 3 * pi / 2, 1e-15);
   HullBoundary boundary;
   boundary.arcs = {arc};
-  EXPECT_EQ(open_joints(boundary), 0);
+  expect_joints(boundary, 0, 0);
 }
 
-TEST(ArcJoints, WhatIsLeftOutIsTold) {
+/// Along a ruling at which n turns, and of which a contact makes a step.
+TEST(ArcJoints, AreCreases) {
   const dvec3 n = unit(x + y);
   const auto joined = [&](const dvec3& after, const dvec3& end) {
     SeparatingArc arc{{piece(x, n, dvec3(0.0), z, SourceKind::edge),
@@ -56,24 +64,28 @@ TEST(ArcJoints, WhatIsLeftOutIsTold) {
     boundary.arcs = {arc};
     return boundary;
   };
-  EXPECT_EQ(open_joints(joined(n, z)), 0);
-  // The turn to the next n, and the step of a contact.
-  EXPECT_NEAR(open_joints(joined(y, z)), 0.5 * pi / 4, 1e-15);
+  expect_joints(joined(n, z), 0, 0);
+  expect_joints(joined(y, z), 0.5 * pi / 4, 0);
+  // What n turns by across the ruling is no crease along it.
+  const double across = std::acos(std::sqrt(2.0 / 3));
+  expect_joints(joined(unit(x + y + z), z), 0, 0.5 * across);
   HullBoundary stepped = joined(n, 1.25 * z);
-  EXPECT_NEAR(open_joints(stepped), 0.5 * pi * 0.25, 1e-15);
+  expect_joints(stepped, 0, 0.5 * pi * 0.25);
   stepped.gap = 0.25;
-  EXPECT_EQ(open_joints(stepped), 0);
+  expect_joints(stepped, 0, 0);
 
   HullBoundary closed = joined(n, z);
   closed.arcs[0].closed = true;
-  EXPECT_NEAR(open_joints(closed), 0.5 * pi / 2, 1e-15);
+  expect_joints(closed, -0.5 * pi / 2, 0);
 
   HullBoundary ends = joined(n, z);
   ends.faces.resize(2);
-  ends.faces[0].n = x;
+  ends.faces[0].n = unit(x - y);
   ends.faces[1].n = n;
   ends.arcs[0].facet = {0, 1};
-  EXPECT_NEAR(open_joints(ends), 0.5 * pi / 4, 1e-15);
+  expect_joints(ends, 0.5 * pi / 4 - 0.5 * pi / 4, 0);
+  ends.faces[1].n = y;
+  expect_joints(ends, 0.5 * pi / 4, 0);
 }
 
 }  // namespace

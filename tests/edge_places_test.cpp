@@ -21,6 +21,8 @@ SeparatingArc along_curve(const ContactGeometry& geometry, double from, double t
   return arc;
 }
 
+bool everywhere(const Contact&) { return true; }
+
 TEST(EdgePlaces, AreOneWithinADistance) {
   const Scene scene = make_scene({{}, {twisted_cubic()}, {{0, 0, 5}}});
   const ContactGeometry geometry(scene);
@@ -28,7 +30,7 @@ TEST(EdgePlaces, AreOneWithinADistance) {
   graph.arcs.push_back(along_curve(geometry, 1e-9, 0.3));
   graph.arcs.push_back(along_curve(geometry, 0.3 + 1e-9, 0.6));
   graph.arcs.push_back(along_curve(geometry, 0.6 + 1e-3, 1 - 1e-9));
-  unite_edge_places(geometry, graph, 1e-7);
+  unite_edge_places(geometry, graph, 1e-7, 0, everywhere);
   const auto end = [&](std::size_t arc, bool last) {
     const std::vector<Ruling>& rulings = graph.arcs[arc].pieces.front().rulings;
     return (last ? rulings.back() : rulings.front()).contact[0].u;
@@ -51,7 +53,7 @@ TEST(EdgePlaces, EndsOfAShortEdgeStayApart) {
   SeparatingGraph graph;
   graph.arcs.push_back(along_curve(geometry, 0, 0.2));
   graph.arcs.push_back(along_curve(geometry, 0.8, 1));
-  unite_edge_places(geometry, graph, 10);
+  unite_edge_places(geometry, graph, 10, 0, everywhere);
   const auto ends = [&](std::size_t arc) {
     const std::vector<Ruling>& rulings = graph.arcs[arc].pieces.front().rulings;
     return std::array{rulings.front().contact[0].u, rulings.back().contact[0].u};
@@ -71,7 +73,7 @@ TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {
     FacetNode facet;
     facet.sides = {EdgeStretch{0, 0, side_end, 0.8}};
     graph.nodes.push_back(facet);
-    unite_edge_places(geometry, graph, 1e-7, 1e-4);
+    unite_edge_places(geometry, graph, 1e-7, 1e-4, everywhere);
     return graph;
   };
   const auto begin = [](const SeparatingGraph& graph, std::size_t arc) {

@@ -769,8 +769,9 @@ TEST(Model, SmoothWhicheverSidesMeet) {
   }
 }
 
-/// A tube of one patch, closed on itself with and without a kink.
-TEST(Model, PatchClosedOnItself) {
+/// A tube of one patch, closed on itself with and without a kink: of two, so that none goes on into
+/// itself, whichever parameter runs around it.
+TEST(Model, PatchClosedOnItselfIsHalved) {
   for (const bool kink : {false, true}) {
     std::vector<dvec2> section = {dvec2(0, 0),  dvec2(1, 0),  dvec2(2, 3),
                                   dvec2(-2, 3), dvec2(-1, 0), dvec2(0, 0)};
@@ -780,18 +781,36 @@ TEST(Model, PatchClosedOnItself) {
       tube.points.push_back(homogeneous(dvec3(p, 0)));
       tube.points.push_back(homogeneous(dvec3(p, 4)));
     }
-    const Part part = connected({{as_nurbs(tube)}, {}, {}});
-    expect_counts(part, kink ? 3 : 2, kink ? 2 : 0);
-    const Border& seam = part.patches()[0].borders[0];
-    EXPECT_EQ(seam.kind, kink ? BorderKind::edge : BorderKind::smooth);
-    EXPECT_EQ(seam.neighbor, 0);
-    EXPECT_EQ(seam.neighbor_side, Side::u1);
-    if (kink) {
-      EXPECT_EQ(part.edges()[to_size(seam.edge)].faces, (std::vector<int>{0, 0}));
-    } else {
-      EXPECT_EQ(part.pieces()[0].end_neighbor, (std::array<int, 2>{0, 0}));
+    for (const bool turned : {false, true}) {
+      const BezierPatch own = turned ? transposed(tube) : tube;
+      const Part part = connected({{as_nurbs(own)}, {}, {}});
+      expect_counts(part, kink ? 3 : 2, kink ? 2 : 0);
+      ASSERT_EQ(part.patches().size(), 2u);
+      const Patch& first = part.patches()[0];
+      const Interval& t = turned ? first.v : first.u;
+      EXPECT_EQ(t.upper, 0.5);
+      EXPECT_EQ(point(first.bezier, turned ? 0.3 : 0.5, turned ? 0.5 : 0.3),
+                point(own, turned ? 0.3 : 0.25, turned ? 0.25 : 0.3));
+      const Border& seam = first.borders[std::size_t(turned ? Side::v0 : Side::u0)];
+      EXPECT_EQ(seam.kind, kink ? BorderKind::edge : BorderKind::smooth);
+      EXPECT_EQ(seam.neighbor, 1);
+      EXPECT_EQ(seam.neighbor_side, turned ? Side::v1 : Side::u1);
+      if (kink) {
+        EXPECT_EQ(part.edges()[to_size(seam.edge)].faces, (std::vector<int>{0, 0}));
+      }
     }
   }
+}
+
+/// A curve of one closed piece is of two.
+TEST(Model, CurveClosedOnItselfIsHalved) {
+  const BezierCurve loop = {
+      {dvec4(0, 0, 0, 1), dvec4(4, 3, 0, 1), dvec4(4, -3, 0, 1), dvec4(0, 0, 0, 1)}};
+  const Part part = connected({{}, {as_nurbs(loop)}, {}});
+  ASSERT_EQ(part.pieces().size(), 2u);
+  EXPECT_EQ(part.edges().size(), 1u);
+  EXPECT_EQ(part.pieces()[1].t.lower, 0.5);
+  EXPECT_EQ(point(part.pieces()[0].bezier, 1), point(loop, 0.5));
 }
 
 TEST(Model, OtherDegreesAndWeightsOnTheOtherSide) {

@@ -386,14 +386,17 @@ TEST(SolvedHull, OfACurveThatBendsInBeforeItsEndAndAPoint) {
 /// A profile that is closed in a corner: the wall is one scroll, which begins and ends there, and
 /// the curves along it do.
 TEST(SolvedHull, OfAWallThatIsClosedInACorner) {
-  // In two pieces: (12 t (1 - t), 9 t (1 - t) (1 - 2 t)).
-  NurbsCurve drop = {3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}, {}};
+  // (12 t (1 - t), 9 t (1 - t) (1 - 2 t)), in one piece and in two.
+  NurbsCurve whole = {3, {0, 0, 0, 0, 1, 1, 1, 1}, {}};
+  for (const dvec2& p : {dvec2(0, 0), {4, 3}, {4, -3}, {0, 0}}) whole.points.emplace_back(p, 0, 1);
+  NurbsCurve halves = {3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}, {}};
   for (const dvec2& p : {dvec2(0, 0), {2, 1.5}, {3, 0.75}, {3, 0}, {3, -0.75}, {2, -1.5}, {0, 0}}) {
-    drop.points.emplace_back(p, 0, 1);
+    halves.points.emplace_back(p, 0, 1);
   }
-  const Shape wall = {{extruded(drop, dvec3(0, 0, 2))}, {}, {}};
   Random random(7);
-  for (const Variant variant : all_variants) {
+  for (int k = 0; k < 2 * int(std::size(all_variants)); ++k) {
+    const Variant variant = all_variants[std::size_t(k / 2)];
+    const Shape wall = {{extruded(k % 2 == 0 ? whole : halves, dvec3(0, 0, 2))}, {}, {}};
     SCOPED_TRACE(name_of(variant));
     const Scene scene = make_scene(placed({wall, {}, {}}, variant, random).shape);
     const Hull hull = solved_hull_of(scene);

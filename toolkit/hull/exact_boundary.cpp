@@ -30,7 +30,7 @@ constexpr long few_undecided = 4096;
 
 /// Finer maps that are asked, as shares of the resolution, and for how many times as many pieces,
 /// together.
-constexpr std::array finer_maps = {1. / 2, 1. / 4, 1. / 16, 1. / 64};
+constexpr std::array finer_maps = {1. / 4, 1. / 16, 1. / 64};
 constexpr long finer_map_times = 2;
 
 /// Spots that could not be resolved beyond which it does not help to know more.
@@ -124,8 +124,7 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
     if (is_within(other, rho)) return other;
     boundary = std::move(other);
   }
-  // What is bent stays so in finer maps.
-  if (boundary.unresolved.size() > few_open_spots || directions.bent > 0) return boundary;
+  if (boundary.unresolved.size() > few_open_spots) return boundary;
   for (const double share : finer_maps) {
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
     left -= finer.statistics.candidates;

@@ -52,6 +52,99 @@ Box with(Box box, const Part& part, const RigidMotion& pose) {
   return box;
 }
 
+/// Ends of a single Bezier piece no farther from each other than so much of its length may be one.
+constexpr double closing_share = 1e-3;
+
+/// A row of control points ends where it begins; one that is a point does.
+bool is_closed(const dvec4* points, std::size_t count, std::size_t stride) {
+  double length = 0;
+  for (std::size_t k = 1; k < count; ++k) {
+    length += glm::distance(euclidean(points[(k - 1) * stride]), euclidean(points[k * stride]));
+  }
+  const double off = glm::distance(euclidean(points[0]), euclidean(points[(count - 1) * stride]));
+  return off <= closing_share * length;
+}
+
+std::array<Interval, 2> halves(const Interval& t) {
+  const double middle = 0.5 * t.lower + 0.5 * t.upper;
+  return {Interval{t.lower, middle}, Interval{middle, t.upper}};
+}
+bool can_be_halved(const Interval& t) {
+  const double middle = halves(t)[0].upper;
+  return t.lower < middle && middle < t.upper;
+}
+constexpr std::array<Interval, 2> unit_halves = {Interval{0, 0.5}, Interval{0.5, 1}};
+
+/// The Bezier pieces of a curve; a single one that is closed is halved, so that no piece goes on
+/// into itself.
+std::vector<CurvePiece> pieces_of(const NurbsCurve& curve) {
+  std::vector<CurvePiece> pieces = decompose(curve);
+  if (pieces.size() != 1) return pieces;
+  const CurvePiece whole = pieces.front();
+  if (!can_be_halved(whole.t) ||
+      !is_closed(whole.bezier.points.data(), whole.bezier.points.size(), 1)) {
+    return pieces;
+  }
+  pieces.clear();
+  for (std::size_t k = 0; k < 2; ++k) {
+    pieces.push_back({restricted(whole.bezier, unit_halves[k]), halves(whole.t)[k]});
+  }
+  return pieces;
+}
+
+/// Of patches that are alone in a direction in which the surface may be closed, those that end in
+/// their own other side.
+bool is_closed_in_u(const BezierPatch& p) {
+  const std::size_t columns = to_size(p.degree_v) + 1;
+  for (std::size_t j = 0; j < columns; ++j) {
+    if (!is_closed(&p.points[j], to_size(p.degree_u) + 1, columns)) return false;
+  }
+  return true;
+}
+bool is_closed_in_v(const BezierPatch& p) {
+  const std::size_t columns = to_size(p.degree_v) + 1;
+  for (std::size_t i = 0; i <= to_size(p.degree_u); ++i) {
+    if (!is_closed(&p.points[i * columns], columns, 1)) return false;
+  }
+  return true;
+}
+
+/// The Bezier patches of a surface, v within u; rows of patches that would go on into themselves
+/// are halved.
+std::vector<PatchPiece> pieces_of(const NurbsSurface& surface) {
+  std::vector<PatchPiece> pieces = decompose(surface);
+  const auto all = [&](auto is_so) { return std::all_of(pieces.begin(), pieces.end(), is_so); };
+  const Interval u = surface.domain_u();
+  const Interval v = surface.domain_v();
+  const bool in_u =
+      can_be_halved(u) && all([&](const PatchPiece& p) {
+        return p.u.lower == u.lower && p.u.upper == u.upper && is_closed_in_u(p.bezier);
+      });
+  const bool in_v =
+      can_be_halved(v) && all([&](const PatchPiece& p) {
+        return p.v.lower == v.lower && p.v.upper == v.upper && is_closed_in_v(p.bezier);
+      });
+  const auto split_along = [&](bool along_u) {
+    std::vector<PatchPiece> result;
+    const std::size_t rows = along_u ? 1 : pieces.size();
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        for (std::size_t j = 0; j < pieces.size() / rows; ++j) {
+          const PatchPiece& p = pieces[r + j];
+          const Interval whole{0, 1};
+          result.push_back({restricted(p.bezier, along_u ? unit_halves[k] : whole,
+                                       along_u ? whole : unit_halves[k]),
+                            along_u ? halves(p.u)[k] : p.u, along_u ? p.v : halves(p.v)[k]});
+        }
+      }
+    }
+    pieces = std::move(result);
+  };
+  if (in_u) split_along(true);
+  if (in_v) split_along(false);
+  return pieces;
+}
+
 std::size_t face_count_of(const Part& part) { return part.faces().size() + part.polygons().size(); }
 
 /// Those of seams are no sources.
@@ -84,7 +177,7 @@ void Part::add_surface(const NurbsSurface& surface, std::string face_name,
     if (loops[i].curves.empty()) throw InvalidInput(loop_name + " has no curves");
     for (const NurbsCurve& curve : loops[i].curves) validate(curve, loop_name);
   }
-  std::vector<PatchPiece> pieces = decompose(surface);
+  std::vector<PatchPiece> pieces = pieces_of(surface);
   Box box = box_;
   for (const PatchPiece& piece : pieces) include(box, piece.bezier.points);
   validate_extent(box, shown_name);
@@ -141,7 +234,7 @@ void Part::add_curve(const NurbsCurve& curve, std::string edge_name) {
   assert(!connected_);
   const std::string shown_name = printable(edge_name);
   validate(curve, shown_name);
-  std::vector<CurvePiece> pieces = decompose(curve);
+  std::vector<CurvePiece> pieces = pieces_of(curve);
   Box box = box_;
   for (const CurvePiece& piece : pieces) include(box, piece.bezier.points);
   validate_extent(box, shown_name);

@@ -336,8 +336,10 @@ Terms MeasureSums::patch_terms(const SourceJet& j, int sign) const {
 
 void MeasureSums::add_scroll(const Face& face, const std::vector<RulingInterval>& intervals) {
   const double before = sums_.value[area];
+  std::vector<bool> joined(face.rulings.size(), false);
   for (const RulingInterval& interval : intervals) {
     see(interval);
+    joined[to_size(interval.ruling)] = true;
     for (const RulingPanel& panel : interval.panels) {
       add(panel.from, panel.to,
           [&](double s) { return scroll_terms(interval, panel.at(s, fit_)); });
@@ -345,11 +347,13 @@ void MeasureSums::add_scroll(const Face& face, const std::vector<RulingInterval>
   }
   between_ += face.tolerant / unit_ * std::abs(sums_.value[area] - before);
   if (face.rulings.empty()) return;
-  const HullDocument::Ruling& first = face.rulings.front();
-  const HullDocument::Ruling& last = face.rulings.back();
-  // A closed one has no ends; where these are one they cancel anyway.
-  add_end(first, false);
-  add_end(last, true);
+  // One ruling in two terms, of which n may differ by a kink, ends the scroll on either side. A
+  // closed one has no ends; where these are one they cancel anyway.
+  for (std::size_t k = 0; k < face.rulings.size(); ++k) {
+    if (joined[k]) continue;
+    add_end(face.rulings[k], true);
+    add_end(face.rulings[(k + 1) % face.rulings.size()], false);
+  }
 }
 
 /// Along it, contact 0 has the scroll to the left. x = a + t (b - a), x_s x x_t is outward.

@@ -13,24 +13,36 @@ double turn(const dvec3& m, const dvec3& n) {
   return std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n));
 }
 
-double length(const Ruling& r) { return glm::distance(r.point[0], r.point[1]); }
+/// Adds the crease along a ruling, from the normal on its one side to that on the other, as n goes
+/// along the arc: half its length times the angle that n turns by about it. What else it turns by
+/// is an error.
+void add_crease(const Ruling& r, const dvec3& before, const dvec3& after, Sums& sums) {
+  const dvec3 way = r.point[1] - r.point[0];
+  const double half = 0.5 * glm::length(way);
+  const double about =
+      std::atan2(glm::dot(glm::cross(before, after), unit(way)), glm::dot(before, after));
+  sums.value[curvature] += half * about;
+  sums.error[curvature] += half * std::max(turn(before, after) - std::abs(about), 0.0);
+}
 
-double open_joint(const Ruling& before, const Ruling& after, double gap) {
-  double open = 0.5 * length(after) * turn(before.n, after.n);
+/// What a step of the contacts may make the curvature of a joint be off by.
+double step_error(const Ruling& before, const Ruling& after, double gap) {
+  double error = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     const double step = glm::distance(before.point[i], after.point[i]);
-    if (step > std::max(gap, same_contact)) open += 0.5 * std::numbers::pi * step;
+    if (step > std::max(gap, same_contact)) error += 0.5 * std::numbers::pi * step;
   }
-  return open;
+  return error;
 }
 
 /// The facet in which the arc begins (0) or ends (1) has a normal of its own.
-double open_end(const HullBoundary& boundary, const SeparatingArc& arc, std::size_t end) {
-  if (arc.facet[end] < 0) return 0;
+void add_end(const HullBoundary& boundary, const SeparatingArc& arc, std::size_t end, Sums& sums) {
+  if (arc.facet[end] < 0) return;
   const ArcPiece& piece = end == 0 ? arc.pieces.front() : arc.pieces.back();
-  if (piece.rulings.empty()) return 0;
+  if (piece.rulings.empty()) return;
   const Ruling& r = end == 0 ? piece.rulings.front() : piece.rulings.back();
-  return 0.5 * length(r) * turn(r.n, boundary.faces[std::size_t(arc.facet[end])].n);
+  const dvec3& n = boundary.faces[std::size_t(arc.facet[end])].n;
+  add_crease(r, end == 0 ? n : r.n, end == 0 ? r.n : n, sums);
 }
 
 }  // namespace
@@ -62,8 +74,7 @@ void add_vertex_creases(const SeparatingArc& arc, Sums& sums) {
   }
 }
 
-double open_joints(const HullBoundary& boundary) {
-  double open = 0;
+void add_joints(const HullBoundary& boundary, Sums& sums) {
   for (const SeparatingArc& arc : boundary.arcs) {
     for (std::size_t p = 0; p < arc.pieces.size(); ++p) {
       if (p == 0 && !arc.closed) continue;
@@ -71,12 +82,14 @@ double open_joints(const HullBoundary& boundary) {
       const ArcPiece& after = arc.pieces[p];
       if (before.rulings.empty() || after.rulings.empty()) continue;
       if (is_crease(before) && is_crease(after)) continue;
-      open += open_joint(before.rulings.back(), after.rulings.front(), boundary.gap);
+      const Ruling& last = before.rulings.back();
+      const Ruling& first = after.rulings.front();
+      add_crease(first, last.n, first.n, sums);
+      sums.error[curvature] += step_error(last, first, boundary.gap);
     }
     if (arc.pieces.empty()) continue;
-    for (const std::size_t end : {0, 1}) open += open_end(boundary, arc, end);
+    for (const std::size_t end : {0, 1}) add_end(boundary, arc, end, sums);
   }
-  return open;
 }
 
 }  // namespace taut

@@ -13,10 +13,11 @@ bool is_crease(const ArcPiece& piece);
 /// crease, of the segment that spans them all.
 void add_vertex_creases(const SeparatingArc& arc, Sums& sums);
 
-/// How much total mean curvature may be off because pieces do not share n and points where they
-/// meet, or arcs not n with the facets in which they end. A turn of n that is left out counts with
-/// half the ruling's length, and a step of a contact, where it is more than the boundary's gap and
-/// than what contacts that are one may differ by, as half a crease of that length and of any angle.
-double open_joints(const HullBoundary& boundary);
+/// Adds the total mean curvature of the creases along rulings at which pieces do not share n where
+/// they meet, as where contacts pass over joins with kinks, or arcs not n with the facets in which
+/// they end. A step of a contact there, where it is more than the boundary's gap and than what
+/// contacts that are one may differ by, counts as an error: as half a crease of that length and of
+/// any angle.
+void add_joints(const HullBoundary& boundary, Sums& sums);
 
 }  // namespace taut

@@ -71,7 +71,7 @@ class Summation {
       layer_ += off_plane * place_depth(boundary, face.tolerant) * std::abs(own);
     }
     if (is_polyhedron(boundary)) add_creases(boundary, sums_);
-    sums_.error[curvature] += open_joints(boundary);
+    add_joints(boundary, sums_);
   }
 
   const dvec3& origin() const { return origin_; }

@@ -189,12 +189,16 @@ void for_each_end(SeparatingGraph& graph, Visit visit) {
 }  // namespace
 
 void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance,
-                       double level_distance) {
+                       double level_distance, const std::function<bool(const Contact&)>& touches) {
   EdgePlaces places(geometry, distance, std::max(distance, level_distance));
   for_each_end(graph, [&](Contact& c, const dvec3&) {
     const Contact own = moved_to_border(geometry, c, distance);
-    c = moved_to_bent(geometry, own, level_distance);
-    if (parameters(c) != parameters(own)) places.move(own, c);
+    c = own;
+    const Contact bent = moved_to_bent(geometry, own, level_distance);
+    if (parameters(bent) != parameters(own) && touches(bent)) {
+      places.move(own, bent);
+      c = bent;
+    }
     places.add(c);
   });
   for (const FacetNode& node : graph.nodes) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "taut/bounds/contact_geometry.h"
 #include "taut/hull/solve/separating_graph.h"
 
@@ -11,8 +13,9 @@ namespace taut {
 /// (Contacts move along their elements, across the normal: their heights change by the square of
 /// the distance.) Ends of curved sides, along which rounding leaves planes nearly level, are one
 /// with places up to `level_distance` from them, if none is nearer, and so are places beside ruled
-/// patches that are bent. In the scene's frame.
+/// patches that are bent, where the patch that ends there touches: what lies between is then part
+/// of the region or not. In the scene's frame.
 void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance,
-                       double level_distance = 0);
+                       double level_distance, const std::function<bool(const Contact&)>& touches);
 
 }  // namespace taut

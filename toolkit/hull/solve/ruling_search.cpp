@@ -6,6 +6,8 @@
 
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
+#include "taut/bounds/poles.h"
+#include "taut/bounds/supporting_plane.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/solve/tolerant_places.h"
@@ -38,6 +40,12 @@ constexpr int narrow_halvings = 16;
 /// it, of what makes them one.)
 constexpr double least_exact_way = 1e-6;
 constexpr double one_place = 0.01;
+
+constexpr std::array<double, 2> senses = {1, -1};
+/// Depths, in units of the resolution, by a patch's own normals, up to which it touches: rounding
+/// turns normals at the sides of small patches so far that this is more than one (four were met);
+/// where patches rise from the hull they are hundreds.
+constexpr double touching_depths = 16;
 
 bool is_in_element(const Contact& c) {
   const auto within = [](double t) {
@@ -148,6 +156,16 @@ double RulingSearch::depth(const Ruling& ruling) const {
   return h - std::min(glm::dot(ruling.point[0], ruling.n), glm::dot(ruling.point[1], ruling.n));
 }
 
+bool RulingSearch::touches(const Contact& c) const {
+  const dvec3 normal = unit_normal(geometry_, c);
+  const dvec3 x = geometry_.point(c);
+  return std::any_of(senses.begin(), senses.end(), [&](double sense) {
+    const dvec3 n = sense * normal;
+    return is_supporting(geometry_, query_, n, glm::dot(x, n), c,
+                         touching_depths * map_.resolution);
+  });
+}
+
 std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Contact, 2>& contacts,
                                              const dvec3& across, double depth_limit) const {
   CommonSupport start;
@@ -203,7 +221,8 @@ bool RulingSearch::rises_little(const dvec3& n, const Contact& from, const Conta
 }
 
 /// The nearest place nearby, if any, on an edge beside which a ruled patch is bent, of the
-/// contact's patch or of those next to it: what curves beyond it does not tell where it supports.
+/// contact's patch or of those next to it, where that touches: what curves beyond it does not tell
+/// where it supports.
 std::optional<Contact> RulingSearch::on_bent(const Contact& c) const {
   if (map_.bent == 0) return std::nullopt;
   const dvec3 x = geometry_.point(c);
@@ -220,7 +239,7 @@ std::optional<Contact> RulingSearch::on_bent(const Contact& c) const {
       const std::optional<Contact> over = beyond(geometry_, on, exit);
       if (k == 0 && over && over->kind == SourceKind::face) places.push_back(*over);
       const Contact edge = geometry_.first(geometry_.canonical(on));
-      if (!geometry_.is_beside_bent(edge)) continue;
+      if (!geometry_.is_beside_bent(edge) || !touches(on)) continue;
       nearest = off;
       found = edge;
     }

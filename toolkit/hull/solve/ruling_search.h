@@ -50,6 +50,9 @@ class RulingSearch {
 
   /// How far the contacts are below the supporting plane.
   double depth(const Ruling& ruling) const;
+  /// The contact of a patch supports in one of the two directions of the patch's own normal there,
+  /// to within a few times the resolution.
+  bool touches(const Contact& c) const;
 
  private:
   /// By how much others may be above contacts that support.
