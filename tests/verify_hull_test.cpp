@@ -155,6 +155,34 @@ TEST_P(VerifyTruths, TurnedPass) {
 INSTANTIATE_TEST_SUITE_P(Hulls, VerifyTruths, testing::ValuesIn(truths()),
                          [](const auto& info) { return test_name(info.param); });
 
+template <class Jet>
+double distance_to(const dvec3& p, const Jet& jet) {
+  return closest_on_surface(p, jet, {6, 6}).distance;
+}
+
+/// A curve that turns so sharply that samples beside a point are all farther than one across.
+TEST(VerifyHull, FindsPointsBesideSharpTurns) {
+  const BezierCurve turn = {{{1.3, 0.94, 0, 1},
+                             {0.8, 0.3, 0, 1},
+                             {1.53, 0.31, 0, 1},
+                             {1.99, 0.16, 0, 1},
+                             {1.96, 0.134, 0, 1},
+                             {0.24, 0.59, 0, 1}}};
+  const auto along = [&](double s) {
+    const CurveJet j = jet(turn, s);
+    return SourceJet{1, j.c, {j.ct, dvec3(0.0)}, j.ctt};
+  };
+  const auto wall = [&](const dvec2& t) {
+    const CurveJet j = jet(turn, t.x);
+    return SourceJet{2, j.c + dvec3(0, 0, 5 * t.y), {j.ct, dvec3(0, 0, 5)}};
+  };
+  for (int k = 0; k <= 200; ++k) {
+    const double s = k / 200.0;
+    EXPECT_LE(closest_on_curve(along(s).x, 0, 1, along).distance, 1e-13) << s;
+    EXPECT_LE(distance_to(wall({s, 0.3}).x, wall), 1e-13) << s;
+  }
+}
+
 /// A quarter of a cylinder of radius 1 and height 2.
 TEST(VerifyHull, DistancesFromSurfaces) {
   const auto jet = [](const dvec2& t) {
@@ -165,14 +193,14 @@ TEST(VerifyHull, DistancesFromSurfaces) {
   };
   for (const double angle : {0.0, 0.3, 1.2}) {
     const dvec3 on(std::cos(angle), std::sin(angle), 1.37);
-    EXPECT_LE(distance_to_surface(on, jet), 4e-16);
+    EXPECT_LE(distance_to(on, jet), 4e-16);
     for (const double off : {-1e-3, 1e-9, 0.1}) {
       const dvec3 p((1 + off) * on.x, (1 + off) * on.y, on.z);
-      EXPECT_NEAR(distance_to_surface(p, jet), std::abs(off), 1e-15) << angle;
+      EXPECT_NEAR(distance_to(p, jet), std::abs(off), 1e-15) << angle;
     }
   }
-  EXPECT_NEAR(distance_to_surface({1, 0, 5}, jet), 3, 1e-15) << "beyond its border";
-  EXPECT_NEAR(distance_to_surface({1, -2, 2}, jet), 2, 1e-15);
+  EXPECT_NEAR(distance_to({1, 0, 5}, jet), 3, 1e-15) << "beyond its border";
+  EXPECT_NEAR(distance_to({1, -2, 2}, jet), 2, 1e-15);
 }
 
 /// Near a point that a side is collapsed to, whatever meridian the nearest sample is on.
@@ -185,7 +213,7 @@ TEST(VerifyHull, FindsPointsOfPatchesNearPoles) {
       };
       for (const double u : {0.0014, 0.109, 0.5, 0.8906, 0.9986}) {
         for (const double v : {0.0001, 0.0105, 0.05, 0.9506, 0.9895, 0.9999}) {
-          EXPECT_LE(distance_to_surface(at({u, v}).x, at), 1e-12) << u << " " << v;
+          EXPECT_LE(distance_to(at({u, v}).x, at), 1e-12) << u << " " << v;
         }
       }
     }

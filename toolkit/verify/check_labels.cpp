@@ -140,7 +140,7 @@ bool LabelCheck::on_face(const DocumentGeometry& geometry, int source,
       if (glm::any(glm::lessThan(p, box.lower - near))) continue;
       if (glm::any(glm::lessThan(box.upper + near, p))) continue;
       const auto jet = [&](const dvec2& t) { return geometry.jet(source, {int(i), t}); };
-      if (distance_to_surface(p, jet) <= near) return true;
+      if (closest_on_surface(p, jet, sampled_parts(patches[i])).distance <= near) return true;
     }
     return false;
   });

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
+#include "taut/verify/closest_on_curve.h"
 #include "taut/verify/document_geometry.h"
 
 namespace taut {
@@ -41,56 +43,95 @@ struct ClosestOnSurface {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-/// The point of a surface over [0, 1]^2 that is nearest to p, by Newton's method from the nearest
-/// of some samples; where that ends in a point that a side is collapsed to, whence steps lead along
-/// one parameter only, also from the nearest inside. `jet(t)` is the surface's SourceJet.
+/// Into how many parts each parameter of a Bezier patch is divided by samples.
+inline std::array<int, 2> sampled_parts(const HullDocument::Patch& patch) {
+  return {patch.rows + 4, patch.columns + 4};
+}
+
+/// The samples of a grid of so many along each parameter that are no farther than those beside
+/// them, the nearest first.
+inline std::vector<ClosestOnSurface> nearest_samples(const std::vector<ClosestOnSurface>& grid,
+                                                     const std::array<int, 2>& count) {
+  const auto at = [&](int i, int k) -> const ClosestOnSurface& {
+    return grid[std::size_t(i * count[1] + k)];
+  };
+  const auto is_nearest = [&](int i, int k) {
+    for (int a = std::max(i - 1, 0); a <= std::min(i + 1, count[0] - 1); ++a) {
+      for (int b = std::max(k - 1, 0); b <= std::min(k + 1, count[1] - 1); ++b) {
+        if (at(a, b).distance < at(i, k).distance) return false;
+      }
+    }
+    return true;
+  };
+  std::vector<ClosestOnSurface> found;
+  for (int i = 0; i < count[0]; ++i) {
+    for (int k = 0; k < count[1]; ++k) {
+      if (is_nearest(i, k)) found.push_back(at(i, k));
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.distance < b.distance; });
+  return found;
+}
+
+/// The point of a surface over [0, 1]^2 that is nearest to p, by Newton's method from the samples
+/// that are nearer than those beside them; where that ends in a point that a side is collapsed to,
+/// whence steps lead along one parameter only, also from such ones inside. `jet(t)` is the
+/// surface's SourceJet, `parts` how many there are between the samples along each parameter; there
+/// are more of them where none leads to p itself.
 template <class Jet>
-ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet) {
-  constexpr int samples = 8;
+ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet,
+                                    const std::array<int, 2>& parts) {
+  constexpr int closer = 4;
   constexpr int steps = 40;
-  constexpr double least_share = 1.0 / 64;
+  constexpr double least_share = 1.0 / 4096;
   // Of the lengths of the derivatives; at regular points of patches they differ by much less. What
   // is taken for collapsed though it is not costs time only.
   constexpr double collapsed = 1e-6;
-  ClosestOnSurface best;
-  const auto consider = [&](const dvec2& at) {
-    const double distance = glm::distance(jet(at).x, p);
-    if (distance < best.distance) best = {at, distance};
+  double farthest = 0;
+  const auto at = [&](const dvec2& t) {
+    const ClosestOnSurface found{t, glm::distance(jet(t).x, p)};
+    farthest = std::max(farthest, found.distance);
+    return found;
   };
-  const auto approach = [&] {
-    for (int i = 0; i < steps && best.distance > 0; ++i) {
-      const double before = best.distance;
-      const dvec2 from = best.t;
+  const auto approach = [&](ClosestOnSurface own) {
+    for (int i = 0; i < steps && own.distance > 0; ++i) {
+      const double before = own.distance;
+      const dvec2 from = own.t;
       const dvec2 step = step_to_nearest(jet(from), p, from);
-      // Where the surface degenerates, at corners, a whole step may lead astray.
-      for (double share = 1; share >= least_share && !(best.distance < before); share *= 0.5) {
-        consider(glm::clamp(from + share * step, dvec2(0.0), dvec2(1.0)));
+      // Where the surface degenerates, at corners, or turns sharply a whole step may lead astray.
+      for (double share = 1; share >= least_share && !(own.distance < before); share *= 0.5) {
+        const ClosestOnSurface next = at(glm::clamp(from + share * step, dvec2(0.0), dvec2(1.0)));
+        if (next.distance < own.distance) own = next;
       }
-      if (!(best.distance < before)) break;
+      if (!(own.distance < before)) break;
     }
+    return own;
   };
   const auto is_point = [&](const dvec2& t) {
     const SourceJet j = jet(t);
     const auto [least, most] = std::minmax({glm::length(j.dx[0]), glm::length(j.dx[1])});
     return least <= collapsed * most;
   };
-  for (int i = 0; i <= samples; ++i) {
-    for (int k = 0; k <= samples; ++k) consider(dvec2(i, k) / double(samples));
-  }
-  approach();
-  if (best.distance == 0 || !is_point(best.t)) return best;
-  const ClosestOnSurface point = best;
-  best = {};
-  for (int i = 0; i < samples; ++i) {
-    for (int k = 0; k < samples; ++k) consider((dvec2(i, k) + 0.5) / double(samples));
-  }
-  approach();
-  return best.distance < point.distance ? best : point;
-}
-
-template <class Jet>
-double distance_to_surface(const dvec3& p, const Jet& jet) {
-  return closest_on_surface(p, jet).distance;
+  ClosestOnSurface best;
+  const auto look = [&](double first, const std::array<int, 2>& own) {
+    const int ends = first == 0 ? 1 : 0;
+    const std::array<int, 2> count = {own[0] + ends, own[1] + ends};
+    std::vector<ClosestOnSurface> grid;
+    for (int k = 0; k < count[0] * count[1]; ++k) {
+      const dvec2 place(k / count[1], k % count[1]);
+      grid.push_back(at((place + first) / dvec2(own[0], own[1])));
+    }
+    for (const ClosestOnSurface& start : nearest_samples(grid, count)) {
+      const ClosestOnSurface found = approach(start);
+      if (found.distance < best.distance) best = found;
+      if (best.distance <= no_distance * farthest) break;
+    }
+  };
+  look(0, parts);
+  if (best.distance > no_distance * farthest) look(0, {closer * parts[0], closer * parts[1]});
+  if (best.distance > 0 && is_point(best.t)) look(0.5, parts);
+  return best;
 }
 
 }  // namespace taut

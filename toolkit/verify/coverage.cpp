@@ -95,7 +95,9 @@ bool Coverage::is_near(const dvec3& p) const {
         const int patch = region.region->patch;
         if (!may_be_within(boxes_[to_size(source)][to_size(patch)], x, limit_)) return false;
         const auto jet = [&](const dvec2& t) { return geometry_.jet(source, {patch, t}); };
-        const ClosestOnSurface nearest = closest_on_surface(x, jet);
+        const std::array<int, 2> parts =
+            sampled_parts(sources[to_size(source)].patches[to_size(patch)]);
+        const ClosestOnSurface nearest = closest_on_surface(x, jet, parts);
         if (nearest.distance > limit_) return false;
         const dvec2 uv = geometry_.parameters(source, {patch, nearest.t});
         if (region.may_contain(uv)) return true;

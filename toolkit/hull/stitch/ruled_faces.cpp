@@ -1,9 +1,13 @@
 #include "taut/hull/stitch/ruled_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
+#include "taut/bounds/contact_exits.h"
+#include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/surface/rulings.h"
@@ -14,6 +18,8 @@ namespace {
 /// Sine of the angle between planes, and distance between ends of segments, that are one: borders
 /// of faces that meet are off each other by no more than join_distance.
 constexpr double same_ruling = 1e-6;
+/// Places of a segment at which it is looked whether it lies in a patch, as shares.
+constexpr std::array inside_segment = {0.25, 0.5, 0.75};
 
 int source_of(const ContactGeometry& geometry, const Contact& c) {
   return geometry.scene().model().source_id({SourceKind::face, c.instance, geometry.patch(c).face});
@@ -71,18 +77,29 @@ int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling
   return one ? source : -1;
 }
 
-/// The face, of those that end where the segment begins, whose rulings make up the segment.
-int source_along(const ContactGeometry& geometry, const Ruling& r, std::size_t end) {
-  const Contact c = geometry.first(geometry.canonical(r.contact[end]));
-  if (c.kind != SourceKind::edge) return -1;
-  for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(c)) {
-    const dvec2 uv = on_side(side.side, side.reversed ? 1 - c.u : c.u);
-    const int instance = side.instance < 0 ? c.instance : side.instance;
-    const Contact own{instance, SourceKind::face, side.patch, uv.x, uv.y};
-    const int source = source_along(geometry, own, r, end);
-    if (source >= 0) return source;
+/// Where the contact is on borders of ruled patches, to within rounding: as ones of these.
+std::vector<Contact> on_ruled_patches(const ContactGeometry& geometry, const Contact& c) {
+  const Contact own = geometry.first(snapped(geometry, c, same_ruling));
+  std::vector<Contact> found;
+  if (own.kind != SourceKind::edge) return found;
+  for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(own)) {
+    found.push_back(on_side(own, side));
   }
-  return -1;
+  return found;
+}
+
+/// The segment between two contacts of one patch is, to within rounding, what the patch has between
+/// them, with the ruling's normal.
+bool is_in_patch(const ContactGeometry& geometry, const Contact& a, const Contact& b,
+                 const dvec3& n) {
+  if (!same_element(a, b)) return false;
+  return std::all_of(inside_segment.begin(), inside_segment.end(), [&](double s) {
+    const dvec2 uv = glm::mix(parameters(a), parameters(b), s);
+    const Contact c{a.instance, a.kind, a.element, uv.x, uv.y};
+    const dvec3 x = glm::mix(geometry.point(a), geometry.point(b), s);
+    return glm::distance(geometry.point(c), x) <= same_ruling &&
+           glm::length(glm::cross(unit_normal(geometry, c), n)) <= same_ruling;
+  });
 }
 
 /// Inside of the piece, also where that has no more than the rulings at its ends.
@@ -95,22 +112,41 @@ Ruling middle_ruling(const ContactSystem& system, const ArcPiece& piece) {
   return m ? m->at.ruling() : r;
 }
 
+/// The face in which the segment lies: in a patch that has both its ends, or along the rulings of
+/// one that has either.
 int source_along(const ContactGeometry& geometry, const Ruling& r) {
-  const int source = source_along(geometry, r, 0);
-  return source >= 0 ? source : source_along(geometry, r, 1);
-}
-
-/// That of the ruling in the middle, if those halfway from there to the ends are of some, too.
-int source_along(const ContactSystem& system, const ArcPiece& piece) {
-  const int source = source_along(system.geometry(), middle_ruling(system, piece));
-  const std::size_t last = piece.rulings.size() - 1;
-  for (const std::size_t k : {last / 4, last - last / 4}) {
-    const bool is_inside = 0 < k && k < last;
-    if (is_inside && source >= 0 && source_along(system.geometry(), piece.rulings[k]) < 0) {
-      return -1;
+  const std::array<std::vector<Contact>, 2> ends = {on_ruled_patches(geometry, r.contact[0]),
+                                                    on_ruled_patches(geometry, r.contact[1])};
+  for (const Contact& a : ends[0]) {
+    for (const Contact& b : ends[1]) {
+      if (is_in_patch(geometry, a, b, r.n)) return source_of(geometry, a);
     }
   }
-  return source;
+  for (const std::size_t end : {0, 1}) {
+    for (const Contact& c : ends[end]) {
+      const int source = source_along(geometry, c, r, end);
+      if (source >= 0) return source;
+    }
+  }
+  return -1;
+}
+
+/// A contact is a vertex, beside which any face may be.
+bool ends_at_vertex(const ContactGeometry& geometry, const Ruling& r) {
+  return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
+    return geometry.first(snapped(geometry, c, same_ruling)).kind == SourceKind::vertex;
+  });
+}
+
+/// That of the ruling in the middle, if all between the ends are of some, too.
+int source_along(const ContactSystem& system, const ArcPiece& piece) {
+  const int source = source_along(system.geometry(), middle_ruling(system, piece));
+  if (source < 0) return -1;
+  const bool all =
+      std::all_of(piece.rulings.begin() + 1, piece.rulings.end() - 1, [&](const Ruling& r) {
+        return ends_at_vertex(system.geometry(), r) || source_along(system.geometry(), r) >= 0;
+      });
+  return all ? source : -1;
 }
 
 /// It is one ruling for all that labels tell.
