@@ -732,8 +732,8 @@ TEST(BoundaryMeasures, TorusAndItsDiscs) {
   }
 }
 
-/// A facet of one contact, whose side is a closed piece.
-TEST(BoundaryMeasures, DiscOfOneSide) {
+/// A facet of two contacts, the sides of which are both halves of a closed piece.
+TEST(BoundaryMeasures, DiscOfTwoSides) {
   // The unit circle by s = tan(angle / 4) from -1 to 1, a quartic, raised by one degree for
   // positive weights; and a tip above.
   const BezierCurve circle{{{-1, 0, 0, 1},
@@ -743,29 +743,33 @@ TEST(BoundaryMeasures, DiscOfOneSide) {
                             {-0.2, 0.8, 0, 0.2},
                             {-1, 0, 0, 1}}};
   const Stage stage(Shape{{}, {as_nurbs(circle)}, {{0, 0, 1}}});
-  ASSERT_EQ(stage.part().pieces().size(), 1U);
+  ASSERT_EQ(stage.part().pieces().size(), 2U);
   HullBoundary boundary;
   SeparatingArc arc;
   arc.closed = true;
-  ArcPiece piece;
   const Contact tip = stage.at_vertex(dvec3(0, 0, 1));
-  constexpr int count = 32;
-  for (int k = 0; k <= count; ++k) {
-    const Contact c = stage.on_piece(0, double(k) / count);
-    const dvec3 x = stage.scene.frame().to_model(stage.geometry.point(c));
-    piece.rulings.push_back(stage.ruling({x.x, x.y, 1}, c, tip));
+  constexpr int count = 16;
+  for (const int half : {0, 1}) {
+    ArcPiece piece;
+    for (int k = 0; k <= count; ++k) {
+      const Contact c = stage.on_piece(half, double(k) / count);
+      const dvec3 x = stage.scene.frame().to_model(stage.geometry.point(c));
+      piece.rulings.push_back(stage.ruling({x.x, x.y, 1}, c, tip));
+    }
+    arc.pieces.push_back(piece);
   }
-  arc.pieces.push_back(piece);
   boundary.arcs.push_back(arc);
   HullFace cone;
   cone.kind = FaceKind::scroll;
-  cone.scroll = {0, 0, 1};
+  cone.scroll = {0, 0, 2};
   HullFace disc;
   disc.n = dvec3(0, 0, -1);
-  disc.contacts = {stage.on_piece(0, 1)};
-  disc.points = {stage.geometry.point(disc.contacts[0])};
+  for (const int half : {1, 0}) {
+    disc.contacts.push_back(stage.on_piece(half, 1));
+    disc.points.push_back(stage.geometry.point(disc.contacts.back()));
+    disc.sides.push_back({0, half, 1, 0});
+  }
   disc.offset = glm::dot(disc.n, disc.points[0]);
-  disc.sides = {{0, 0, 1, 0}};
   boundary.faces = {cone, disc};
   const BoundaryMeasures m = stage.measured(boundary);
   EXPECT_NEAR(m.volume / (pi / 3), 1, 1e-14);

@@ -350,8 +350,10 @@ TEST(GaussMap, DegeneratePatches) {
   for (const BezierPatch& patch : {point, line, fold}) {
     const Scene scene = make_scene(of_patch(patch) + of_patch(random_patch(random, 2, 2, 1)));
     const GaussMap map(scene);
-    EXPECT_TRUE(map.ruled(0, 0));
-    EXPECT_FALSE(map.ruled(0, 1));
+    // The fold is of two patches.
+    const int last = map.root_count(0) - 1;
+    for (int k = 0; k < last; ++k) EXPECT_TRUE(map.ruled(0, k));
+    EXPECT_FALSE(map.ruled(0, last));
   }
   const Scene curves = make_scene(oloid());
   const GaussMap none(curves);

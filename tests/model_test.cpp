@@ -789,8 +789,8 @@ TEST(Model, PatchClosedOnItselfIsHalved) {
       const Patch& first = part.patches()[0];
       const Interval& t = turned ? first.v : first.u;
       EXPECT_EQ(t.upper, 0.5);
-      EXPECT_EQ(point(first.bezier, turned ? 0.3 : 0.5, turned ? 0.5 : 0.3),
-                point(own, turned ? 0.3 : 0.25, turned ? 0.25 : 0.3));
+      const dvec3 half = point(first.bezier, turned ? 0.3 : 0.5, turned ? 0.5 : 0.3);
+      EXPECT_LE(glm::distance(half, point(own, turned ? 0.3 : 0.25, turned ? 0.25 : 0.3)), 1e-15);
       const Border& seam = first.borders[std::size_t(turned ? Side::v0 : Side::u0)];
       EXPECT_EQ(seam.kind, kink ? BorderKind::edge : BorderKind::smooth);
       EXPECT_EQ(seam.neighbor, 1);

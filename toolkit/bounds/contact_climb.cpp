@@ -135,10 +135,11 @@ class Climb {
     c_ = *next;
     return Progress::moved;
   }
-  /// Over the side lies what the climb has just come from: the join is a ridge.
-  bool leads_back(Side side) const {
+  /// Over the side, or the end, lies what the climb has just come from: the join is a ridge, or a
+  /// kink.
+  bool leads_back(const ContactExit& exit) const {
     if (!came_from_) return false;
-    const std::optional<Contact> next = beyond(geometry_, c_, {ContactExit::Kind::side, int(side)});
+    const std::optional<Contact> next = beyond(geometry_, c_, exit);
     return next && same_element(*next, *came_from_);
   }
 
@@ -153,7 +154,8 @@ class Climb {
       const std::optional<Side> side = uphill_side(a, slope[a], size[a]);
       if (!side) continue;
       if (is_pole(geometry_, c_, *side)) return off_the_pole();
-      if (!leads_back(*side)) return leave({ContactExit::Kind::side, int(*side)});
+      const ContactExit exit{ContactExit::Kind::side, int(*side)};
+      if (!leads_back(exit)) return leave(exit);
       held = a;
     }
     const dvec2 step = step_uphill(j, slope, size, held);
@@ -280,11 +282,14 @@ class Climb {
     const ContactJet j = visit();
     const double slope = glm::dot(j.dx[0], n_);
     const double size = glm::length(j.dx[0]);
-    if (c_.u <= 0 && slope < -slack(size)) return leave({ContactExit::Kind::end, 0});
-    if (c_.u >= 1 && slope > slack(size)) return leave({ContactExit::Kind::end, 1});
+    const bool leads_out = c_.u <= 0 ? slope < -slack(size) : c_.u >= 1 && slope > slack(size);
+    const ContactExit end{ContactExit::Kind::end, c_.u <= 0 ? 0 : 1};
+    if (leads_out && !leads_back(end)) return leave(end);
     const double second = glm::dot(j.dxx, n_);
     const bool level = std::abs(slope) <= slack(size) && !is_bent(std::abs(second), size);
-    double step = level ? 0 : second < 0 ? -slope / second : std::copysign(stride, slope);
+    double step = level || leads_out ? 0
+                  : second < 0       ? -slope / second
+                                     : std::copysign(stride, slope);
     step = std::clamp(step, -0.5, 0.5);
     const double to = std::clamp(c_.u + step, 0.0, 1.0);
     const bool to_end = to != c_.u && (to == 0 || to == 1);
@@ -292,11 +297,13 @@ class Climb {
     const bool noise = length < noise_step && length > 0.5 * last_length_;
     last_length_ = length;
     if ((length > short_step && !noise) || to_end) {
+      came_from_.reset();
       c_.u = to;
       return Progress::moved;
     }
-    const bool straight = geometry_.is_straight(c_);
-    if (!straight && std::abs(slope) > slack(size) && second >= 0) return Progress::lost;
+    const bool straight = !leads_out && geometry_.is_straight(c_);
+    if (!straight && !leads_out && std::abs(slope) > slack(size) && second >= 0)
+      return Progress::lost;
     const auto& sides = geometry_.sides(c_);
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const dvec3 c = inward_derivative(geometry_.jet(on_side(c_, sides[k])), sides[k].side);

@@ -477,7 +477,7 @@ void Part::connect(double smooth_angle, const Progress& progress) {
   // Patches of cages are computed, whatever the cages' points were rounded to: their borders meet.
   const bool meet = !cages_.empty();
   const double apart = meet ? 0 : bent;
-  split_crests(faces_, patches_, box_, apart, progress);
+  split_crests(faces_, patches_, box_, apart, meet ? 0 : 2 * half_step, progress);
   split_junctions(faces_, patches_, box_, apart, progress);
   find_repeated_patches(patches_, box_, meet ? 0 : copies_apart_limit * grid_resolution * half_step,
                         progress);

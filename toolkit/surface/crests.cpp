@@ -69,21 +69,73 @@ double turn_root(const Across& across, int axis, double a, double fa, double b, 
   return s;
 }
 
-/// Roots of one coordinate of `turn`, given at equally spaced parameters; values that may be
-/// rounding have no sign.
-void add_roots(const Across& across, const std::vector<dvec3>& turns, int axis,
+/// The root of a coordinate of `turn` between parameters where its signs differ, if all of `turn`
+/// may vanish there; where the surface turns sharply the way to it is halved until that is seen.
+void add_root(const Across& across, int axis, double a, const dvec3& fa, double b, const dvec3& fb,
+              int halvings, std::vector<double>& roots) {
+  if ((fa[axis] > 0) == (fb[axis] > 0)) return;
+  if (may_vanish(across, axis, a, fa, b, fb)) {
+    roots.push_back(turn_root(across, axis, a, fa[axis], b, fb[axis]));
+    return;
+  }
+  if (halvings == 0) return;
+  const double middle = 0.5 * (a + b);
+  const dvec3 f = across.turn(middle);
+  add_root(across, axis, a, fa, middle, f, halvings - 1, roots);
+  add_root(across, axis, middle, f, b, fb, halvings - 1, roots);
+}
+
+struct Turn {
+  double s = 0;
+  dvec3 normal = dvec3(0.0);
+  dvec3 f = dvec3(0.0);
+};
+
+Turn turn_at(const Across& across, double s) {
+  return {s, unit(across.normal(s, 0.21)), across.turn(s)};
+}
+
+/// Largest turn of the normal between neighbours, as a cosine: signs may change and change back
+/// where it turns by more.
+constexpr double sharp_turn = 0.95;
+
+/// Adds those between two, and the second one.
+void add_turns(const Across& across, const Turn& a, const Turn& b, int halvings,
+               std::vector<Turn>& turns) {
+  if (halvings > 0 && glm::dot(a.normal, b.normal) < sharp_turn) {
+    const Turn middle = turn_at(across, 0.5 * (a.s + b.s));
+    add_turns(across, a, middle, halvings - 1, turns);
+    add_turns(across, middle, b, halvings - 1, turns);
+    return;
+  }
+  turns.push_back(b);
+}
+
+/// Halvings between parameters at which `turn` is known.
+constexpr int turn_halvings = 8;
+
+/// At equally spaced parameters, and at more where the surface turns sharply.
+std::vector<Turn> turns_of(const Across& across) {
+  const int count = 4 * across.degree_across() + 8;
+  std::vector<Turn> turns = {turn_at(across, 0)};
+  for (int k = 1; k <= count; ++k) {
+    const Turn last = turns.back();
+    add_turns(across, last, turn_at(across, double(k) / count), turn_halvings, turns);
+  }
+  return turns;
+}
+
+/// Roots of one coordinate of `turn`; values that may be rounding have no sign.
+void add_roots(const Across& across, const std::vector<Turn>& turns, int axis,
                std::vector<double>& roots) {
-  const double step = 1.0 / double(turns.size() - 1);
   std::optional<std::size_t> before;
   for (std::size_t k = 0; k < turns.size(); ++k) {
-    const double f = turns[k][axis];
-    if (std::abs(f) <= crest_angle) continue;
+    const Turn& here = turns[k];
+    if (std::abs(here.f[axis]) <= crest_angle) continue;
     // More than one value without a sign between two of them is a coordinate that vanishes.
-    const bool crossed = before && k - *before <= 2 && (f > 0) != (turns[*before][axis] > 0);
-    if (crossed && may_vanish(across, axis, double(*before) * step, turns[*before],
-                              double(k) * step, turns[k])) {
-      roots.push_back(turn_root(across, axis, double(*before) * step, turns[*before][axis],
-                                double(k) * step, f));
+    if (before && k - *before <= 2) {
+      const Turn& last = turns[*before];
+      add_root(across, axis, last.s, last.f, here.s, here.f, turn_halvings, roots);
     }
     before = k;
   }
@@ -161,12 +213,9 @@ bool may_support(const BezierPatch& patch, Direction direction, double s,
   return true;
 }
 
-std::vector<double> inner_crests(const BezierPatch& patch, Direction direction) {
+std::vector<double> inner_crests(const BezierPatch& patch, Direction direction, double grid) {
   const Across across{patch, direction};
-  const int count = 4 * across.degree_across() + 8;
-  std::vector<dvec3> turns;
-  turns.reserve(std::size_t(count) + 1);
-  for (int k = 0; k <= count; ++k) turns.push_back(across.turn(double(k) / count));
+  const std::vector<Turn> turns = turns_of(across);
   std::vector<double> roots;
   for (const int axis : {0, 1, 2}) add_roots(across, turns, axis, roots);
   std::sort(roots.begin(), roots.end());
@@ -174,7 +223,7 @@ std::vector<double> inner_crests(const BezierPatch& patch, Direction direction) 
   for (const double s : roots) {
     const double from = crests.empty() ? 0 : crests.back();
     if (s - from <= least_crest_share || 1 - s <= least_crest_share) continue;
-    if (is_crest(patch, direction, s)) crests.push_back(s);
+    if (is_crest(patch, direction, s, grid)) crests.push_back(s);
   }
   return crests;
 }

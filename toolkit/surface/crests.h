@@ -25,8 +25,8 @@ bool may_support(const BezierPatch& patch, Direction direction, double s,
 
 /// Parameters inside of ]0, 1[, ascending, of the crests across which the slope over their plane
 /// changes its sign; others (the flat circle of z = r^3) carry no support points of a ridge.
-/// Nearer to a border than least_crest_share of the patch there is none.
-std::vector<double> inner_crests(const BezierPatch& patch, Direction direction);
+/// Nearer to a border than least_crest_share of the patch there is none. `grid`: see is_crest.
+std::vector<double> inner_crests(const BezierPatch& patch, Direction direction, double grid = 0);
 /// @}
 
 }  // namespace taut

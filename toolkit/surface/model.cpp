@@ -55,15 +55,20 @@ Box with(Box box, const Part& part, const RigidMotion& pose) {
 /// Ends of a single Bezier piece no farther from each other than so much of its length may be one.
 constexpr double closing_share = 1e-3;
 
-/// A row of control points ends where it begins; one that is a point does.
-bool is_closed(const dvec4* points, std::size_t count, std::size_t stride) {
-  double length = 0;
-  for (std::size_t k = 1; k < count; ++k) {
-    length += glm::distance(euclidean(points[(k - 1) * stride]), euclidean(points[k * stride]));
+/// Some of a net's control points, a step of so many apart.
+struct PointRow {
+  const dvec4* first;
+  std::size_t count, stride;
+
+  dvec3 at(std::size_t k) const { return euclidean(first[k * stride]); }
+  double length() const {
+    double sum = 0;
+    for (std::size_t k = 1; k < count; ++k) sum += glm::distance(at(k - 1), at(k));
+    return sum;
   }
-  const double off = glm::distance(euclidean(points[0]), euclidean(points[(count - 1) * stride]));
-  return off <= closing_share * length;
-}
+  /// It ends where it begins; one that is a point does.
+  bool is_closed() const { return glm::distance(at(0), at(count - 1)) <= closing_share * length(); }
+};
 
 std::array<Interval, 2> halves(const Interval& t) {
   const double middle = 0.5 * t.lower + 0.5 * t.upper;
@@ -82,7 +87,7 @@ std::vector<CurvePiece> pieces_of(const NurbsCurve& curve) {
   if (pieces.size() != 1) return pieces;
   const CurvePiece whole = pieces.front();
   if (!can_be_halved(whole.t) ||
-      !is_closed(whole.bezier.points.data(), whole.bezier.points.size(), 1)) {
+      !PointRow{whole.bezier.points.data(), whole.bezier.points.size(), 1}.is_closed()) {
     return pieces;
   }
   pieces.clear();
@@ -92,21 +97,21 @@ std::vector<CurvePiece> pieces_of(const NurbsCurve& curve) {
   return pieces;
 }
 
-/// Of patches that are alone in a direction in which the surface may be closed, those that end in
-/// their own other side.
-bool is_closed_in_u(const BezierPatch& p) {
+/// The patch goes on into itself over its sides u = 0 and u = 1 (along_u) or the other two: these
+/// are one, and no point.
+bool goes_on_into_itself(const BezierPatch& p, bool along_u) {
+  const std::size_t rows = to_size(p.degree_u) + 1;
   const std::size_t columns = to_size(p.degree_v) + 1;
-  for (std::size_t j = 0; j < columns; ++j) {
-    if (!is_closed(&p.points[j], to_size(p.degree_u) + 1, columns)) return false;
+  const std::size_t across = along_u ? columns : rows;
+  double longest = 0;
+  for (std::size_t k = 0; k < across; ++k) {
+    const PointRow row = along_u ? PointRow{&p.points[k], rows, columns}
+                                 : PointRow{&p.points[k * columns], columns, 1};
+    if (!row.is_closed()) return false;
+    longest = std::max(longest, row.length());
   }
-  return true;
-}
-bool is_closed_in_v(const BezierPatch& p) {
-  const std::size_t columns = to_size(p.degree_v) + 1;
-  for (std::size_t i = 0; i <= to_size(p.degree_u); ++i) {
-    if (!is_closed(&p.points[i * columns], columns, 1)) return false;
-  }
-  return true;
+  const PointRow side = {&p.points[0], across, along_u ? 1 : columns};
+  return longest > 0 && side.length() > closing_share * longest;
 }
 
 /// The Bezier patches of a surface, v within u; rows of patches that would go on into themselves
@@ -118,11 +123,11 @@ std::vector<PatchPiece> pieces_of(const NurbsSurface& surface) {
   const Interval v = surface.domain_v();
   const bool in_u =
       can_be_halved(u) && all([&](const PatchPiece& p) {
-        return p.u.lower == u.lower && p.u.upper == u.upper && is_closed_in_u(p.bezier);
+        return p.u.lower == u.lower && p.u.upper == u.upper && goes_on_into_itself(p.bezier, true);
       });
   const bool in_v =
       can_be_halved(v) && all([&](const PatchPiece& p) {
-        return p.v.lower == v.lower && p.v.upper == v.upper && is_closed_in_v(p.bezier);
+        return p.v.lower == v.lower && p.v.upper == v.upper && goes_on_into_itself(p.bezier, false);
       });
   const auto split_along = [&](bool along_u) {
     std::vector<PatchPiece> result;

@@ -76,9 +76,9 @@ class RowSplitter {
         progress_(progress),
         tolerance_(join_tolerance(box, bent)) {}
 
-  void split_at_crests() {
+  void split_at_crests(double grid) {
     find_grids();
-    const std::vector<Cut> crests = find_crests();
+    const std::vector<Cut> crests = find_crests(grid);
     if (crests.empty()) return;
     find_joins();
     cut_along(crests);
@@ -93,7 +93,7 @@ class RowSplitter {
  private:
   void find_grids();
   void find_joins();
-  std::vector<Cut> find_crests() const;
+  std::vector<Cut> find_crests(double grid) const;
   std::vector<Cut> find_junctions() const;
   bool ends_on(int side, const BezierCurve& host) const;
   bool lies_on(const BezierCurve& curve, const dvec3& x) const {
@@ -135,7 +135,7 @@ void RowSplitter::find_grids() {
   cuts_.resize(face_of_row_.size());
 }
 
-std::vector<Cut> RowSplitter::find_crests() const {
+std::vector<Cut> RowSplitter::find_crests(double grid) const {
   std::vector<Cut> result;
   const std::vector<dvec3> points = corner_points(patches_);
   for (int p = 0; p < to_int(patches_.size()); ++p) {
@@ -143,9 +143,14 @@ std::vector<Cut> RowSplitter::find_crests() const {
     const Patch& patch = patches_[to_size(p)];
     if (patch.may_be_ruled()) continue;
     for (const Direction direction : {Direction::u, Direction::v}) {
-      for (const double s : inner_crests(patch.bezier, direction)) {
-        if (!may_support(patch.bezier, direction, s, points, tolerance_)) continue;
-        result.push_back({grid_of(p).row_of(p, direction), s});
+      const int row = grid_of(p).row_of(p, direction);
+      // Where numbers are rounded, each patch of a row has its own crest for the row's.
+      const auto is_known = [&](const Cut& cut) {
+        return grid > 0 && cut.row == row && is_crest(patch.bezier, direction, cut.s, grid);
+      };
+      for (const double s : inner_crests(patch.bezier, direction, grid)) {
+        if (!may_support(patch.bezier, direction, s, points, tolerance_, grid)) continue;
+        if (std::none_of(result.begin(), result.end(), is_known)) result.push_back({row, s});
       }
     }
   }
@@ -359,8 +364,8 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches) {
 }
 
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
-                  double bent, const Progress& progress) {
-  RowSplitter(faces, patches, box, bent, progress).split_at_crests();
+                  double bent, double grid, const Progress& progress) {
+  RowSplitter(faces, patches, box, bent, progress).split_at_crests(grid);
 }
 
 void split_junctions(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,

@@ -17,11 +17,11 @@ std::vector<dvec3> corner_points(const std::vector<Patch>& patches);
 /// which the rows would wind without end, or that would leave strips as thin as what counts as one
 /// point, stays where it is.
 /// Faces of cages with more than one patch are not split.
-/// `bent`: see join_tolerance.
+/// `bent`: see join_tolerance. `grid`: what the numbers were rounded by before.
 /// @pre the patches of all other faces are grids, v within u; rulings are found. The box contains
 /// them. @throws Cancelled, as the next one does
 void split_crests(std::vector<Face>& faces, std::vector<Patch>& patches, const Box& box,
-                  double bent, const Progress& progress);
+                  double bent, double grid, const Progress& progress);
 
 /// Splits patches, rows as above, where sides of others end inside of theirs and run along them, so
 /// that whole sides meet; but for sides that are straight, along which no point is extreme. Sides

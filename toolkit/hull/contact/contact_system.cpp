@@ -131,11 +131,17 @@ void CommonSupport::evaluate(const ContactGeometry& geometry) {
 
 Ruling CommonSupport::ruling() const { return {n, {contact[0], contact[1]}, {jet[0].x, jet[1].x}}; }
 
+bool lies_inside(const CommonSupport& s) {
+  const auto inside = [](double t) { return t >= -same_contact && t <= 1 + same_contact; };
+  return std::all_of(s.contact.begin(), s.contact.begin() + s.count,
+                     [&](const Contact& c) { return inside(c.u) && inside(c.v); });
+}
+
 int kept_parameter(const Contact& a, const Contact& b) {
-  if (a.kind != SourceKind::face || !same_element(a, b)) return CommonSupport::free;
+  if (a.kind == SourceKind::vertex || !same_element(a, b)) return CommonSupport::free;
   const auto is_end = [](double t) { return t == 0 || t == 1; };
   if (a.u == b.u && is_end(a.u)) return 0;
-  return a.v == b.v && is_end(a.v) ? 1 : CommonSupport::free;
+  return a.kind == SourceKind::face && a.v == b.v && is_end(a.v) ? 1 : CommonSupport::free;
 }
 
 void LinearEquation::add_point(const CommonSupport& s, int i, const dvec3& g) {
@@ -191,6 +197,7 @@ double ContactSystem::largest_slope(const CommonSupport& s) {
   for (std::size_t i = 0; i < std::size_t(s.count); ++i) {
     const ContactJet& j = s.jet[i];
     for (std::size_t a = 0; a < std::size_t(j.dimension); ++a) {
+      if (s.kept[i] == int(a) && s.contact[i].kind == SourceKind::edge) continue;
       // About a pole tangents are as short as they like, their rounding is not.
       const double length = std::max(glm::length(j.dx[a]), small_tangent);
       largest = std::max(largest, std::abs(glm::dot(j.dx[a], s.n)) / length);

@@ -18,7 +18,8 @@ struct CommonSupport {
   std::array<ContactJet, capacity> jet;
   /// The parameter that a contact keeps, 0 or 1: one on a side of its patch beyond which a plane or
   /// a ruled surface goes on stays on the side, where the patch may be so flat across it that the
-  /// direction does not tell how far off it is. It supports all the same, or is no solution.
+  /// direction does not tell how far off it is. It supports all the same, or is no solution. One at
+  /// the end of an edge may stay at a kink, whatever the slope there.
   std::array<int, capacity> kept = {free, free, free};
   static constexpr int free = -1;
 
@@ -31,13 +32,16 @@ struct CommonSupport {
   Ruling ruling() const;
 };
 
-/// The parameter that is at the same end of [0, 1] for both of two contacts of one patch, or
-/// CommonSupport::free: they lie on one side.
+/// The parameter that is at the same end of [0, 1] for both of two contacts of one patch or edge,
+/// or CommonSupport::free: they lie on one side, or at one end.
 int kept_parameter(const Contact& a, const Contact& b);
 
 /// Contacts nearer than this, in the scene's frame, are one. Two contacts of one direction that are
 /// so near are about to merge in a free end; they differ in height by the fourth power of it.
 inline constexpr double same_contact = 1e-7;
+
+/// The contacts lie in their elements, but for what is rounding of merging ones.
+bool lies_inside(const CommonSupport& s);
 
 /// One more equation, linearised: residual + n . dn + sum_i parameter[i] . d(u_i, v_i) = 0.
 struct LinearEquation {

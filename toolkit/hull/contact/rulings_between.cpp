@@ -64,6 +64,16 @@ bool touches(const Ruling& end, const Ruling& longer, const MovingRuling& m) {
   return along < touching_share * chord && along > (1 - touching_share) * chord;
 }
 
+/// Contacts that stay at ends of edges are the highest of these.
+bool is_at_tops(const CommonSupport& s) {
+  for (std::size_t i = 0; i < std::size_t(s.count); ++i) {
+    if (s.kept[i] == CommonSupport::free || s.contact[i].kind != SourceKind::edge) continue;
+    const double rise = glm::dot(s.jet[i].dx[0], s.n);
+    if (s.contact[i].u > 0.5 ? rise < 0 : rise > 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void MovingRuling::complete() {
@@ -266,20 +276,21 @@ bool RulingsBetween::solve_length(MovingRuling& m, double r) const {
 }
 
 /// Contacts that lie on sides at both ends stay there; or where they do not support there, they are
-/// free.
+/// free. At the ends of edges they stay at kinks.
 template <class Equation>
 bool RulingsBetween::solve(MovingRuling& m, const Equation& equation) const {
   const MovingRuling start = m;
-  const auto solved = [&](const std::array<int, CommonSupport::capacity>& kept) {
+  const auto begin = [&](const std::array<int, CommonSupport::capacity>& kept) {
     m = start;
     m.at.kept = kept;
-    return system_.solve(m.at, equation) && is_near(start, m);
   };
+  const auto solved = [&] { return system_.solve(m.at, equation) && is_near(start, m); };
   const auto& all_free = CommonSupport().kept;
-  if (solved(start.at.kept)) return true;
-  if (start.at.kept != all_free && solved(all_free)) return true;
-  m = start;
-  m.at.kept = all_free;
+  begin(start.at.kept);
+  if (solved() && is_at_tops(m.at)) return true;
+  begin(all_free);
+  if (start.at.kept != all_free && solved()) return true;
+  begin(all_free);
   return system_.settle(m.at, equation) && is_near(start, m);
 }
 

@@ -219,10 +219,12 @@ Ruling ArcSolver::told_as_last(Ruling to) const {
   const double distance = is_exact ? 0 : border_depths * search_.map().resolution;
   for (std::size_t i = 0; i < 2; ++i) {
     if (geometry_.is_beside_bent(to.contact[i])) continue;
-    if (is_exact && to.contact[i].kind != SourceKind::face) continue;
     const Contact border = moved_to_border(geometry_, to.contact[i], distance);
     const auto own = expressed_in(geometry_, border, last().contact[i]);
     if (!own || own->kind == SourceKind::vertex) continue;
+    // What leaves an edge leaves it, unless it stays where that meets the next one.
+    const bool stays = own->kind == SourceKind::edge && own->u == last().contact[i].u;
+    if (is_exact && to.contact[i].kind != SourceKind::face && !stays) continue;
     const ContactJet j = geometry_.jet(*own);
     const auto is_level = [&](const dvec3& dx) {
       return std::abs(glm::dot(dx, to.n)) <= search_.map().contact_extent() * glm::length(dx);

@@ -77,9 +77,15 @@ int source_along(const ContactGeometry& geometry, const Contact& c, const Ruling
   return one ? source : -1;
 }
 
-/// Where the contact is on borders of ruled patches, to within rounding: as ones of these.
+/// A contact of a patch that is on its border, but for rounding, as one of that.
+Contact on_border(const ContactGeometry& geometry, const Contact& c) {
+  const bool is_inside = c.kind == SourceKind::face;
+  return geometry.first(is_inside ? snapped(geometry, c, same_ruling) : geometry.canonical(c));
+}
+
+/// Where the contact is on borders of ruled patches: as ones of these.
 std::vector<Contact> on_ruled_patches(const ContactGeometry& geometry, const Contact& c) {
-  const Contact own = geometry.first(snapped(geometry, c, same_ruling));
+  const Contact own = on_border(geometry, c);
   std::vector<Contact> found;
   if (own.kind != SourceKind::edge) return found;
   for (const ContactGeometry::PieceSide& side : geometry.ruled_sides(own)) {
@@ -131,10 +137,13 @@ int source_along(const ContactGeometry& geometry, const Ruling& r) {
   return -1;
 }
 
-/// A contact is a vertex, beside which any face may be.
-bool ends_at_vertex(const ContactGeometry& geometry, const Ruling& r) {
+/// A contact is a vertex, beside which any face may be, or where edges meet in a kink, about which
+/// n turns.
+bool ends_at_joint(const ContactGeometry& geometry, const Ruling& r) {
   return std::any_of(r.contact.begin(), r.contact.end(), [&](const Contact& c) {
-    return geometry.first(snapped(geometry, c, same_ruling)).kind == SourceKind::vertex;
+    const Contact on = on_border(geometry, c);
+    return on.kind == SourceKind::vertex ||
+           (on.kind == SourceKind::edge && (on.u == 0 || on.u == 1));
   });
 }
 
@@ -144,7 +153,7 @@ int source_along(const ContactSystem& system, const ArcPiece& piece) {
   if (source < 0) return -1;
   const bool all =
       std::all_of(piece.rulings.begin() + 1, piece.rulings.end() - 1, [&](const Ruling& r) {
-        return ends_at_vertex(system.geometry(), r) || source_along(system.geometry(), r) >= 0;
+        return ends_at_joint(system.geometry(), r) || source_along(system.geometry(), r) >= 0;
       });
   return all ? source : -1;
 }
