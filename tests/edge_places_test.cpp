@@ -2,7 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "freeform.h"
+#include "judge/sweeps.h"
 #include "models.h"
+#include "taut/bounds/contact_exits.h"
+#include "taut/core/tolerances.h"
 
 namespace taut {
 namespace {
@@ -84,6 +90,43 @@ TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {
   const SeparatingGraph two = united({0.3, 0.3 + 1e-5}, 0.3 + 1e-5 - 1e-9);
   EXPECT_EQ(two.nodes.front().sides.front().from, begin(two, 1));
   EXPECT_NE(begin(two, 0), begin(two, 1));
+}
+
+/// Places beside edges at which rounded walls end are on these, unless their patches rise from the
+/// hull there.
+TEST(EdgePlaces, BesideBentWallsAreOnTheirEdgesWhereThesePatchesTouch) {
+  Random random(1);
+  Natural box;
+  box.shape = with_higher_degrees(filleted_box(3, 2, 1, 0.25));
+  const Scene scene = make_scene(placed(box, Variant::float32, random).shape);
+  const ContactGeometry geometry(scene, {}, tie_share * 1e-7);
+  ASSERT_GT(geometry.bent(), 0);
+  const std::vector<Patch>& patches = scene.model().parts().front().patches();
+  int moved = 0;
+  for (int p = 0; p < int(patches.size()); ++p) {
+    for (const Side side : all_sides) {
+      const int piece = patches[std::size_t(p)].borders[std::size_t(side)].piece;
+      if (piece < 0 || !geometry.is_beside_bent(geometry.first({0, SourceKind::edge, piece, 0, 0})))
+        continue;
+      for (const bool touches : {false, true}) {
+        Contact c = on_side(0, p, side, 0.4);
+        double& across = along_v(side) ? c.u : c.v;
+        across = at_upper_end(side) ? 1 - 1e-4 : 1e-4;
+        const double beside = across;
+        SeparatingGraph graph;
+        SeparatingArc arc;
+        const Ruling r{{0, 0, 1}, {c, c}, {geometry.point(c), geometry.point(c)}};
+        arc.pieces.push_back({{r, r}});
+        graph.arcs.push_back(arc);
+        unite_edge_places(geometry, graph, 1e-9, 1e-2, [&](const Contact&) { return touches; });
+        const Contact& there = graph.arcs.front().pieces.front().rulings.front().contact[0];
+        const double at = along_v(side) ? there.u : there.v;
+        EXPECT_EQ(at, touches ? std::round(beside) : beside);
+        ++moved;
+      }
+    }
+  }
+  EXPECT_GT(moved, 0);
 }
 
 }  // namespace

@@ -429,6 +429,57 @@ TEST(SolvedHull, OfStraightPartsOfCurvesIsTheSameWhenRounded) {
   }
 }
 
+/// A slot of which one side is off the other's direction by an angle that joins leave smooth: along
+/// half a great circle its hull's facet there turns about one ruling, which ends in the kink.
+TEST(SolvedHull, OfASlotWithASmallKinkIsFoundAtOnce) {
+  NurbsCurve slot = {2, {0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9}, {}};
+  for (const dvec2& p : {dvec2(-1, -0.5),
+                         {1, -0.4999},
+                         {1.6, -0.4999},
+                         {1.6, 0},
+                         {1.6, 0.5},
+                         {1, 0.5},
+                         {-1, 0.5},
+                         {-1.6, 0.5},
+                         {-1.6, 0},
+                         {-1.6, -0.5},
+                         {-1, -0.5}}) {
+    slot.points.emplace_back(p, 0, 1);
+  }
+  const Shape shape = {{extruded(slot, dvec3(0, 0, 0.5))}, {}, {}};
+  Random random(7);
+  for (const Variant variant : {Variant::clean, Variant::turned}) {
+    SCOPED_TRACE(name_of(variant));
+    const Hull hull = solved_hull_of(make_scene(placed({shape, {}, {}}, variant, random).shape));
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 6, 6}));
+    EXPECT_LE(hull.boundary->frame.length_to_model(deepest_tolerant(*hull.boundary)),
+              hull.resolution.rho);
+  }
+}
+
+/// A closed profile that turns sharply where it is the lowest, spun about an axis: crests are
+/// inside of patches, and those that are next to each other differ by rounding.
+TEST(SolvedHull, OfASpunProfileIsTheSameWhenRounded) {
+  NurbsCurve profile = {3, {0, 0, 0, 0, 1, 2, 3, 4, 5, 5, 5, 5}, {}};
+  for (const dvec2& p : {dvec2(0.8573, 0),
+                         {0.7085, 0.4177},
+                         {0.2157, 0.5425},
+                         {1.0366, 0.3033},
+                         {1.276, -0.3026},
+                         {0.186, -0.5929},
+                         {0.6787, -0.4858},
+                         {0.8573, 0}}) {
+    profile.points.emplace_back(p.x, 0, p.y, 1);
+  }
+  const Shape shape = {{revolved(profile)}, {}, {}};
+  Random random(7);
+  for (const Variant variant : all_variants) {
+    SCOPED_TRACE(name_of(variant));
+    expect_counts(placed({shape, {}, {}}, variant, random).shape, {3, 2, 2});
+  }
+}
+
 /// Contacts of equal spheres run along a join on both, and those of others all but in one place are
 /// told by the shapes.
 TEST(SolvedHull, OfSpheresNextToEachOther) {
