@@ -131,12 +131,6 @@ void CommonSupport::evaluate(const ContactGeometry& geometry) {
 
 Ruling CommonSupport::ruling() const { return {n, {contact[0], contact[1]}, {jet[0].x, jet[1].x}}; }
 
-bool lies_inside(const CommonSupport& s) {
-  const auto inside = [](double t) { return t >= -same_contact && t <= 1 + same_contact; };
-  return std::all_of(s.contact.begin(), s.contact.begin() + s.count,
-                     [&](const Contact& c) { return inside(c.u) && inside(c.v); });
-}
-
 int kept_parameter(const Contact& a, const Contact& b) {
   if (a.kind == SourceKind::vertex || !same_element(a, b)) return CommonSupport::free;
   const auto is_end = [](double t) { return t == 0 || t == 1; };

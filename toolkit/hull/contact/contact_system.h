@@ -40,9 +40,6 @@ int kept_parameter(const Contact& a, const Contact& b);
 /// so near are about to merge in a free end; they differ in height by the fourth power of it.
 inline constexpr double same_contact = 1e-7;
 
-/// The contacts lie in their elements, but for what is rounding of merging ones.
-bool lies_inside(const CommonSupport& s);
-
 /// One more equation, linearised: residual + n . dn + sum_i parameter[i] . d(u_i, v_i) = 0.
 struct LinearEquation {
   double residual = 0;

@@ -15,6 +15,13 @@ constexpr int halvings = 8;
 /// See leads().
 constexpr double least_way = 1e-10;
 
+/// The contacts lie in their elements, but for what is rounding of merging ones.
+bool lies_inside(const CommonSupport& s) {
+  const auto inside = [](double t) { return t >= -same_contact && t <= 1 + same_contact; };
+  return std::all_of(s.contact.begin(), s.contact.begin() + s.count,
+                     [&](const Contact& c) { return inside(c.u) && inside(c.v); });
+}
+
 double distance(const Ruling& a, const Ruling& b) {
   return glm::distance(a.point[0], b.point[0]) + glm::distance(a.point[1], b.point[1]);
 }
