@@ -179,7 +179,7 @@ TEST(VerifyHull, FindsPointsBesideSharpTurns) {
   for (int k = 0; k <= 200; ++k) {
     const double s = k / 200.0;
     EXPECT_LE(closest_on_curve(along(s).x, 0, 1, along).distance, 1e-13) << s;
-    EXPECT_LE(distance_to(wall({s, 0.3}).x, wall), 1e-13) << s;
+    EXPECT_LE(closest_on_surface(wall({s, 0.3}).x, wall, {10, 6}).distance, 1e-13) << s;
   }
 }
 
