@@ -124,7 +124,8 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
     if (is_within(other, rho)) return other;
     boundary = std::move(other);
   }
-  if (boundary.unresolved.size() > few_open_spots) return boundary;
+  // What is bent stays so in finer maps, or becomes deep where it is not seen.
+  if (boundary.unresolved.size() > few_open_spots || directions.bent > 0) return boundary;
   for (const double share : finer_maps) {
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
     left -= finer.statistics.candidates;
