@@ -113,7 +113,8 @@ class VerifyStated : public testing::TestWithParam<Stated> {};
 /// and fro in a plane (wing, thread), widths (balls_in_a_row), labels (filleted_plate), stand-ins
 /// (loop_cage), arcs that leave a cell and come back (bolt_circle), edges that turn sharply
 /// (wires), ends of curved sides beside other places, and contacts that come back to a place of an
-/// edge (terrain), points of copies that the hull does not name (copies_...).
+/// edge (terrain), points of copies that the hull does not name (copies_...), scrolls whose normals
+/// turn where contacts pass over kinks (fuselage).
 TEST_P(VerifyStated, HoldsWhatIsStated) {
   taut_test::Random random(GetParam().seed);
   for (const FamilyGroup& group : family_groups()) {
@@ -160,7 +161,8 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"balls_in_a_row", Variant::decimals, 3},
         Stated{"overlapping_walls", Variant::decimals, 3},
         Stated{"mirrored_domes", Variant::decimals, 2},
-        Stated{"grid_of_points", Variant::decimals, 2}),
+        Stated{"grid_of_points", Variant::decimals, 2}, Stated{"fuselage", Variant::float32},
+        Stated{"fuselage", Variant::decimals}, Stated{"shaft", Variant::float32, 3}),
     [](const auto& info) {
       return std::string(info.param.family) + "_" + name_of(info.param.variant);
     });

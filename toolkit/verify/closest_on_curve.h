@@ -19,8 +19,8 @@ inline constexpr double no_distance = 1e-13;
 
 /// The point of a curve over [from, to] (or [to, from]) that is nearest to p, by Newton's method
 /// from the samples that are nearer than those beside them, the nearest first, with steps halved
-/// that lead away; from more samples where none leads to p itself. `jet(s)` is a SourceJet whose
-/// first parameter is the curve's.
+/// that lead away; from more samples where none leads to p itself, though p is no farther from one
+/// than these are from each other. `jet(s)` is a SourceJet whose first parameter is the curve's.
 template <class Jet>
 ClosestOnCurve closest_on_curve(const dvec3& p, double from, double to, const Jet& jet) {
   constexpr int steps = 30;
@@ -49,7 +49,15 @@ ClosestOnCurve closest_on_curve(const dvec3& p, double from, double to, const Je
   ClosestOnCurve best;
   for (const int parts : {16, 64}) {
     std::vector<ClosestOnCurve> sample;
-    for (int i = 0; i <= parts; ++i) sample.push_back(at(from + (to - from) * i / parts));
+    double apart = 0;  // neighbours, at most
+    dvec3 last(0.0);
+    for (int i = 0; i <= parts; ++i) {
+      const double s = from + (to - from) * i / parts;
+      const dvec3 x = jet(s).x;
+      if (i > 0) apart = std::max(apart, glm::distance(last, x));
+      last = x;
+      sample.push_back({s, glm::distance(x, p)});
+    }
     std::vector<ClosestOnCurve> starts;
     for (std::size_t i = 0; i < sample.size(); ++i) {
       if (i > 0 && nearer(sample[i - 1], sample[i])) continue;
@@ -60,9 +68,11 @@ ClosestOnCurve closest_on_curve(const dvec3& p, double from, double to, const Je
     const double none =
         no_distance * std::max_element(sample.begin(), sample.end(), nearer)->distance;
     for (const ClosestOnCurve& start : starts) {
+      if (start.distance > best.distance + apart) break;
       best = std::min(best, approach(start), nearer);
       if (best.distance <= none) return best;
     }
+    if (starts.front().distance > apart) break;
   }
   return best;
 }

@@ -78,7 +78,8 @@ inline std::vector<ClosestOnSurface> nearest_samples(const std::vector<ClosestOn
 /// that are nearer than those beside them; where that ends in a point that a side is collapsed to,
 /// whence steps lead along one parameter only, also from such ones inside. `jet(t)` is the
 /// surface's SourceJet, `parts` how many there are between the samples along each parameter; there
-/// are more of them where none leads to p itself.
+/// are more of them where none leads to p itself, though p is no farther from one than these are
+/// from each other.
 template <class Jet>
 ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet,
                                     const std::array<int, 2>& parts) {
@@ -114,22 +115,37 @@ ClosestOnSurface closest_on_surface(const dvec3& p, const Jet& jet,
     return least <= collapsed * most;
   };
   ClosestOnSurface best;
+  // False if p is farther from all samples than these are from each other.
   const auto look = [&](double first, const std::array<int, 2>& own) {
     const int ends = first == 0 ? 1 : 0;
     const std::array<int, 2> count = {own[0] + ends, own[1] + ends};
     std::vector<ClosestOnSurface> grid;
+    std::vector<dvec3> points;
+    dvec2 apart(0.0);  // neighbours along either parameter, at most
     for (int k = 0; k < count[0] * count[1]; ++k) {
-      const dvec2 place(k / count[1], k % count[1]);
-      grid.push_back(at((place + first) / dvec2(own[0], own[1])));
+      const dvec2 t = (dvec2(k / count[1], k % count[1]) + first) / dvec2(own[0], own[1]);
+      const dvec3 x = jet(t).x;
+      const auto off = [&](int back) { return glm::distance(x, points[std::size_t(k - back)]); };
+      if (k >= count[1]) apart.x = std::max(apart.x, off(count[1]));
+      if (k % count[1] > 0) apart.y = std::max(apart.y, off(1));
+      points.push_back(x);
+      grid.push_back({t, glm::distance(x, p)});
+      farthest = std::max(farthest, grid.back().distance);
     }
-    for (const ClosestOnSurface& start : nearest_samples(grid, count)) {
+    const double cell = apart.x + apart.y;
+    const std::vector<ClosestOnSurface> starts = nearest_samples(grid, count);
+    for (const ClosestOnSurface& start : starts) {
+      if (start.distance > best.distance + cell) break;
       const ClosestOnSurface found = approach(start);
       if (found.distance < best.distance) best = found;
       if (best.distance <= no_distance * farthest) break;
     }
+    return starts.front().distance <= cell;
   };
-  look(0, parts);
-  if (best.distance > no_distance * farthest) look(0, {closer * parts[0], closer * parts[1]});
+  const bool may_be_closer = look(0, parts);
+  if (may_be_closer && best.distance > no_distance * farthest) {
+    look(0, {closer * parts[0], closer * parts[1]});
+  }
   if (best.distance > 0 && is_point(best.t)) look(0.5, parts);
   return best;
 }

@@ -41,7 +41,6 @@ constexpr int narrow_halvings = 16;
 constexpr double least_exact_way = 1e-6;
 constexpr double one_place = 0.01;
 
-constexpr std::array<double, 2> senses = {1, -1};
 /// Depths, in units of the resolution, by a patch's own normals, up to which it touches: rounding
 /// turns normals at the sides of small patches so far that this is more than one (four were met);
 /// where patches rise from the hull they are hundreds.
@@ -159,11 +158,11 @@ double RulingSearch::depth(const Ruling& ruling) const {
 bool RulingSearch::touches(const Contact& c) const {
   const dvec3 normal = unit_normal(geometry_, c);
   const dvec3 x = geometry_.point(c);
-  return std::any_of(senses.begin(), senses.end(), [&](double sense) {
-    const dvec3 n = sense * normal;
-    return is_supporting(geometry_, query_, n, glm::dot(x, n), c,
-                         touching_depths * map_.resolution);
-  });
+  const double depth = touching_depths * map_.resolution;
+  for (const dvec3& n : {normal, -normal}) {
+    if (is_supporting(geometry_, query_, n, glm::dot(x, n), c, depth)) return true;
+  }
+  return false;
 }
 
 std::optional<Ruling> RulingSearch::polished(const dvec3& n, const std::array<Contact, 2>& contacts,
