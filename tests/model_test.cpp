@@ -802,6 +802,26 @@ TEST(Model, PatchClosedOnItselfIsHalved) {
   }
 }
 
+/// A patch that is closed both ways: of four, v within u.
+TEST(Model, PatchClosedBothWaysIsQuartered) {
+  const std::vector<dvec2> loop = {dvec2(0, 0), dvec2(4, 3), dvec2(4, -3), dvec2(0, 0)};
+  BezierPatch own{3, 3, {}};
+  for (const dvec2& a : loop) {
+    for (const dvec2& b : loop) own.points.push_back(homogeneous(dvec3(a.x, a.y + b.x, b.y)));
+  }
+  Part part;
+  part.add_surface(as_nurbs(own), "closed");
+  ASSERT_EQ(part.patches().size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Patch& patch = part.patches()[k];
+    const dvec2 lower(0.5 * double(k / 2), 0.5 * double(k % 2));
+    EXPECT_EQ(dvec2(patch.u.lower, patch.v.lower), lower);
+    EXPECT_EQ(dvec2(patch.u.upper, patch.v.upper), lower + 0.5);
+    const dvec3 middle = point(own, lower.x + 0.25, lower.y + 0.25);
+    EXPECT_LE(glm::distance(point(patch.bezier, 0.5, 0.5), middle), 1e-14);
+  }
+}
+
 /// A curve of one closed piece is of two.
 TEST(Model, CurveClosedOnItselfIsHalved) {
   const BezierCurve loop = {

@@ -1,6 +1,7 @@
 #include "taut/surface/model.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -114,39 +115,41 @@ bool goes_on_into_itself(const BezierPatch& p, bool along_u) {
   return longest > 0 && side.length() > closing_share * longest;
 }
 
-/// The Bezier patches of a surface, v within u; rows of patches that would go on into themselves
-/// are halved.
+PatchPiece half_of(const PatchPiece& p, bool along_u, std::size_t k) {
+  const Interval whole{0, 1};
+  if (along_u) return {restricted(p.bezier, unit_halves[k], whole), halves(p.u)[k], p.v};
+  return {restricted(p.bezier, whole, unit_halves[k]), p.u, halves(p.v)[k]};
+}
+
+/// The Bezier patches of a surface, v within u; where each would go on into itself along u, or
+/// along v, all are halved.
 std::vector<PatchPiece> pieces_of(const NurbsSurface& surface) {
   std::vector<PatchPiece> pieces = decompose(surface);
-  const auto all = [&](auto is_so) { return std::all_of(pieces.begin(), pieces.end(), is_so); };
-  const Interval u = surface.domain_u();
-  const Interval v = surface.domain_v();
-  const bool in_u =
-      can_be_halved(u) && all([&](const PatchPiece& p) {
-        return p.u.lower == u.lower && p.u.upper == u.upper && goes_on_into_itself(p.bezier, true);
-      });
-  const bool in_v =
-      can_be_halved(v) && all([&](const PatchPiece& p) {
-        return p.v.lower == v.lower && p.v.upper == v.upper && goes_on_into_itself(p.bezier, false);
-      });
-  const auto split_along = [&](bool along_u) {
-    std::vector<PatchPiece> result;
-    const std::size_t rows = along_u ? 1 : pieces.size();
-    for (std::size_t r = 0; r < rows; ++r) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        for (std::size_t j = 0; j < pieces.size() / rows; ++j) {
-          const PatchPiece& p = pieces[r + j];
-          const Interval whole{0, 1};
-          result.push_back({restricted(p.bezier, along_u ? unit_halves[k] : whole,
-                                       along_u ? whole : unit_halves[k]),
-                            along_u ? halves(p.u)[k] : p.u, along_u ? p.v : halves(p.v)[k]});
-        }
-      }
-    }
-    pieces = std::move(result);
+  // One that ends in its own other side is alone between the two.
+  const auto go_on_into_themselves = [&](bool along_u) {
+    return std::all_of(pieces.begin(), pieces.end(), [&](const PatchPiece& p) {
+      const Interval own = along_u ? p.u : p.v;
+      const Interval all = along_u ? surface.domain_u() : surface.domain_v();
+      return own.lower == all.lower && own.upper == all.upper && can_be_halved(own) &&
+             goes_on_into_itself(p.bezier, along_u);
+    });
   };
-  if (in_u) split_along(true);
-  if (in_v) split_along(false);
+  const bool in_u = go_on_into_themselves(true);
+  const bool in_v = go_on_into_themselves(false);
+  if (in_u) {
+    std::vector<PatchPiece> parts;
+    for (const std::size_t k : {0, 1}) {
+      for (const PatchPiece& p : pieces) parts.push_back(half_of(p, true, k));
+    }
+    pieces = std::move(parts);
+  }
+  if (in_v) {
+    std::vector<PatchPiece> parts;
+    for (const PatchPiece& p : pieces) {
+      for (const std::size_t k : {0, 1}) parts.push_back(half_of(p, false, k));
+    }
+    pieces = std::move(parts);
+  }
   return pieces;
 }
 
