@@ -15,9 +15,9 @@
 #include "models.h"
 #include "sound_hull.h"
 #include "taut/bounds/support_query.h"
+#include "taut/hull/contact/region_outline.h"
 #include "taut/hull/measure/boundary_measures.h"
 #include "taut/hull/precise_hull.h"
-#include "taut/hull/result/region_outline.h"
 #include "taut/io/document/boundary_document.h"
 #include "truths.h"
 
@@ -286,7 +286,8 @@ TEST(SolvedHull, DentsAreNoPartOfPatches) {
         const int column = region.patch % 14;
         if (row < 6 || row > 7 || column < 6 || column > 7) continue;
         const dvec2 corner(row == 6 ? 1 : 0, column == 6 ? 1 : 0);
-        EXPECT_LT(depth_in(outline_of(*hull.boundary, region), corner), 0) << region.patch;
+        EXPECT_LT(depth_in(outline_of(ContactSystem(geometry), *hull.boundary, region), corner), 0)
+            << region.patch;
       }
     }
   }

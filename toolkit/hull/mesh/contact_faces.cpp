@@ -112,10 +112,11 @@ void ContactFaces::add_border(const PatchRegion& region, int face, const TrimStr
 }
 
 void ContactFaces::add_regions() {
+  const ContactSystem system(geometry_);
   for (int f = 0; f < int(boundary_.faces.size()); ++f) {
     for (const PatchRegion& region : boundary_.faces[std::size_t(f)].regions) {
       geometry_.check_stop();
-      regions_.push_back({region.instance, region.patch, f, outline_of(boundary_, region)});
+      regions_.push_back({region.instance, region.patch, f, outline_of(system, boundary_, region)});
       for (const std::vector<TrimStretch>& loop : region.loops) {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc < 0) {

@@ -5,7 +5,7 @@
 
 #include "taut/bounds/contact_geometry.h"
 #include "taut/hull/result/hull_boundary.h"
-#include "taut/hull/result/region_outline.h"
+#include "taut/hull/contact/region_outline.h"
 
 namespace taut {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact/region_outline.h"
 #include "taut/hull/contact/rulings_between.h"
-#include "taut/hull/result/region_outline.h"
 
 namespace taut {
 namespace {
@@ -87,7 +87,7 @@ class TolerantPlaces {
         if (s.arc >= 0) of_arcs = std::max(of_arcs, piece_of(boundary, s).tolerant);
       }
     }
-    double deepest = deepest_in(outline_of(boundary, region), region, of_arcs > 0);
+    double deepest = deepest_in(outline_of(system_, boundary, region), region, of_arcs > 0);
     deepest = std::max(of_arcs, deepest <= geometry_.tie() ? 0 : bound_of(deepest));
     // How what stands for others ripples, places do not tell.
     const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
