@@ -32,6 +32,8 @@ constexpr long few_undecided = 4096;
 /// together.
 constexpr std::array finer_maps = {1. / 4, 1. / 16, 1. / 64};
 constexpr long finer_map_times = 2;
+/// How many times the resolution what is deep may be expected to be by one.
+constexpr double finer_depths = 4;
 
 /// Spots that could not be resolved beyond which it does not help to know more.
 constexpr std::size_t few_open_spots = 16;
@@ -124,14 +126,16 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
     if (is_within(other, rho)) return other;
     boundary = std::move(other);
   }
-  // What is bent stays so in finer maps, or becomes deep where it is not seen.
-  if (boundary.unresolved.size() > few_open_spots || directions.bent > 0) return boundary;
+  if (boundary.unresolved.size() > few_open_spots) return boundary;
   for (const double share : finer_maps) {
+    // Depths fall with the resolution, or faster.
+    const bool is_last = share == finer_maps.back();
+    if (!is_last && share * deepest_tolerant(boundary) > finer_depths * rho) continue;
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
     left -= finer.statistics.candidates;
-    if (undecided(finer) > 0 || left <= 0) break;
     HullBoundary other = solved(geometry, finer, rho, options, statistics);
     if (is_within(other, rho)) return other;
+    if (undecided(finer) > 0 || left <= 0) break;
   }
   return boundary;
 }

@@ -27,8 +27,8 @@ constexpr double near_places = 1.001;
 /// of them is deep.
 constexpr int region_places = 3;
 constexpr int closer_region_places = 6;
-/// How many slacks of its outline a place is inside: rulings may be few.
-constexpr double region_slacks = 2;
+/// How far beside an outline it is looked, in the patch's parameters.
+constexpr double beside_outline = 3e-3;
 
 class TolerantPlaces {
  public:
@@ -109,7 +109,7 @@ class TolerantPlaces {
     dvec2 at(0.5);
     const auto look = [&](const dvec2& uv) {
       const bool is_inside = std::min({uv.x, uv.y, 1 - uv.x, 1 - uv.y}) > 0 &&
-                             depth_in(outline, uv) >= region_slacks * outline_slack;
+                             depth_in(outline, uv) >= beside_outline * 0.5;
       const double found = is_inside ? own_depth(region, uv) : 0;
       if (found > deepest) at = uv;
       deepest = std::max(deepest, found);
@@ -122,6 +122,16 @@ class TolerantPlaces {
     look_at_grid(region_places);
     if (!closer && deepest <= geometry_.tie()) return deepest;
     look_at_grid(closer_region_places);
+    for (const std::vector<dvec2>& loop : outline) {
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        const dvec2& from = loop[k];
+        const dvec2 along = loop[(k + 1) % loop.size()] - from;
+        const double length = glm::length(along);
+        if (!(length > 0)) continue;
+        const dvec2 inwards = dvec2(-along.y, along.x) / length;
+        look(from + 0.5 * along + beside_outline * inwards);
+      }
+    }
     double step = 1.0 / closer_region_places;
     for (int k = 0; k < closer_looks; ++k) {
       step *= 0.5;
