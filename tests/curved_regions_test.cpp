@@ -31,10 +31,10 @@ Shape sheet(double a) {
 }
 
 /// Directions of a small cell about one.
-std::array<dvec3, 4> around(const dvec3& n) {
+CurvedRegions::Cone around(const dvec3& n) {
   const auto [a, b] = taut::tangent_frame(n);
-  return {n - 0.01 * a - 0.01 * b, n - 0.01 * a + 0.01 * b, n + 0.01 * a - 0.01 * b,
-          n + 0.01 * a + 0.01 * b};
+  return CurvedRegions::cone_of({n - 0.01 * a - 0.01 * b, n - 0.01 * a + 0.01 * b,
+                                 n + 0.01 * a - 0.01 * b, n + 0.01 * a + 0.01 * b});
 }
 
 /// Whether the middle of the sheet is nearly concave, its curvature of 2 a against a bound.
@@ -63,9 +63,25 @@ TEST(CurvedRegions, NearlyConcaveByTheCurvatureTowardsTheNormal) {
   }
 }
 
-/// Of directions on both sides of the surface none is told.
-TEST(CurvedRegions, NearlyConcaveFromOneSideOnly) {
-  EXPECT_FALSE(is_nearly_concave(-1, dvec3(1, 0, 0), 1e-3, false));
+/// Where no plane across the directions touches it does not matter how the sheet is curved: from
+/// its middle to (1, 1) normals lean by 0 to 70 degrees.
+TEST(CurvedRegions, CurvaturesMatterWhereNormalsAreDirections) {
+  const Interval half{0.5, 1};
+  for (const double a : {-1.0, 1.0}) {
+    const Scene scene = make_scene(sheet(a));
+    const ContactGeometry geometry(scene);
+    const MapPieces pieces(geometry, 1e-6);
+    CurvedRegions regions(pieces);
+    const bool is_cap = a < 0;
+    for (const dvec3& n : {dvec3(-2 * a * 0.4, 2 * 0.4, 1), dvec3(2 * a * 0.4, -2 * 0.4, -1)}) {
+      EXPECT_EQ(regions.are_definite(0, half, half, around(unit(n))), is_cap) << a;
+    }
+    EXPECT_FALSE(regions.are_nearly_concave(0, half, half, around({0, 0, is_cap ? -1 : 1}), 1e-3));
+    for (const dvec3& n : {dvec3(1, 0, 0), dvec3(2, 0, 1), dvec3(0, -1, 1)}) {
+      EXPECT_TRUE(regions.are_definite(0, half, half, around(unit(n)))) << a;
+      EXPECT_TRUE(regions.are_nearly_concave(0, half, half, around(unit(n)), 1e-3)) << a;
+    }
+  }
 }
 
 }  // namespace

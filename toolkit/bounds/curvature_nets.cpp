@@ -201,6 +201,7 @@ int CurvatureNets::definite_sign() const {
 
 /// Of uu vv - uv^2, over all of the square.
 double CurvatureNets::least_determinant() const {
+  if (least_determinant_) return *least_determinant_;
   const auto net = [&](const std::vector<double>& entries) {
     return scaled<double>(
         uu_.shape, [&](int i, int j) { return entries[std::size_t(i * (uu_.shape.q + 1) + j)]; });
@@ -216,7 +217,8 @@ double CurvatureNets::least_determinant() const {
   const double roundings = (uu_.shape.p + 1.0) * (uu_.shape.q + 1.0) + 16;
   const double error = uu * vv_.error + vv * uu_.error + 2 * mixed * uv_.error +
                        roundings * rounding_unit * (uu * vv + mixed * mixed);
-  return range(unscaled(determinant), error).lower;
+  least_determinant_ = range(unscaled(determinant), error).lower;
+  return *least_determinant_;
 }
 
 /// By the least eigenvalue of an entry, which its errors change by no more than their sum. Or, of

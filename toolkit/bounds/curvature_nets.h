@@ -17,6 +17,7 @@ namespace taut {
 ///
 /// At a pole, a side that is one point with one tangent plane, the form and N vanish. There, too,
 /// they tell: what vanishes as powers of the distance from the pole is divided by these powers.
+/// One object a thread.
 class CurvatureNets {
  public:
   /// `poles`: the sides (indexed by Side) that are poles. @pre degrees are at least 1, weights
@@ -70,7 +71,8 @@ class CurvatureNets {
   static Interval range(const Net<double>& net, const Interval& u, const Interval& v);
 
   Net<dvec3> normals_;
-  Net<double> uu_, uv_, vv_;  // of one degree
+  Net<double> uu_, uv_, vv_;                         // of one degree
+  mutable std::optional<double> least_determinant_;  // once it was asked for
 };
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 #include "taut/hull/exact_boundary.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -127,15 +128,18 @@ HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap&
     boundary = std::move(other);
   }
   if (boundary.unresolved.size() > few_open_spots) return boundary;
-  for (const double share : finer_maps) {
-    // Depths fall with the resolution, or faster.
-    const bool is_last = share == finer_maps.back();
-    if (!is_last && share * deepest_tolerant(boundary) > finer_depths * rho) continue;
+  // Depths fall with the resolution, mostly: what is deep is first sought with the finest.
+  std::array shares = finer_maps;
+  const double deepest = deepest_tolerant(boundary);
+  std::stable_partition(shares.begin(), shares.end(), [&](double share) {
+    return share == finer_maps.back() || share * deepest <= finer_depths * rho;
+  });
+  for (const double share : shares) {
     const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
     left -= finer.statistics.candidates;
     HullBoundary other = solved(geometry, finer, rho, options, statistics);
     if (is_within(other, rho)) return other;
-    if (undecided(finer) > 0 || left <= 0) break;
+    if (left <= 0) break;
   }
   return boundary;
 }

@@ -37,11 +37,14 @@ bool any_overlap(const Branches& branches, const Branch& branch) {
 
 }  // namespace
 
-/// Strictly, so that every point at which a plane touches counts one.
+/// Strictly where a plane may touch, so that every point at which one does counts one.
 bool ContactIndex::is_curved(const CellView& view, const Chart& chart) {
   if (chart.kind == SourceKind::vertex) return true;
   if (stand_ins_.is_stand_in(chart)) return true;  // are_points() tells
-  if (chart.kind == SourceKind::face) return regions_.are_definite(chart.element, chart.u, chart.v);
+  if (chart.kind == SourceKind::face) {
+    return regions_.are_definite(chart.element, chart.u, chart.v,
+                                 CurvedRegions::cone_of(view.corners()));
+  }
   pieces_.restricted(chart.element, chart.u, {0, 1}, net_);
   HeightGrowth growth(view);
   for (const dvec4& p : net_) growth.include(p);
@@ -129,16 +132,19 @@ bool ContactIndex::bends_down(const CellView& view, const Branches& branches,
 
 /// Let D be the extent of the branch, h the heights less e |x - c|^2 with c in its box and
 /// e = rho / (4 D^2). Where h has no slope, the normal is d - 2 e (x - c), of a length less than
-/// 2, and h is concave there if the curvature towards it is less than e, for its second derivatives
-/// are that times the length less 2 e. The slopes of h differ from those of the heights by 2 e D.
+/// 2 and all but along d, and h is concave there if the curvature towards it is less than e, for
+/// its second derivatives are that times the length less 2 e. The slopes of h differ from those of
+/// the heights by 2 e D.
 bool ContactIndex::is_nearly_concave(const CellView& view, const Branches& branches,
                                      const Branch& branch) {
   const double size = glm::distance(branch.lower, branch.upper);
   tilt_ = rho_ / (2 * size);
+  CurvedRegions::Cone directions = CurvedRegions::cone_of(view.corners());
+  directions.angle += 2 * tilt_;
   return std::all_of(branch.charts.begin(), branch.charts.end(), [&](int k) {
     const Chart& chart = branches.chart(k);
     return chart.kind == SourceKind::face &&
-           regions_.are_nearly_concave(chart.element, chart.u, chart.v, view.corners(),
+           regions_.are_nearly_concave(chart.element, chart.u, chart.v, directions,
                                        rho_ / (4 * size * size));
   });
 }
@@ -228,11 +234,12 @@ bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branch
   if (branch.charts.size() > 1 || chart.kind != SourceKind::face || chart.pieces.size() < 3) {
     return false;
   }
+  const CurvedRegions::Cone directions = CurvedRegions::cone_of(view.corners());
   std::vector<ParameterRegion::Cell> rectangles;
   for (const int k : chart.pieces) {
     const MapPiece& piece = *view.seen()[std::size_t(k)].piece;
     rectangles.push_back({piece.u, piece.v});
-    if (!regions_.are_definite(chart.element, piece.u, piece.v)) return false;
+    if (!regions_.are_definite(chart.element, piece.u, piece.v, directions)) return false;
   }
   ParameterRegion region(rectangles);
   for (int round = 0; round < extension_limit; ++round) {
@@ -249,7 +256,9 @@ bool ContactIndex::is_one_of_pieces(const CellView& view, const Branches& branch
         continue;
       }
       const std::optional<ParameterRegion::Cell> beyond = region.extend(side);
-      if (!beyond || !regions_.are_definite(chart.element, beyond->u, beyond->v)) return false;
+      if (!beyond || !regions_.are_definite(chart.element, beyond->u, beyond->v, directions)) {
+        return false;
+      }
       any = true;
     }
     if (!any) return !region.any_end_inwards(others);

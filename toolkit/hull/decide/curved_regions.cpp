@@ -10,6 +10,9 @@ namespace {
 /// Halvings after which a rectangle's curvature is left open.
 constexpr int curvature_level_limit = 12;
 
+/// What rounding may do to angles.
+constexpr double angle_slack = 1e-14;
+
 bool overlap(const Interval& a, const Interval& b) {
   return a.lower < b.upper && b.lower < a.upper;
 }
@@ -45,29 +48,42 @@ std::unique_ptr<CurvatureNets> CurvedRegions::nets_of(int element) const {
   return std::make_unique<CurvatureNets>(bezier, poles);
 }
 
-/// What the nets tell of a rectangle. Their forms are the second derivatives of the heights along
-/// N, where that is normal to the surface, times its length: curvatures are these over the squares
-/// of lengths on the surface.
-void CurvedRegions::know(int element, Node& node) const {
-  if (node.known) return;
-  node.known = true;
-  node.sign = node.nets->definite_sign();
-  know_hollows(element, node);
-  // Nets are large, and few of these are asked for again.
-  if (node.sign != 0 || node.level == curvature_level_limit) node.nets.reset();
+/// Nets are large: where they are not expected to be asked for again there are none.
+const CurvatureNets& CurvedRegions::nets(int element, Node& node) const {
+  if (node.nets == nullptr) node.nets = nets_again(element, node);
+  return *node.nets;
 }
 
-void CurvedRegions::know_hollows(int element, Node& node) const {
-  if (pieces_.element(element).rational || has_pole(element)) return;
-  node.normals = node.nets->normal_bounds();
-  const double stretch = least_stretch(element, node.u, node.v);
-  if (!(node.normals.least > 0) || !(stretch > 0)) return;
-  for (const int sign : {-1, 1}) {
-    node.hollow[std::size_t(sign > 0)] =
-        node.sign == sign
-            ? 0
-            : node.nets->shortfall_bound(sign) / (node.normals.least * stretch * stretch);
+const CurvatureNets::NormalBounds& CurvedRegions::normals(int element, Node& node) const {
+  if (!node.normals) node.normals = nets(element, node).normal_bounds();
+  return *node.normals;
+}
+
+/// Of the curvatures all over the rectangle; 0 if there is none.
+int CurvedRegions::sign(int element, Node& node) const {
+  if (!node.sign) {
+    node.sign = nets(element, node).definite_sign();
+    if (*node.sign != 0) node.nets.reset();
   }
+  return *node.sign;
+}
+
+/// A bound of the curvatures towards the normals, times the sign. The forms are the second
+/// derivatives of the heights along N, where that is normal to the surface, times its length:
+/// curvatures are these over the squares of lengths on the surface.
+double CurvedRegions::hollow(int element, Node& node, int towards) const {
+  if (const int own = sign(element, node); own != 0) return own == towards ? 0 : infinity;
+  std::optional<double>& bound = node.hollow[towards > 0 ? 1 : 0];
+  if (!bound) {
+    const double stretch = least_stretch(element, node.u, node.v);
+    const double least = normals(element, node).least;
+    bound = least > 0 && stretch > 0
+                ? nets(element, node).shortfall_bound(towards) / (least * stretch * stretch)
+                : infinity;
+    // Few of these are asked for again.
+    if (node.level == curvature_level_limit) node.nets.reset();
+  }
+  return *bound;
 }
 
 bool CurvedRegions::has_pole(int element) const {
@@ -134,10 +150,9 @@ bool CurvedRegions::split(int element, int index) {
   Node& node = tree[std::size_t(index)];
   if (node.first_half >= 0) return true;
   if (node.level == curvature_level_limit) return false;
-  if (node.nets == nullptr) node.nets = nets_again(element, node);
   const Direction direction = direction_of_halves(node.u, node.v);
   const bool of_u = direction == Direction::u;
-  const auto nets = node.nets->halves(direction);
+  const auto halves = nets(element, node).halves(direction);
   node.nets.reset();
   const int first = int(tree.size());
   node.first_half = first;
@@ -149,7 +164,7 @@ bool CurvedRegions::split(int element, int index) {
     half.u = u;
     half.v = v;
     half.level = level;
-    half.nets = std::make_unique<CurvatureNets>(nets[k]);
+    half.nets = std::make_unique<CurvatureNets>(halves[k]);
     Interval& range = of_u ? half.u : half.v;
     const double middle = 0.5 * (range.lower + range.upper);
     (k == 0 ? range.upper : range.lower) = middle;
@@ -164,62 +179,84 @@ bool CurvedRegions::is_small_part(const Node& node, const Interval& u, const Int
          width(v) > 4 * width(node.v);
 }
 
-/// That of the part of the rectangle in the node.
-int CurvedRegions::sign(int element, int index, const Interval& u, const Interval& v) {
+CurvedRegions::Cone CurvedRegions::cone_of(const std::array<dvec3, 4>& directions) {
+  Cone cone{unit(unit(directions[0]) + unit(directions[3])), 0};
+  for (const dvec3& d : directions) {
+    const double off = std::atan2(glm::length(glm::cross(d, cone.axis)), glm::dot(d, cone.axis));
+    cone.angle = std::max(cone.angle, off);
+  }
+  return cone;
+}
+
+/// No normal over the node is one of the directions, or opposite to one.
+bool CurvedRegions::is_apart(int element, Node& node, const Cone& directions) const {
+  const CurvatureNets::NormalBounds& bounds = normals(element, node);
+  if (!(bounds.least > 0)) return false;
+  const double across = glm::length(glm::cross(bounds.axis, directions.axis));
+  const double off = std::atan2(across, std::abs(glm::dot(bounds.axis, directions.axis)));
+  return off > bounds.angle + directions.angle + angle_slack;
+}
+
+/// Of the part of the rectangle in the node; its sign is to be this one, or is told if there is
+/// none yet.
+bool CurvedRegions::are_definite(int element, int index, const Interval& u, const Interval& v,
+                                 const Cone& directions, int& of_all) {
   Tree& tree = this->tree(element);
-  know(element, tree[std::size_t(index)]);
-  const Node& node = tree[std::size_t(index)];
-  if (node.sign != 0 || is_small_part(node, u, v)) return node.sign;
-  if (!split(element, index)) return 0;
-  int result = 0;
+  Node& node = tree[std::size_t(index)];
+  if (is_apart(element, node, directions)) return true;
+  if (const int own = sign(element, node); own != 0) {
+    if (of_all == 0) of_all = own;
+    return own == of_all;
+  }
+  if (is_small_part(node, u, v) || !split(element, index)) return false;
   const int first = tree[std::size_t(index)].first_half;
   for (const int half : {first, first + 1}) {
     if (!overlap(tree[std::size_t(half)].u, u) || !overlap(tree[std::size_t(half)].v, v)) continue;
-    const int own = sign(element, half, u, v);
-    if (own == 0 || (result != 0 && own != result)) return 0;
-    result = own;
+    if (!are_definite(element, half, u, v, directions, of_all)) return false;
   }
-  return result;
+  return true;
 }
 
 bool CurvedRegions::is_nearly_concave(int element, int index, const Interval& u, const Interval& v,
-                                      const std::array<dvec3, 4>& directions, double hollow) {
+                                      const Cone& directions, double most) {
   Tree& tree = this->tree(element);
-  know(element, tree[std::size_t(index)]);
   {
-    const Node& node = tree[std::size_t(index)];
-    const dvec3& axis = node.normals.axis;
-    const bool along = glm::dot(axis, directions[0]) > 0;
-    const double reach = std::sin(node.normals.angle);
-    const bool one_side = node.normals.angle < 0.5 * std::numbers::pi &&
-                          std::all_of(directions.begin(), directions.end(), [&](const dvec3& d) {
-                            return (along ? 1 : -1) * glm::dot(axis, d) > reach * glm::length(d);
-                          });
-    if (one_side && node.hollow[along ? 0 : 1] <= hollow) return true;
+    Node& node = tree[std::size_t(index)];
+    if (is_apart(element, node, directions)) return true;
+    const dvec3& axis = node.normals->axis;
+    const bool along = glm::dot(axis, directions.axis) > 0;
+    // All normals over the node lead to one side of the planes across the directions.
+    const double off = std::atan2(glm::length(glm::cross(axis, directions.axis)),
+                                  std::abs(glm::dot(axis, directions.axis)));
+    const bool one_side =
+        off + node.normals->angle + directions.angle + angle_slack < 0.5 * std::numbers::pi;
+    if (one_side && hollow(element, node, along ? -1 : 1) <= most) return true;
     if (is_small_part(node, u, v)) return false;
     // What is curved the other way is so in its halves.
-    if (one_side && node.sign == (along ? 1 : -1)) return false;
+    if (one_side && sign(element, node) == (along ? 1 : -1)) return false;
   }
   if (!split(element, index)) return false;
   const int first = tree[std::size_t(index)].first_half;
   for (const int half : {first, first + 1}) {
     const Node& node = tree[std::size_t(half)];
     if (!overlap(node.u, u) || !overlap(node.v, v)) continue;
-    if (!is_nearly_concave(element, half, u, v, directions, hollow)) return false;
+    if (!is_nearly_concave(element, half, u, v, directions, most)) return false;
   }
   return true;
 }
 
 bool CurvedRegions::are_nearly_concave(int element, const Interval& u, const Interval& v,
-                                       const std::array<dvec3, 4>& directions, double hollow) {
+                                       const Cone& directions, double most) {
   if (pieces_.element(element).rational || has_pole(element)) return false;
   if (pieces_.geometry().patch(pieces_.element(element).contact).stand_in) return false;
-  return is_nearly_concave(element, 0, u, v, directions, hollow);
+  return is_nearly_concave(element, 0, u, v, directions, most);
 }
 
-bool CurvedRegions::are_definite(int element, const Interval& u, const Interval& v) {
+bool CurvedRegions::are_definite(int element, const Interval& u, const Interval& v,
+                                 const Cone& directions) {
   if (pieces_.geometry().patch(pieces_.element(element).contact).stand_in) return false;
-  return sign(element, 0, u, v) != 0;
+  int sign = 0;
+  return are_definite(element, 0, u, v, directions, sign);
 }
 
 }  // namespace taut
