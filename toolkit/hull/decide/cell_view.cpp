@@ -206,8 +206,8 @@ bool CellView::sharpen(double depth, const std::vector<double>& shares) {
 }
 
 bool CellView::refine() {
-  if (seen_.size() > crowding() * split_piece_limit) return false;
-  const double share = seen_.size() > crowding() * many_pieces ? coarse_share : split_share;
+  if (seen_.size() > split_piece_limit) return false;
+  const double share = seen_.size() > many_pieces ? coarse_share : split_share;
   before_.swap(seen_);
   seen_.clear();
   bool any = false;

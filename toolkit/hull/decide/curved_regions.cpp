@@ -8,7 +8,7 @@ namespace taut {
 namespace {
 
 /// Halvings after which a rectangle's curvature is left open.
-constexpr int curvature_level_limit = 12;
+constexpr int curvature_level_limit = 13;
 
 /// What rounding may do to angles.
 constexpr double angle_slack = 1e-14;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "taut/bounds/vector_net.h"
 #include "taut/hull/decide/height_growth.h"
 
 namespace taut {
@@ -12,6 +13,9 @@ namespace {
 /// too.
 constexpr double most_oblique = 0.99;
 
+/// How often a side is halved to tell where heights grow along it, are concave, or fall.
+constexpr int side_halvings = 4;
+
 }  // namespace
 
 void RectangleSides::turn_to(int index, const Interval& u, const Interval& v) {
@@ -21,25 +25,37 @@ void RectangleSides::turn_to(int index, const Interval& u, const Interval& v) {
   if (element.rational) even_weights(shape_, net_);
 }
 
+/// What they do along the side, part by part: where they grow, then are concave, then fall they
+/// have no low. At ends where the side is straight they are concave all but strictly.
 bool RectangleSides::have_no_low(const CellView& view, Side side, double tilt) const {
   const int degree = along_v(side) ? shape_.q : shape_.p;
   const int fixed = at_upper_end(side) ? (along_v(side) ? shape_.p : shape_.q) : 0;
-  const auto at_side = [&](int along) -> const dvec4& {
-    return along_v(side) ? at(fixed, along) : at(along, fixed);
+  std::vector<dvec4> line;
+  for (int k = 0; k <= degree; ++k) line.push_back(along_v(side) ? at(fixed, k) : at(k, fixed));
+  enum class Way { grow, concave, fall };
+  Way last = Way::grow;
+  const auto ways_are_in_order = [&](const auto& self, std::vector<dvec4> net, int halvings) {
+    HeightGrowth growth(view, tilt);
+    for (const dvec4& p : net) growth.include(p);
+    bool grows = true;
+    bool falls = true;
+    bool concave = degree > 1;
+    for (std::size_t k = 1; k < net.size(); ++k) {
+      grows = grows && growth.along(net[k] - net[k - 1]);
+      falls = falls && growth.along(net[k - 1] - net[k]);
+      concave = concave && (k < 2 || growth.along(2.0 * net[k - 1] - net[k - 2] - net[k]));
+    }
+    if (grows && last == Way::grow) return true;
+    if (falls || (concave && last != Way::fall)) {
+      last = falls ? Way::fall : Way::concave;
+      return true;
+    }
+    if (halvings == 0 || grows || concave) return false;
+    std::vector<dvec4> lower = net;
+    halve_u({degree, 0}, net.data(), lower.data());
+    return self(self, std::move(lower), halvings - 1) && self(self, std::move(net), halvings - 1);
   };
-  HeightGrowth growth(view, tilt);
-  for (int k = 0; k <= degree; ++k) growth.include(at_side(k));
-  bool concave = degree > 1;
-  for (int k = 0; k + 2 <= degree && concave; ++k) {
-    concave = growth.along(2.0 * at_side(k + 1) - at_side(k) - at_side(k + 2));
-  }
-  bool grows = !concave;
-  bool falls = !concave;
-  for (int k = 0; k < degree; ++k) {
-    grows = grows && growth.along(at_side(k + 1) - at_side(k));
-    falls = falls && growth.along(at_side(k) - at_side(k + 1));
-  }
-  return concave || grows || falls;
+  return ways_are_in_order(ways_are_in_order, std::move(line), side_halvings);
 }
 
 bool RectangleSides::rise(const CellView& view, Side side, double tilt, bool obliquely) const {

@@ -1,6 +1,10 @@
 #include "taut/hull/solve/facet_corners.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/geometry.h"
@@ -59,6 +63,39 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
   return goes_on ? std::optional(s) : std::nullopt;
 }
 
+/// The pieces of edges that lead from a point straight to another one, one behind the other; none
+/// where they do not lead all the way.
+std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const dvec3& a,
+                                        const dvec3& b, double distance) {
+  std::map<double, std::pair<double, EdgeStretch>> found;  // by where they begin: where they end
+  const dvec3 way = unit(b - a);
+  for (const int i : geometry.scene().distinct_instances()) {
+    const int count = int(geometry.part({i, SourceKind::edge, 0, 0, 0}).pieces().size());
+    for (int k = 0; k < count; ++k) {
+      const Contact piece{i, SourceKind::edge, k, 0, 0};
+      const std::vector<dvec4>& points = geometry.curve(piece).points;
+      const bool is_near = std::all_of(points.begin(), points.end(), [&](const dvec4& p) {
+        return distance_to_segment(euclidean(p), a, b) <= distance;
+      });
+      if (!is_near || geometry.is_repeated(piece)) continue;
+      const double first = glm::dot(euclidean(points.front()) - a, way);
+      const double last = glm::dot(euclidean(points.back()) - a, way);
+      const bool forwards = first < last;
+      found.emplace(std::min(first, last),
+                    std::pair(std::max(first, last),
+                              EdgeStretch{i, k, forwards ? 0.0 : 1.0, forwards ? 1.0 : 0.0}));
+    }
+  }
+  std::vector<EdgeStretch> pieces;
+  double end = 0;
+  for (const auto& [from, piece] : found) {
+    if (std::abs(from - end) > distance) return {};
+    end = piece.first;
+    pieces.push_back(piece.second);
+  }
+  return std::abs(end - glm::distance(a, b)) <= distance ? pieces : std::vector<EdgeStretch>();
+}
+
 }  // namespace
 
 void unite_corners(const ContactGeometry& geometry, double distance, FacetContacts& facet) {
@@ -112,6 +149,33 @@ void fill_dents(const ContactGeometry& geometry, double depth, FacetContacts& fa
     }
     ++k;
   }
+}
+
+void run_along_edges(const ContactGeometry& geometry, double distance, FacetNode& facet) {
+  FacetNode result{facet.n, {}, {}, {}, {}, facet.is_crossing};
+  bool any = false;
+  for (std::size_t k = 0; k < facet.contacts.size(); ++k) {
+    result.contacts.push_back(facet.contacts[k]);
+    result.points.push_back(facet.points[k]);
+    result.sides.push_back(facet.sides.empty() ? EdgeStretch{} : facet.sides[k]);
+    result.slots.push_back(facet.slots[k]);
+    if (facet.is_curved(k) || facet.slots[k].arc >= 0) continue;
+    const dvec3& next = facet.points[(k + 1) % facet.points.size()];
+    bool is_first = true;
+    for (const EdgeStretch& s : pieces_between(geometry, facet.points[k], next, distance)) {
+      if (is_first) {
+        result.sides.back() = s;
+      } else {
+        result.contacts.push_back(s.at(s.from));
+        result.points.push_back(geometry.point(s.at(s.from)));
+        result.sides.push_back(s);
+        result.slots.emplace_back();
+      }
+      is_first = false;
+      any = true;
+    }
+  }
+  if (any) facet = std::move(result);
 }
 
 }  // namespace taut

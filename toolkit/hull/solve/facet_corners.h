@@ -1,6 +1,7 @@
 #pragma once
 
 #include "taut/hull/contact/facet_contacts.h"
+#include "taut/hull/solve/separating_graph.h"
 
 namespace taut {
 
@@ -12,5 +13,9 @@ void unite_corners(const ContactGeometry& geometry, double distance, FacetContac
 /// Straight sides across dents of an edge, along which the facet's outline runs beside them, run
 /// along it, too, where it is nowhere farther from them than so much.
 void fill_dents(const ContactGeometry& geometry, double depth, FacetContacts& facet);
+
+/// Straight sides across which no arc leaves run along the straight edges that make them, of
+/// patches that leave the plane there without turning: pieces no farther from them than so much.
+void run_along_edges(const ContactGeometry& geometry, double distance, FacetNode& facet);
 
 }  // namespace taut

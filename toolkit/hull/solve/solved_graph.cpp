@@ -140,6 +140,7 @@ class GraphSolver {
     for (std::size_t k = 0; k < sides.size(); ++k) {
       facet->slots[sides[k]] = {node.ends[k].arc, node.ends[k].end};
     }
+    if (!facet->is_crossing) run_along_edges(geometry_, map_.resolution, *facet);
     graph_.nodes.push_back(std::move(*facet));
   }
 
@@ -211,6 +212,20 @@ class GraphSolver {
     return plane;
   }
 
+  /// Where corners have become one in the plane they stay what they are told beside it, if they are
+  /// no farther below it than the resolution.
+  TouchingPlane with_corners_apart(const TouchingPlane& plane, const NodeCorners& corners) {
+    TouchingPlane apart = plane;
+    const double h = query_(plane.n, plane.contacts.front().contact).h;
+    for (std::size_t k = 0; k < apart.contacts.size(); ++k) {
+      const dvec3 x = geometry_.point(corners.contacts[k]);
+      const double height = glm::dot(x, plane.n);
+      if (h - height > map_.resolution) return plane;
+      apart.contacts[k] = {corners.contacts[k], x, height};
+    }
+    return apart;
+  }
+
   /// Two corners that were apart have become one.
   bool has_merged(const TouchingPlane& plane, const NodeCorners& corners) const {
     for (std::size_t a = 0; a < corners.contacts.size(); ++a) {
@@ -264,6 +279,7 @@ class GraphSolver {
       plane = turned_to_part(geometry_, query_, plane, corners.contacts, corners.beside,
                              map_.resolution);
     }
+    if (has_merged(plane, corners)) plane = with_corners_apart(plane, corners);
     if (plane.off() > map_.resolution) {
       fail(plane.n, "the contacts of a facet lie in no plane");
     }
