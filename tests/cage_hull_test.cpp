@@ -564,6 +564,15 @@ ControlCage lattice_cage(unsigned seed) {
   return cage;
 }
 
+/// A plane touches a crease in its end and a little beside it, lower by less than the resolution.
+TEST(CageHull, OfALatticeWithCornersThatMerge) {
+  const Model model = cage_model(lattice_cage(25));
+  const Hull hull = whole_hull(model, "lattice 25");
+  ASSERT_TRUE(hull.boundary);
+  EXPECT_LE(deepest_tolerant(*hull.boundary), hull.resolution.rho);
+  expect_verified(model, hull, "lattice 25");
+}
+
 TEST(CageHull, OfLattices) {
   for (const unsigned seed :
        {0U,  1U,  2U,  3U,  4U,  6U,  7U,  8U,  9U,  10U, 11U, 12U, 13U, 14U, 15U, 16U, 17U, 19U,

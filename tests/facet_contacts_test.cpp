@@ -10,6 +10,7 @@
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/contact/contact_system.h"
+#include "taut/hull/solve/facet_corners.h"
 #include "taut/hull/solve/level_pieces.h"
 
 namespace taut {
@@ -371,6 +372,43 @@ TEST(CurvedFacets, WhatIsAFacet) {
 }
 
 /// @}
+
+/// The edges of a box in two pieces each: those run along its top's sides that no arc leaves
+/// across.
+TEST(FacetCorners, StraightSidesRunAlongEdges) {
+  const Scene scene = make_scene(split(box(1, 2, 3), 0.25, 0.5));
+  const ContactGeometry geometry(scene);
+  SupportQuery query(scene);
+  std::vector<Contact> corners;
+  for (const dvec3& n : {dvec3(-1, -1, 9), dvec3(1, -1, 9), dvec3(1, 1, 9), dvec3(-1, 1, 9)}) {
+    corners.push_back(geometry.canonical(query(unit(n)).contact));
+  }
+  FacetNode top{{0, 0, 1}, corners, {}, {}, {}};
+  for (const Contact& c : corners) top.points.push_back(geometry.point(c));
+  top.slots.assign(4, {});
+  FacetNode with_arcs = top;
+  for (FacetNode::Slot& slot : with_arcs.slots) slot.arc = 0;
+  run_along_edges(geometry, 1e-9, with_arcs);
+  EXPECT_EQ(with_arcs.contacts.size(), 4U);
+  EXPECT_TRUE(with_arcs.sides.empty());
+
+  top.slots[2].arc = 0;
+  run_along_edges(geometry, 1e-9, top);
+  ASSERT_EQ(top.sides.size(), 7U);
+  ASSERT_EQ(top.slots.size(), 7U);
+  double around = 0;
+  for (std::size_t k = 0; k < 7; ++k) {
+    const dvec3& next = top.points[(k + 1) % 7];
+    EXPECT_EQ(top.is_curved(k), top.slots[k].arc < 0);
+    around += glm::distance(top.points[k], next);
+    EXPECT_LE(glm::distance(geometry.point(top.contacts[k]), top.points[k]), 1e-15);
+    if (!top.is_curved(k)) continue;
+    const EdgeStretch& s = top.sides[k];
+    EXPECT_LE(glm::distance(geometry.point(s.at(s.from)), top.points[k]), 1e-15);
+    EXPECT_LE(glm::distance(geometry.point(s.at(s.to)), next), 1e-15);
+  }
+  EXPECT_NEAR(around, scene.frame().length_to_frame(6), 1e-14);
+}
 
 }  // namespace
 }  // namespace taut

@@ -14,7 +14,7 @@ namespace {
 constexpr double most_oblique = 0.99;
 
 /// How often a side is halved to tell where heights grow along it, are concave, or fall.
-constexpr int side_halvings = 4;
+constexpr int side_halvings = 10;
 
 }  // namespace
 

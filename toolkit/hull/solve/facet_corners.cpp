@@ -67,7 +67,8 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
 /// where they do not lead all the way.
 std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const dvec3& a,
                                         const dvec3& b, double distance) {
-  std::map<double, std::pair<double, EdgeStretch>> found;  // by where they begin: where they end
+  std::multimap<double, std::pair<double, EdgeStretch>>
+      found;  // by where they begin: where they end
   const dvec3 way = unit(b - a);
   for (const int i : geometry.scene().distinct_instances()) {
     const int count = int(geometry.part({i, SourceKind::edge, 0, 0, 0}).pieces().size());
@@ -89,7 +90,7 @@ std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const d
   std::vector<EdgeStretch> pieces;
   double end = 0;
   for (const auto& [from, piece] : found) {
-    if (std::abs(from - end) > distance) return {};
+    if (std::abs(from - end) > distance) continue;  // of another edge along the same segment
     end = piece.first;
     pieces.push_back(piece.second);
   }
