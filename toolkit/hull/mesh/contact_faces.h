@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "taut/bounds/contact_geometry.h"
-#include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/contact/region_outline.h"
+#include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
 

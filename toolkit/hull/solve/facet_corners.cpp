@@ -67,8 +67,8 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
 /// where they do not lead all the way.
 std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const dvec3& a,
                                         const dvec3& b, double distance) {
-  std::multimap<double, std::pair<double, EdgeStretch>>
-      found;  // by where they begin: where they end
+  // By where they begin: where they end.
+  std::multimap<double, std::pair<double, EdgeStretch>> found;
   const dvec3 way = unit(b - a);
   for (const int i : geometry.scene().distinct_instances()) {
     const int count = int(geometry.part({i, SourceKind::edge, 0, 0, 0}).pieces().size());
