@@ -20,7 +20,8 @@ enum Quantity : std::size_t {
   vector_area = 15,     ///< int n dA
   ruled = 18,           ///< area of scrolls
   way = 19,             ///< of a ruling's two points, int dx: for comparison
-  quantities = 25
+  turning = 25,         ///< of its normal, int dn: the same
+  quantities = 28
 };
 using Quantities = std::array<double, quantities>;
 using Sums = Integrals<quantities>;

@@ -91,6 +91,7 @@ class Summation {
   void add_piece(std::size_t arc, std::size_t piece, double depth);
   void add_between(const Stretch& at, const Ruling& from, const Ruling& to);
   std::array<dvec3, 2> moved_since(const Sums& before) const;
+  void add_missed_turn(const Sums& before, const Ruling& from, const Ruling& to);
   bool add_led(const Stretch& at, const LedRulings& led);
   void add_ways(const Stretch& at, const std::vector<RulingWay>& ways);
   void add_exact(const Stretch& at, const RulingsBetween& between);
@@ -200,6 +201,7 @@ void Summation::add_scroll(const MovingRuling& m, Quantities& sum) const {
 void Summation::add_ruling(const Stretch& at, const MovingRuling& m, double weight,
                            Quantities& sample) {
   if (at.scroll) add_scroll(m, sample);
+  for (int k = 0; k < 3; ++k) sample[turning + std::size_t(k)] += m.dn[k];
   for (std::size_t i = 0; i < 2; ++i) {
     for (int k = 0; k < 3; ++k) sample[way + 3 * i + std::size_t(k)] += m.dx[i][k];
     if (m.at.contact[i].kind != SourceKind::edge) continue;
@@ -221,8 +223,22 @@ void Summation::add_piece(std::size_t arc, std::size_t piece, double depth) {
   const std::vector<Ruling>& rulings = boundary_.arcs[arc].pieces[piece].rulings;
   const Stretch stretch{in_scroll_[arc][piece], depth, &regions_.traces(arc, piece)};
   for (std::size_t k = 1; k < rulings.size(); ++k) {
+    const Sums before = sums_;
     add_between(stretch, rulings[k - 1], rulings[k]);
+    if (stretch.scroll) add_missed_turn(before, rulings[k - 1], rulings[k]);
   }
+}
+
+/// Contacts that are a little beside their places lead n where it does not go: what it turns by
+/// about the rulings between the two is what it turns by from the one to the other.
+void Summation::add_missed_turn(const Sums& before, const Ruling& from, const Ruling& to) {
+  dvec3 missed = to.n - from.n;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t q = turning + std::size_t(k);
+    missed[k] -= double(sums_.value[q] - before.value[q]);
+  }
+  const dvec3 d = 0.5 * (from.point[0] - from.point[1] + to.point[0] - to.point[1]);
+  sums_.value[curvature] += 0.5 * glm::dot(missed, glm::cross(unit(from.n + to.n), d));
 }
 
 /// Where exact rulings do not lead from the one to the other, the ways that do are sought; what is
