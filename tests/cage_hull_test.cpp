@@ -274,14 +274,27 @@ TEST(CageHull, OfLProfiles) {
 
 /// Rounded about its edges: faces and edges keep flat and cylindrical middles, beside which other
 /// patches are level.
-TEST(CageHull, OfASemiSharpCube) {
+ControlCage semi_sharp_cube() {
   ControlCage cage = cube_cage();
   for (int v = 0; v < 8; ++v) {
     for (const int axis : {1, 2, 4}) {
       if ((v & axis) == 0) cage.creases.push_back({{v, v | axis}, 2});
     }
   }
-  const Model model = cage_model(cage);
+  return cage;
+}
+
+/// By Gauss quadrature of the support function: 2.690348304 of 600 by 1200 directions, 2.690348259
+/// of 1500 by 3000, the error of which falls with their number.
+TEST(CageHull, MeanWidthOfASemiSharpCube) {
+  const Hull hull = whole_hull(cage_model(semi_sharp_cube()), "semi-sharp cube");
+  ASSERT_TRUE(hull.boundary);
+  const Scene scene(cage_model(semi_sharp_cube()));
+  EXPECT_NEAR(measure(scene, ContactGeometry(scene), *hull.boundary).mean_width, 2.690348254, 1e-8);
+}
+
+TEST(CageHull, OfASemiSharpCube) {
+  const Model model = cage_model(semi_sharp_cube());
   const Hull hull = whole_hull(model, "semi-sharp cube");
   ASSERT_TRUE(hull.boundary);
   expect_verified(model, hull, "semi-sharp cube");

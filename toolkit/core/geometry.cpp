@@ -34,6 +34,10 @@ dvec3 unit(const dvec3& v) {
   return s / glm::length(s);
 }
 
+double angle_between(const dvec3& a, const dvec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
 double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
   const dvec3 along = b - a;
   const double square = glm::dot(along, along);

@@ -62,6 +62,9 @@ double diagonal(const Box& box);
 /// The zero vector stays zero.
 dvec3 unit(const dvec3& v);
 
+/// The angle between two vectors, in [0, pi], without loss where it is small; 0 if one is zero.
+double angle_between(const dvec3& a, const dvec3& b);
+
 /// The distance of a point from the segment between two others, which may be one.
 double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b);
 

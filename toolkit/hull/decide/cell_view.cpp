@@ -14,7 +14,7 @@ constexpr double split_share = 1;
 constexpr std::size_t many_pieces = 128;
 constexpr double coarse_share = 64;
 constexpr std::size_t split_piece_limit = 192;
-/// Narrow cells are few, where much touches one plane: they may have so many times more.
+/// Narrow cells are few, where much touches one plane: so many times more are looked at in them.
 constexpr double narrow_cell = 1e-4;
 constexpr std::size_t narrow_times = 4;
 constexpr double very_narrow_cell = 1e-6;

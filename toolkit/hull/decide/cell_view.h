@@ -46,7 +46,7 @@ class CellView {
   /// hull of what else there is. True if there were any.
   bool sharpen(double depth, const std::vector<double>& shares);
 
-  /// How many times more pieces than in a wide cell are not too many.
+  /// How many times more pieces than in a wide cell are not too many to be looked at together.
   std::size_t crowding() const;
 
   const MapPieces& pieces() const { return pieces_; }

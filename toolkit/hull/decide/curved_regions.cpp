@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/core/geometry.h"
+
 namespace taut {
 namespace {
 
@@ -182,8 +184,7 @@ bool CurvedRegions::is_small_part(const Node& node, const Interval& u, const Int
 CurvedRegions::Cone CurvedRegions::cone_of(const std::array<dvec3, 4>& directions) {
   Cone cone{unit(unit(directions[0]) + unit(directions[3])), 0};
   for (const dvec3& d : directions) {
-    const double off = std::atan2(glm::length(glm::cross(d, cone.axis)), glm::dot(d, cone.axis));
-    cone.angle = std::max(cone.angle, off);
+    cone.angle = std::max(cone.angle, angle_between(d, cone.axis));
   }
   return cone;
 }
@@ -192,8 +193,7 @@ CurvedRegions::Cone CurvedRegions::cone_of(const std::array<dvec3, 4>& direction
 bool CurvedRegions::is_apart(int element, Node& node, const Cone& directions) const {
   const CurvatureNets::NormalBounds& bounds = normals(element, node);
   if (!(bounds.least > 0)) return false;
-  const double across = glm::length(glm::cross(bounds.axis, directions.axis));
-  const double off = std::atan2(across, std::abs(glm::dot(bounds.axis, directions.axis)));
+  const double off = angle_between(bounds.axis, aligned(directions.axis, bounds.axis));
   return off > bounds.angle + directions.angle + angle_slack;
 }
 
@@ -226,8 +226,7 @@ bool CurvedRegions::is_nearly_concave(int element, int index, const Interval& u,
     const dvec3& axis = node.normals->axis;
     const bool along = glm::dot(axis, directions.axis) > 0;
     // All normals over the node lead to one side of the planes across the directions.
-    const double off = std::atan2(glm::length(glm::cross(axis, directions.axis)),
-                                  std::abs(glm::dot(axis, directions.axis)));
+    const double off = angle_between(axis, aligned(directions.axis, axis));
     const bool one_side =
         off + node.normals->angle + directions.angle + angle_slack < 0.5 * std::numbers::pi;
     if (one_side && hollow(element, node, along ? -1 : 1) <= most) return true;

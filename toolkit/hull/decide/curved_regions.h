@@ -16,11 +16,12 @@ class CurvedRegions {
  public:
   explicit CurvedRegions(const MapPieces& pieces);
 
-  /// Directions about an axis.
+  /// Directions no farther from an axis, of length one, than an angle in radians.
   struct Cone {
     dvec3 axis = dvec3(0.0);
     double angle = 0;
   };
+  /// That holds a cell with such corners.
   static Cone cone_of(const std::array<dvec3, 4>& directions);
 
   /// Certain: all over the rectangle, but for places at which no normal is one of the directions or

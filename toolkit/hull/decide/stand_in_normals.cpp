@@ -5,14 +5,10 @@
 #include <numbers>
 
 #include "taut/core/disjoint_sets.h"
+#include "taut/core/geometry.h"
 
 namespace taut {
 namespace {
-
-/// The angle between two vectors, without loss where it is small.
-double angle_between(const dvec3& a, const dvec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
 
 /// Differences of neighbouring control points along u or v; of a patch without weights
 /// derivatives, but for a factor, are their means.

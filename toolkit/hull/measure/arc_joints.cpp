@@ -4,14 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/core/geometry.h"
 #include "taut/hull/contact/contact_system.h"
 
 namespace taut {
 namespace {
-
-double turn(const dvec3& m, const dvec3& n) {
-  return std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n));
-}
 
 /// Adds the crease along a ruling, from the normal on its one side to that on the other, as n goes
 /// along the arc: half its length times the angle that n turns by about it. What else it turns by
@@ -22,7 +19,7 @@ void add_crease(const Ruling& r, const dvec3& before, const dvec3& after, Sums& 
   const double about =
       std::atan2(glm::dot(glm::cross(before, after), unit(way)), glm::dot(before, after));
   sums.value[curvature] += half * about;
-  sums.error[curvature] += half * std::max(turn(before, after) - std::abs(about), 0.0);
+  sums.error[curvature] += half * std::max(angle_between(before, after) - std::abs(about), 0.0);
 }
 
 /// What a step of the contacts may make the curvature of a joint be off by.
@@ -60,7 +57,7 @@ void add_vertex_creases(const SeparatingArc& arc, Sums& sums) {
     const Ruling* last = nullptr;
     for (; p < arc.pieces.size() && is_crease(arc.pieces[p]); ++p) {
       for (const Ruling& r : arc.pieces[p].rulings) {
-        if (last != nullptr) angle += turn(last->n, r.n);
+        if (last != nullptr) angle += angle_between(last->n, r.n);
         last = &r;
       }
       ends.insert(ends.end(), last->point.begin(), last->point.end());
