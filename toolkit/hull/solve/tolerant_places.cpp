@@ -1,6 +1,8 @@
 #include "taut/hull/solve/tolerant_places.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 
 #include "taut/core/tolerances.h"
@@ -39,10 +41,13 @@ class TolerantPlaces {
 
   double of(const ArcPiece& piece) {
     double deepest = piece.tolerant;
+    bool touches = true;
     for (const Ruling& r : piece.rulings) {
       deepest = std::max(deepest, depth(r));
-      for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t i = 0; i < 2; ++i) {
         deepest = std::max(deepest, off(r.contact[i], r.point[i]));
+        touches = touches && !rises(r.contact[i], r.n);
+      }
     }
     const bool is_exact = !is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie();
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
@@ -50,16 +55,18 @@ class TolerantPlaces {
       if (between.empty() || (is_exact && depth_at(between, 0.5) <= geometry_.tie())) continue;
       deepest = std::max(deepest, deepest_of(between));
     }
-    return deepest <= geometry_.tie() ? 0 : bound_of(deepest);
+    return bound_of(deepest, touches);
   }
 
   double of(const HullFace& facet) {
     const double h = query_(facet.n, facet.contacts.front()).h;
     double deepest = 0;
+    bool touches = true;
     const auto depth_of = [&](const dvec3& x) { return h - glm::dot(x, facet.n); };
     for (const dvec3& x : facet.points) deepest = std::max(deepest, depth_of(x));
     for (std::size_t k = 0; k < facet.contacts.size(); ++k) {
       const Contact& c = facet.contacts[k];
+      touches = touches && !rises(c, facet.n);
       deepest = std::max(deepest, depth_of(geometry_.point(c)));
       if (k < facet.points.size()) deepest = std::max(deepest, off(c, facet.points[k]));
     }
@@ -75,8 +82,7 @@ class TolerantPlaces {
       deepest = std::max({deepest, off(side.at(side.from), facet.points[k]),
                           off(side.at(side.to), facet.points[next])});
     }
-    deepest = std::max(deepest, near_places * of_sides);
-    return deepest <= geometry_.tie() ? 0 : deepest;
+    return known(std::max(deepest, near_places * of_sides), touches);
   }
 
   /// Places as near to the outline as that may be off are as deep as the arcs there.
@@ -88,7 +94,7 @@ class TolerantPlaces {
       }
     }
     double deepest = deepest_in(outline_of(system_, boundary, region), region, of_arcs > 0);
-    deepest = std::max(of_arcs, deepest <= geometry_.tie() ? 0 : bound_of(deepest));
+    deepest = std::max(of_arcs, bound_of(deepest, true));
     // How what stands for others ripples, places do not tell.
     const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
     if (geometry_.patch(any).stand_in) {
@@ -188,9 +194,37 @@ class TolerantPlaces {
     return geometry_.scene().frame().length_to_frame(part.deviation_bound());
   }
 
+  /// What is so deep: none, if that is not known from none and contacts are where planes touch.
+  double known(double deepest, bool touches) const {
+    if (deepest <= geometry_.tie()) return touches ? 0 : geometry_.tie();
+    return deepest;
+  }
   /// Elsewhere it may be deeper, as far as that is within the resolution.
-  double bound_of(double deepest) const {
-    return std::max(near_places * deepest, std::min(other_places * deepest, resolution_));
+  double bound_of(double deepest, bool touches) const {
+    const double own = known(deepest, touches);
+    return std::max(near_places * own, std::min(other_places * own, resolution_));
+  }
+
+  /// The surface or edge rises from there over the plane: to where it touches one that is parallel
+  /// it is farther than the resolution, however little it rises on the way.
+  bool rises(const Contact& c, const dvec3& n) const {
+    const ContactJet j = geometry_.jet(c);
+    const std::array<std::array<dvec3, 2>, 2> ddx = {{{j.dxx, j.dxy}, {j.dxy, j.dyy}}};
+    const dvec2 t = parameters(c);
+    for (std::size_t k = 0; k < std::size_t(j.dimension); ++k) {
+      const double slope = glm::dot(j.dx[k], n);
+      double changed = 0;  // over the resolution
+      for (std::size_t i = 0; i < std::size_t(j.dimension); ++i) {
+        const double speed = glm::length(j.dx[i]);
+        if (speed > resolution_) {
+          changed += resolution_ / speed * std::abs(glm::dot(ddx[k][i], n));
+        }
+      }
+      const double at = t[int(k)];
+      const double upwards = std::max(at < 1 ? slope : 0, at > 0 ? -slope : 0);
+      if (upwards > changed + geometry_.tie()) return true;
+    }
+    return false;
   }
 
   /// Contacts that are one to within the resolution have one point.
@@ -228,6 +262,45 @@ void bound_joints(SeparatingArc& arc, double tie) {
   }
 }
 
+/// From one ruling to the next: n and both contacts.
+using Step = std::array<dvec3, 3>;
+
+Step step_between(const Ruling& from, const Ruling& to) {
+  return {to.n - from.n, to.point[0] - from.point[0], to.point[1] - from.point[1]};
+}
+double dot(const Step& a, const Step& b) {
+  return glm::dot(a[0], b[0]) + glm::dot(a[1], b[1]) + glm::dot(a[2], b[2]);
+}
+
+/// n and both contacts go on to the left of contact a's way, as they do on a convex hull.
+bool goes_on(const Ruling& from, const Ruling& to, double tie) {
+  const dvec3 across = to.point[1] - to.point[0] + from.point[1] - from.point[0];
+  const dvec3 on = unit(glm::cross(across, from.n + to.n));
+  const Step step = step_between(from, to);
+  return glm::dot(step[0], on) > 0 && glm::dot(step[1], on) >= -tie &&
+         glm::dot(step[2], on) >= -tie;
+}
+
+/// Where rulings turn back, along a surface so nearly flat that rounding tells in which order they
+/// follow each other, contacts are not known to be where planes touch.
+void bound_turns(SeparatingArc& arc, double tie) {
+  Step last{};
+  Ruling from = arc.pieces.front().rulings.front();
+  for (ArcPiece& piece : arc.pieces) {
+    for (const Ruling& to : piece.rulings) {
+      const Step step = step_between(from, to);
+      const double length = std::sqrt(dot(step, step));
+      if (length > tie) {
+        const double back = -tie * (length + std::sqrt(dot(last, last)));
+        const bool turns = dot(step, last) < back && !goes_on(from, to, tie);
+        if (turns) piece.tolerant = std::max(piece.tolerant, tie);
+        last = step;
+      }
+      from = to;
+    }
+  }
+}
+
 }  // namespace
 
 bool is_rounded(const Scene& scene, double resolution) {
@@ -246,6 +319,7 @@ void find_tolerant_places(const ContactSystem& system, SupportQuery& query, Hull
   for (SeparatingArc& arc : boundary.arcs) {
     for (ArcPiece& piece : arc.pieces) piece.tolerant = found.of(piece);
     bound_joints(arc, system.geometry().tie());
+    bound_turns(arc, system.geometry().tie());
   }
   for (HullFace& face : boundary.faces) {
     if (face.kind == FaceKind::facet && !face.contacts.empty()) face.tolerant = found.of(face);
