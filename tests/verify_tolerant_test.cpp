@@ -152,7 +152,8 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"copies_turned_a_little", Variant::decimals},
         Stated{"cut_by_edges", Variant::float32}, Stated{"plate_of_bosses", Variant::float32},
         Stated{"cup", Variant::float32}, Stated{"car_body", Variant::float32},
-        Stated{"car_body", Variant::decimals}, Stated{"thread", Variant::float32},
+        Stated{"car_body", Variant::decimals}, Stated{"car_body", Variant::float32, 2},
+        Stated{"car_body", Variant::decimals, 2}, Stated{"thread", Variant::float32},
         Stated{"thread", Variant::decimals}, Stated{"dome", Variant::float32, 2},
         Stated{"terrain", Variant::decimals}, Stated{"filleted_plate", Variant::decimals, 2},
         Stated{"gear", Variant::decimals, 2}, Stated{"open_cage", Variant::turned},
@@ -164,7 +165,8 @@ INSTANTIATE_TEST_SUITE_P(
         Stated{"grid_of_points", Variant::decimals, 2}, Stated{"fuselage", Variant::float32},
         Stated{"fuselage", Variant::decimals}, Stated{"shaft", Variant::float32, 3}),
     [](const auto& info) {
-      return std::string(info.param.family) + "_" + name_of(info.param.variant);
+      const std::string name = std::string(info.param.family) + "_" + name_of(info.param.variant);
+      return info.param.seed == 1 ? name : name + "_of_seed_" + std::to_string(info.param.seed);
     });
 
 /// Where edges and patches lie in one place a hull names one of them.

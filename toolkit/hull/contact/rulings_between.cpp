@@ -125,6 +125,13 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   shorter_ = std::min(glm::distance(from.point[0], from.point[1]),
                       glm::distance(to.point[0], to.point[1]));
   if (empty()) return;
+  if (from.n == to.n) {
+    for (const double s : {0.0, 1.0}) {
+      const Ruling& r = s == 0 ? from : to;
+      polynomial_.add(s, state(r.n, parameters(r.contact[0]), parameters(r.contact[1])));
+    }
+    return;
+  }
   touches_ =
       merged(from) != merged(to) && touch(merged(from) ? from : to, merged(from) ? to : from);
   if (touches_) {

@@ -34,7 +34,8 @@ struct MovingRuling {
 /// leaves the end of an edge that does not bend there, as the borders of cages end in corners, or a
 /// side across which its patch is level, n and the other contact move with the square of its way:
 /// there the root of the chord's share is s. Where both do so, n alone moves with the square of
-/// their ways, and s is the share. Newton's method starts from Hermite's interpolation.
+/// their ways, and s is the share. Newton's method starts from Hermite's interpolation. Where n is
+/// the same at both ends it starts from contacts that go straight, in one plane.
 class RulingsBetween {
  public:
   /// @pre the two rulings have the same elements; all outlive this

@@ -173,6 +173,28 @@ bool extends_over(const ContactGeometry& geometry, const ArcPiece& piece, std::s
 
 }  // namespace
 
+void tell_along_edges(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+  const auto tell = [&](ArcPiece& piece, const ArcPiece& next, std::size_t i) {
+    if (piece.rulings.front().contact[i].kind != SourceKind::face ||
+        next.rulings.front().contact[i].kind != SourceKind::edge) {
+      return;
+    }
+    const Contact& edge = next.rulings.front().contact[i];
+    std::vector<Ruling> told = piece.rulings;
+    for (Ruling& r : told) {
+      const std::optional<Contact> own = expressed_in(geometry, r.contact[i], edge);
+      if (!own) return;
+      r.contact[i] = *own;
+    }
+    piece.rulings = std::move(told);
+  };
+  for (const std::size_t i : {0u, 1u}) {
+    for (std::size_t k = 1; k < pieces.size(); ++k) tell(pieces[k], pieces[k - 1], i);
+    for (std::size_t k = pieces.size(); --k > 0;) tell(pieces[k - 1], pieces[k], i);
+  }
+  join_pieces(pieces);
+}
+
 void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
                       double extent) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {

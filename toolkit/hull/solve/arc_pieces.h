@@ -30,6 +30,10 @@ void drop_turns(std::vector<Ruling>& rulings, double extent);
 /// no farther than `extent` from it, stay there.
 void tell_corners(std::vector<ArcPiece>& pieces, double extent);
 
+/// A contact that runs along an edge and is told now as one of the edge and now as one of a patch
+/// that ends there is one of the edge.
+void tell_along_edges(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
+
 /// A contact that has come to run along a smooth join, or no farther than `extent` from it where
 /// heights tie, is told as one of the patch into which its region extends.
 void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,

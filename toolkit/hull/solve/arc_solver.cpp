@@ -335,8 +335,11 @@ double ArcSolver::depth_on_the_way(const Ruling& to) const {
 
 void ArcSolver::leap(const Ruling& to) {
   if (same_elements(last(), to)) return append(to);
-  // Each contact over the borders between its elements, as far as these have one.
-  for (std::size_t i = 0; i < 2; ++i) {
+  // Each contact over the borders between its elements, as far as these have one: first the one
+  // that goes away from the other, lest it is passed.
+  const dvec3 apart = last().point[1] - last().point[0];
+  const std::size_t first = glm::dot(to.point[1] - last().point[1], apart) > 0 ? 1 : 0;
+  for (const std::size_t i : {first, 1 - first}) {
     if (same_element(last().contact[i], to.contact[i])) continue;
     WaySearch search(geometry_, last().contact[i], to.contact[i], last().n,
                      search_.map().resolution);

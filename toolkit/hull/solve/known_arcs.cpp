@@ -206,10 +206,22 @@ class ArcFinder {
   /// none.
   bool contract_short_arcs() {
     std::set<int> found;
+    std::set<std::array<int, 2>> pairs;  // of nodes: of each node one
+    std::set<int> nodes;
     for (int k = 0; k < int(known_.graph.arcs.size()); ++k) {
       const MapGraph::Arc& arc = known_.graph.arcs[std::size_t(k)];
-      if (arc.is_closed() || !is_short(known_.rulings[std::size_t(k)])) continue;
-      if (arc.node[0] == arc.node[1] || ends_are_one(k)) found.insert(k);
+      if (arc.is_closed()) continue;
+      const std::array<int, 2> ends = {std::min(arc.node[0], arc.node[1]),
+                                       std::max(arc.node[0], arc.node[1])};
+      const bool is_known = pairs.count(ends) > 0;
+      if (!is_known && (nodes.count(ends[0]) > 0 || nodes.count(ends[1]) > 0)) continue;
+      const bool leads_back = ends[0] == ends[1];
+      const bool is_one = leads_back ? is_short(known_.rulings[std::size_t(k)])
+                                     : ends_are_one(k) || lies_in_node(k);
+      if (!is_one) continue;
+      found.insert(k);
+      pairs.insert(ends);
+      if (!leads_back) nodes.insert(ends.begin(), ends.end());
     }
     if (found.empty()) return false;
     contract_arcs(known_.graph, search_.map(), found,
@@ -228,26 +240,59 @@ class ArcFinder {
     });
   }
 
-  /// What supports in either of its nodes supports in its middle, to within the resolution.
-  bool ends_are_one(int k) const {
-    const std::vector<Ruling>& rulings = known_.rulings[std::size_t(k)];
-    const Ruling& middle = rulings[rulings.size() / 2];
-    const double least =
-        glm::dot(middle.point[0], middle.n) - one_node_depths * search_.map().resolution;
+  /// Of an arc and both of its nodes: what supports along the arc and beside these.
+  std::vector<Ruling> rulings_about(int k) const {
+    std::vector<Ruling> about = known_.rulings[std::size_t(k)];
     for (const int node : known_.graph.arcs[std::size_t(k)].node) {
       for (const MapGraph::End& end : known_.graph.nodes[std::size_t(node)].ends) {
-        const Ruling& beside = known_.ruling_at(end);
-        for (const std::size_t i : {0u, 1u}) {
-          if (glm::dot(beside.point[i], middle.n) >= least) continue;
-          const ClimbedContact there = climb(search_.geometry(), beside.contact[i], middle.n);
-          const bool is_other =
-              glm::distance(there.x, beside.point[i]) > glm::distance(there.x, beside.point[1 - i]);
-          if (there.h < least || is_other) return false;
-        }
+        about.push_back(known_.ruling_at(end));
       }
     }
-    return true;
+    return about;
   }
+
+  /// What supports about a short arc does so in its middle, to within the resolution.
+  bool ends_are_one(int k) const {
+    const std::vector<Ruling>& own = known_.rulings[std::size_t(k)];
+    if (!is_short(own)) return false;
+    const dvec3& n = own[own.size() / 2].n;
+    const double least = glm::dot(own[own.size() / 2].point[0], n) - depth_of_one();
+    const std::vector<Ruling> about = rulings_about(k);
+    return std::all_of(about.begin(), about.end(), [&](const Ruling& r) {
+      for (const std::size_t i : {0u, 1u}) {
+        if (glm::dot(r.point[i], n) >= least) continue;
+        const ClimbedContact there = climb(search_.geometry(), r.contact[i], n);
+        const bool is_other =
+            glm::distance(there.x, r.point[i]) > glm::distance(there.x, r.point[1 - i]);
+        if (there.h < least || is_other) return false;
+      }
+      return true;
+    });
+  }
+
+  /// What supports about an arc along which planes hardly turn does so, where it is, in the plane
+  /// of one of its nodes, to within the resolution; unless along curves.
+  bool lies_in_node(int k) const {
+    const std::vector<Ruling> about = rulings_about(k);
+    const auto supports = [&](const dvec3& n) {
+      const double least = search_.query()(n, about.front().contact[0]).h - depth_of_one();
+      return std::all_of(about.begin(), about.end(), [&](const Ruling& r) {
+        return glm::distance(r.n, n) <= search_.map().contact_extent() &&
+               std::min(glm::dot(r.point[0], n), glm::dot(r.point[1], n)) >= least;
+      });
+    };
+    for (const int at : known_.graph.arcs[std::size_t(k)].node) {
+      const MapGraph::Node& node = known_.graph.nodes[std::size_t(at)];
+      const bool lies = std::any_of(node.cells.begin(), node.cells.end(), [&](int c) {
+        const MapCell& cell = search_.map().cells[std::size_t(c)];
+        return cell.has_plane() && supports(cell.normal);
+      });
+      if (lies) return !has_curved_side(node);
+    }
+    return false;
+  }
+
+  double depth_of_one() const { return one_node_depths * search_.map().resolution; }
 
   bool is_shallow(const std::vector<Ruling>& rulings) const {
     // In the middle an arc is deepest, mostly.

@@ -387,7 +387,7 @@ Ruling RulingSearch::bracketed(SupportingContact right, SupportingContact left, 
     // It may have climbed over to where the other one comes from, which is lower by now.
     const double h = glm::dot(top.x, n);
     const bool has_left = like.is_like && like.side != int(higher) &&
-                          glm::dot(own[1 - higher].x, n) < h - map_.resolution &&
+                          glm::dot(own[1 - higher].x, n) < h - geometry_.tie() &&
                           glm::distance(own[higher].x, top.x) <= map_.contact_extent();
     const bool go_on = !has_left && glm::dot(own[higher].x, n) >= h - geometry_.tie() &&
                        glm::distance(own[0].x, own[1].x) > map_.contact_extent();

@@ -78,6 +78,7 @@ class GraphSolver {
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       tell_corners(arc.pieces, moved);
       turn_ends(geometry_, arc.pieces);
+      tell_along_edges(geometry_, arc.pieces);
       tell_along_joins(geometry_, arc.pieces, extent);
       join_in_crossings(arc);
     }

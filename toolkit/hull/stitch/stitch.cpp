@@ -402,9 +402,16 @@ void Stitcher::make_rulings() {
   }
 }
 
-/// Where a ruling ends between two parts of one scroll, the curves along it have a corner.
+/// Where a ruling ends between two parts of one scroll, the curves along it have a corner, and
+/// where its two contacts are one, those along the one end.
 std::vector<dvec3> Stitcher::corners_of_scrolls() const {
   std::vector<dvec3> corners;
+  for (const SeparatingArc& arc : graph_.arcs) {
+    for (const Ruling* end :
+         {&arc.pieces.front().rulings.front(), &arc.pieces.back().rulings.back()}) {
+      if (end->point[0] == end->point[1]) corners.push_back(end->point[0]);
+    }
+  }
   for (const Cut& cut : cuts()) {
     if (cut.before != cut.after) continue;
     corners.insert(corners.end(), cut.ruling.point.begin(), cut.ruling.point.end());
