@@ -130,6 +130,39 @@ TEST(ArcPieces, AlongJoinsContactsAreOfTheirRegionsPatch) {
   }
 }
 
+/// Along an edge a contact is the edge's where it has been before, whichever patch told it since.
+TEST(ArcPieces, AlongAnEdgeContactsAreTheEdges) {
+  const Scene scene = make_scene(mapped(box(3, 2, 1), skew_rotation()));
+  const ContactGeometry geometry(scene);
+  for (const Side side : all_sides) {
+    const auto piece_to = [&](double from, double to, bool is_edge) {
+      ArcPiece piece;
+      for (const double t : {from, to}) {
+        Ruling r;
+        const Contact on = on_side(0, 0, side, t);
+        r.contact = {is_edge ? geometry.canonical(on) : on,
+                     Contact{0, SourceKind::face, 5, 0.5, 0.5}};
+        for (const std::size_t i : {0u, 1u}) r.point[i] = geometry.point(r.contact[i]);
+        piece.rulings.push_back(r);
+      }
+      return piece;
+    };
+    std::vector<ArcPiece> pieces = {piece_to(0.2, 0.4, true), piece_to(0.4, 0.5, false),
+                                    piece_to(0.5, 0.8, true)};
+    tell_along_edges(geometry, pieces);
+    ASSERT_EQ(pieces.size(), 1U);
+    for (const Ruling& r : pieces[0].rulings) EXPECT_EQ(r.contact[0].kind, SourceKind::edge);
+    // What is the patch's all along, or leaves the edge, is the patch's.
+    pieces = {piece_to(0.2, 0.4, false)};
+    tell_along_edges(geometry, pieces);
+    EXPECT_EQ(pieces[0].rulings[0].contact[0].kind, SourceKind::face);
+    pieces = {piece_to(0.2, 0.4, true), piece_to(0.4, 0.5, false)};
+    pieces[1].rulings[1].contact[0].u = pieces[1].rulings[1].contact[0].v = 0.5;
+    tell_along_edges(geometry, pieces);
+    EXPECT_EQ(pieces.size(), 2U);
+  }
+}
+
 /// What leaves a place at right angles, as n does where a contact has come to rest, does not turn.
 TEST(ArcPieces, CornersAreNoTurns) {
   std::vector<Ruling> rulings = {ruling_at(0), ruling_at(1e-4), ruling_at(1e-4)};

@@ -416,7 +416,8 @@ TEST(CageHull, OfBoxesWithASharpEdge) {
 
 /// The sharp edges go on smoothly into each other about the box's corner, above parts of cylinders.
 /// Where these end the plane touches a segment: on its other side the face, up to the end of a
-/// chord, across which a scroll leaves.
+/// chord, across which a scroll leaves. That begins where the strip between the two is deeper than
+/// the resolution, and may do so more than once; facets on segments, which have no area, are none.
 TEST(CageHull, OfABoxWithTwoSharpEdges) {
   ControlCage cage = box_cage({2});
   make_sharp(cage, [](const dvec3& x) { return x.x == 1 && x.z == 1; });
@@ -426,9 +427,9 @@ TEST(CageHull, OfABoxWithTwoSharpEdges) {
   const Hull hull = whole_hull(model, "box");
   ASSERT_TRUE(hull.boundary);
   expect_verified(model, hull, "box");
-  EXPECT_EQ(hull.boundary->count(FaceKind::scroll), 3);
-  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 3);
-  // What the mesh calls facets is level with them: two of these have no area.
+  EXPECT_GE(hull.boundary->count(FaceKind::scroll), 3);
+  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 1);
+  // What the mesh calls facets is level with them.
   const HullMesh& mesh = hull.mesh;
   std::map<int, dvec3> normals;
   for (const auto f : mesh.faces()) {

@@ -90,6 +90,34 @@ TEST(RulingsBetween, ExactBetweenShortOnes) {
   }
 }
 
+/// A contact that goes over a plane, as where an arc ends in one of its contacts, while the other
+/// one stays: from where the two are one, and farther on.
+TEST(RulingsBetween, StraightWhereNIsTheSameAtBothEnds) {
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Scene scene = make_scene(mapped(godron(1, 1, 1) + box(2, 2, 1), turn));
+    const ContactGeometry geometry(scene);
+    const ContactSystem system(geometry);
+    const Contact face = {0, SourceKind::face, 1, 0, 0};
+    const ContactJet corner = geometry.jet(face);
+    Ruling from;
+    from.n = glm::normalize(glm::cross(corner.dx[0], corner.dx[1]));
+    from.contact = {geometry.canonical(face), face};
+    from.point = {corner.x, corner.x};
+    Ruling to = from;
+    for (const dvec2& uv : {dvec2(0.5, 0.25), dvec2(1.0, 0.75)}) {
+      to.contact[1].u = uv.x;
+      to.contact[1].v = uv.y;
+      to.point[1] = geometry.point(to.contact[1]);
+      const MovingRuling middle = RulingsBetween(system, from, to).interpolated(0.5);
+      EXPECT_EQ(middle.at.n, from.n);
+      EXPECT_EQ(middle.dn, dvec3(0.0));
+      EXPECT_LT(glm::distance(middle.at.jet[0].x, corner.x), 1e-15);
+      EXPECT_LT(glm::distance(middle.at.jet[1].x, 0.5 * (from.point[1] + to.point[1])), 1e-15);
+      from = to;
+    }
+  }
+}
+
 /// Two segments that no curve of rulings joins: none, rather than a mix.
 TEST(RulingsBetween, NoneWhereThereIsNoCurve) {
   const Godron g;
