@@ -26,7 +26,8 @@ struct ArcPiece {
   /// by contact 0 lie to the right, those supported by contact 1 to the left.
   std::vector<Ruling> rulings;
   /// How far the rulings are below the supporting planes, at most, in the scene's frame; 0: no more
-  /// than rounding makes them.
+  /// than rounding makes them, and contacts are no farther than the resolution from where the
+  /// planes touch.
   double tolerant = 0;
 };
 

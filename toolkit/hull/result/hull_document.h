@@ -74,7 +74,8 @@ struct HullDocument {
     FaceKind kind = FaceKind::facet;
     int source = -1;  ///< that it lies on, -1 if none
     /// How far its places are below the supporting planes with the normals there, at most, in model
-    /// units; 0: no more than rounding makes them.
+    /// units; 0: no more than rounding makes them, and contacts are no farther than the resolution
+    /// from where the planes touch.
     double tolerant = 0;
     /// patch: its outlines; none of a patch that is the whole hull.
     std::vector<Loop> loops;

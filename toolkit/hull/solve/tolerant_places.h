@@ -17,7 +17,8 @@ bool is_rounded(const Scene& scene, double resolution);
 /// the corners and curved sides of facets; at a grid of places in patches, of which stand-ins are
 /// within their deviation. Points that are off their contacts, and by which pieces miss each other,
 /// count as well. Where no rulings are found between two, they are known to the resolution, in the
-/// scene's frame. These are bounds as far as such places tell. @throws Cancelled
+/// scene's frame; where contacts are farther than that from where the planes touch, or rulings turn
+/// back, to what heights tie. These are bounds as far as such places tell. @throws Cancelled
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution);
 

@@ -1,0 +1,67 @@
+#include "taut/hull/solve/tolerant_places.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "models.h"
+#include "taut/hull/exact_boundary.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+/// Two spheres, the cone about them, and a ruling in the middle of it.
+class TolerantPlacesOfACone : public testing::TestWithParam<bool> {
+ protected:
+  TolerantPlacesOfACone()
+      : scene_(
+            make_scene(mapped(two_spheres(1, 0.5, 3), GetParam() ? skew_rotation() : dmat3(1.0)))),
+        geometry_(scene_),
+        boundary_(exact_boundary(scene_, {.relative = 1e-2, .threads = 1, .progress = {}},
+                                 statistics_)) {}
+
+  ArcPiece& piece() { return boundary_.arcs.front().pieces.front(); }
+  double found() {
+    SupportQuery query(scene_);
+    find_tolerant_places(ContactSystem(geometry_), query, boundary_, boundary_.gap);
+    return piece().tolerant;
+  }
+
+  HullStatistics statistics_;
+  Scene scene_;
+  ContactGeometry geometry_;
+  HullBoundary boundary_;
+};
+
+/// Beside where its plane touches a contact is lower by the square of the way, which rounding hides
+/// long before.
+TEST_P(TolerantPlacesOfACone, ContactsBesideTheirPlacesAreTolerant) {
+  for (const double ways : {0.1, 20.0}) {
+    const ArcPiece exact = piece();
+    Ruling& r = piece().rulings[piece().rulings.size() / 2];
+    const ContactJet j = geometry_.jet(r.contact[0]);
+    r.contact[0].u += ways * boundary_.gap / glm::length(j.dx[0]);
+    r.point[0] = geometry_.point(r.contact[0]);
+    const double bound = found();
+    EXPECT_EQ(bound > 0, ways > 1);
+    EXPECT_LT(bound, 2 * geometry_.tie());
+    piece() = exact;
+  }
+}
+
+TEST_P(TolerantPlacesOfACone, RulingsThatTurnBackAreTolerant) {
+  EXPECT_EQ(found(), 0);
+  ASSERT_GE(piece().rulings.size(), 4U);
+  std::swap(piece().rulings[1], piece().rulings[2]);
+  const double bound = found();
+  EXPECT_GT(bound, 0);
+  EXPECT_LT(bound, 2 * geometry_.tie());
+}
+
+INSTANTIATE_TEST_SUITE_P(Clean, TolerantPlacesOfACone, testing::Values(false));
+INSTANTIATE_TEST_SUITE_P(Turned, TolerantPlacesOfACone, testing::Values(true));
+
+}  // namespace
+}  // namespace taut
