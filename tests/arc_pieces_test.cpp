@@ -24,6 +24,7 @@ Ruling ruling_at(double x, double aside = 0) {
 
 std::vector<double> places_of(const std::vector<Ruling>& rulings) {
   std::vector<double> places;
+  places.reserve(rulings.size());
   for (const Ruling& r : rulings) places.push_back(r.point[0].x);
   return places;
 }
