@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "freeform.h"
 #include "solved_scene.h"
@@ -58,6 +60,43 @@ TEST(ArcSolver, ManyNarrowPatchesArePassedOneByOne) {
     }
   }
   EXPECT_GE(passed, 2 * narrow);
+}
+
+/// Over a plane, where nothing tells the way, contacts go on along one line: neither passes the
+/// other.
+TEST(ArcSolver, ContactsDoNotPassEachOther) {
+  const std::vector<double> inner = {0.2, 0.4, 0.6, 0.8};
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Scene scene = make_scene(mapped(Shape{{bump(0, 0, inner)}, {}, {}}, turn));
+    const ContactGeometry geometry(scene);
+    const ContactSystem system(geometry);
+    SupportQuery query(scene);
+    DirectionMap map;
+    map.resolution = 1e-8;
+    const RulingSearch search(system, query, map);
+    // In the middles of two patches that follow each other.
+    const auto ruling_from = [&](int patch) {
+      Ruling r;
+      r.n = turn * dvec3(0, 0, 1);
+      for (const std::size_t i : {0u, 1u}) {
+        r.contact[i] = {0, SourceKind::face, patch + int(i), 0.5, 0.5};
+        r.point[i] = geometry.point(r.contact[i]);
+      }
+      return r;
+    };
+    for (const auto& [from, to] : {std::pair(0, 3), std::pair(3, 0)}) {
+      ArcSolver solver(search, ruling_from(from));
+      solver.go_on(ruling_from(to));
+      const std::vector<ArcPiece> pieces = solver.take();
+      EXPECT_GE(pieces.size(), 7U);
+      const dvec3 along = ruling_from(0).point[1] - ruling_from(0).point[0];
+      for (const ArcPiece& piece : pieces) {
+        for (const Ruling& r : piece.rulings) {
+          EXPECT_GE(glm::dot(r.point[1] - r.point[0], along), -1e-15);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -2,8 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "cages.h"
+#include "taut/hull/exact_boundary.h"
+
 namespace taut {
 namespace {
+
+using namespace taut_test;  // NOLINT: cages
 
 Ruling ruling_with(double x) {
   Ruling r;
@@ -69,6 +76,36 @@ TEST(KnownArcs, ThatLeadBackToWhereNothingEndsAreClosed) {
   join_arcs(known, 0);
   EXPECT_TRUE(known.graph.arcs[0].is_closed());
   EXPECT_EQ(known_places(known.rulings[0]), std::vector<double>({0, 1, 2}));
+}
+
+/// One of the edges of a box with 3 x 3 quads a side is sharp. Beside its ends the flat middles of
+/// the sides touch planes along lines, in which four contacts are told apart, and nodes in line are
+/// within the resolution of a side's plane: each side is one node. Arcs of neighbours in line are
+/// nearer to each other than cells are wide, and none goes over to the other.
+TEST(KnownArcs, OfABoxWithASharpEdgeLeadFromSideToSide) {
+  ControlCage cage = box_cage({3});
+  make_sharp(cage, [](const dvec3& x) { return x.x == 1 && x.z == 1; });
+  const Scene scene(cage_model(cage));
+  const ContactGeometry geometry(scene, {}, same_elements_of(scene, {}));
+  DirectionMapOptions options;
+  options.resolution = scene.frame().length_to_frame(resolution_floor * scene.diagonal());
+  options.candidate_limit = 20'000'000;
+  const DirectionMap map = direction_map(geometry, options);
+  SupportQuery query(scene);
+  query.leave_out(map.covered);
+  const ContactSystem system(geometry);
+  const KnownArcs known = known_arcs(RulingSearch(system, query, map));
+  const std::vector<MapGraph::Node>& nodes = known.graph.nodes;
+  EXPECT_EQ(
+      std::count_if(nodes.begin(), nodes.end(), [](const auto& n) { return !n.ends.empty(); }), 6);
+  EXPECT_EQ(known.graph.arcs.size(), 14U);
+  for (const std::vector<Ruling>& rulings : known.rulings) {
+    for (std::size_t k = 1; k < rulings.size(); ++k) {
+      for (const std::size_t i : {0u, 1u}) {
+        EXPECT_LT(glm::distance(rulings[k - 1].point[i], rulings[k].point[i]), 0.4);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ class ArcFinder {
     if (found.empty()) return false;
     contract_arcs(known_.graph, search_.map(), found,
                   [&](const MapGraph::Node& node) { return is_crossing(node); });
-    return !found.empty();
+    return true;
   }
 
   /// All along it each of its contacts is as one.
