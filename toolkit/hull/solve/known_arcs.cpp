@@ -202,26 +202,26 @@ class ArcFinder {
     return !shallow.empty();
   }
 
-  /// Nodes that all but touch one plane, with the arcs between them, are one. False if there are
-  /// none.
+  /// Nodes that all but touch one plane, with the arcs between them, are one: two at a time, as
+  /// three of which any two do need not touch one. False if there are none.
   bool contract_short_arcs() {
     std::set<int> found;
-    std::set<std::array<int, 2>> pairs;  // of nodes: of each node one
-    std::set<int> nodes;
+    std::map<int, int> partners;  // of nodes
+    const auto is_taken = [&](int node, int by) {
+      const auto partner = partners.find(node);
+      return partner != partners.end() && partner->second != by;
+    };
     for (int k = 0; k < int(known_.graph.arcs.size()); ++k) {
       const MapGraph::Arc& arc = known_.graph.arcs[std::size_t(k)];
-      if (arc.is_closed()) continue;
-      const std::array<int, 2> ends = {std::min(arc.node[0], arc.node[1]),
-                                       std::max(arc.node[0], arc.node[1])};
-      const bool is_known = pairs.count(ends) > 0;
-      if (!is_known && (nodes.count(ends[0]) > 0 || nodes.count(ends[1]) > 0)) continue;
-      const bool leads_back = ends[0] == ends[1];
-      const bool is_one = leads_back ? is_short(known_.rulings[std::size_t(k)])
-                                     : ends_are_one(k) || lies_in_node(k);
+      const auto [a, b] = arc.node;
+      if (arc.is_closed() || is_taken(a, b) || is_taken(b, a)) continue;
+      const bool is_one =
+          a == b ? is_short(known_.rulings[std::size_t(k)]) : ends_are_one(k) || lies_in_node(k);
       if (!is_one) continue;
       found.insert(k);
-      pairs.insert(ends);
-      if (!leads_back) nodes.insert(ends.begin(), ends.end());
+      if (a == b) continue;
+      partners[a] = b;
+      partners[b] = a;
     }
     if (found.empty()) return false;
     contract_arcs(known_.graph, search_.map(), found,
