@@ -39,6 +39,7 @@ KnownArcs arcs(const std::vector<std::array<int, 2>>& nodes,
 
 std::vector<double> known_places(const std::vector<Ruling>& rulings) {
   std::vector<double> places;
+  places.reserve(rulings.size());
   for (const Ruling& r : rulings) places.push_back(r.point[0].x);
   return places;
 }
