@@ -76,29 +76,29 @@ class Weaving {
     for (const CellTree::CellSide& side : sides) add(side);
   }
 
-  /// Points in line with others may be told apart in one cell and not beside it: where the cell
-  /// agrees with all of its neighbours only so, those count alone that are above the others.
+  /// Contacts in line with others may be told apart in one cell and not beside it: where cells that
+  /// hang together agree with all of their neighbours, and with each other, so, those count alone
+  /// that are above the others.
   void tell_in_line(const std::vector<CellTree::CellSide>& sides) {
+    DisjointSets lines(map_.cells.size());
+    for (const CellTree::CellSide& s : sides) {
+      if (contacts_.has_line(s.finer) && contacts_.has_line(s.other)) lines.unite(s.finer, s.other);
+    }
     std::set<int> differ;
     for (const CellTree::CellSide& s : sides) {
       query_.check_stop();
-      for (const auto& [own, other] : {std::pair(s.finer, s.other), std::pair(s.other, s.finer)}) {
-        if (!contacts_.has_line(own) || contacts_.has_line(other)) continue;
-        if (!contacts_.is_closed(other) || !has_points_between(own)) continue;
-        const std::size_t there = contacts_.passed(other, s.from, s.to).size();
-        if (contacts_.passed(own, s.from, s.to).size() != there) high_alone_.insert(own);
-        if (passed_high(own, s).size() != there) differ.insert(own);
-      }
+      if (!contacts_.is_closed(s.finer) || !contacts_.is_closed(s.other)) continue;
+      if (!contacts_.has_line(s.finer) && !contacts_.has_line(s.other)) continue;
+      const auto count = [&](int k) {
+        return contacts_.has_line(k) ? passed_high(k, s).size()
+                                     : contacts_.passed(k, s.from, s.to).size();
+      };
+      if (count(s.finer) == count(s.other)) continue;
+      for (const int k : {s.finer, s.other}) differ.insert(lines.find(k));
     }
-    for (const int k : differ) high_alone_.erase(k);
-  }
-
-  /// Of its contacts in line those between the outer ones are points, which are in the convex hull
-  /// of these.
-  bool has_points_between(int k) const {
-    const std::vector<Box>& all = cell(k).contacts;
-    return std::all_of(all.begin() + 1, all.begin() + cell(k).apart - 1,
-                       [](const Box& b) { return b.lower == b.upper; });
+    for (int k = 0; k < int(map_.cells.size()); ++k) {
+      if (contacts_.has_line(k) && differ.count(lines.find(k)) == 0) high_alone_.insert(k);
+    }
   }
 
   std::vector<int> passed_high(int k, const CellTree::CellSide& side) {

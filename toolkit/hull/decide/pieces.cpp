@@ -84,7 +84,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
                  std::any_of(elements_.begin(), elements_.end(),
                              [](const auto& e) { return e.likeness.covered; });
   if (are_apart) std::for_each(copies.begin(), copies.end(), [&](const auto& c) { let_stand(c); });
-  let_ends_stand();
+  let_neighbors_stand();
 }
 
 /// Of edges. What straight ones stand for is off by what these are off by too, if it is not
@@ -105,38 +105,49 @@ void MapPieces::cover_straight(double resolution) {
   }
 }
 
+/// A patch that is no element is told by its borders, and these, if they are none, by their ends.
 void MapPieces::let_stand(const Contact& c) {
   const int element = find_first(c);
   if (element >= 0) elements_[std::size_t(element)].likeness.stands_for_others = true;
+  if (element < 0 && c.kind == SourceKind::face) let_ends_stand(c);
+  if (element < 0 && c.kind == SourceKind::edge) {
+    for (const int end : geometry_.piece(c).end_vertex) {
+      if (end >= 0) let_stand({c.instance, SourceKind::vertex, end, 0, 0});
+    }
+  }
+}
+
+/// Borders of a patch with its corners, ends of an edge's piece with what it goes on into.
+void MapPieces::let_ends_stand(const Contact& c) {
+  const auto let = [&](SourceKind kind, int index) {
+    if (index >= 0) let_stand({c.instance, kind, index, 0, 0});
+  };
+  if (c.kind == SourceKind::face) {
+    const Patch& patch = geometry_.patch(c);
+    for (const Border& border : patch.borders) {
+      let(SourceKind::edge, border.piece);
+      let(SourceKind::vertex, border.vertex);
+    }
+    for (const int vertex : patch.corner_vertex) let(SourceKind::vertex, vertex);
+  } else if (c.kind == SourceKind::edge) {
+    const EdgePiece& piece = geometry_.piece(c);
+    for (const int end : piece.end_vertex) let(SourceKind::vertex, end);
+    for (const int next : piece.end_neighbor) let(SourceKind::edge, next);
+  }
 }
 
 /// The highest point of what stands for others may be that of what is beside it: contacts differ by
 /// as little as shapes do.
-void MapPieces::let_ends_stand() {
+void MapPieces::let_neighbors_stand() {
   const std::vector<MapElement> before = elements_;
   for (const MapElement& element : before) {
     if (!element.likeness.stands_for_others) continue;
-    const Contact& c = element.contact;
-    const auto let = [&](SourceKind kind, int index) {
-      if (index >= 0) let_stand({c.instance, kind, index, 0, 0});
-    };
     const auto let_element = [&](int k) {
       if (k >= 0) elements_[std::size_t(k)].likeness.stands_for_others = true;
     };
-    if (c.kind == SourceKind::face) {
-      const Patch& patch = geometry_.patch(c);
-      for (const Border& border : patch.borders) {
-        let(SourceKind::edge, border.piece);
-        let(SourceKind::vertex, border.vertex);
-      }
-      for (const int vertex : patch.corner_vertex) let(SourceKind::vertex, vertex);
-      for (const MapElement::Beyond& beyond : element.beyond) let_element(beyond.element);
-    } else if (c.kind == SourceKind::edge) {
-      const EdgePiece& piece = geometry_.piece(c);
-      for (const int end : piece.end_vertex) let(SourceKind::vertex, end);
-      for (const int next : piece.end_neighbor) let(SourceKind::edge, next);
-      for (const auto& next : element.next) let_element(next[0]);
-    }
+    let_ends_stand(element.contact);
+    for (const MapElement::Beyond& beyond : element.beyond) let_element(beyond.element);
+    for (const auto& next : element.next) let_element(next[0]);
   }
 }
 

@@ -116,8 +116,9 @@ class MapPieces {
   void find_surfaces();
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);
-  void let_ends_stand();
   void let_stand(const Contact& c);
+  void let_ends_stand(const Contact& c);
+  void let_neighbors_stand();
 
   const ContactGeometry& geometry_;
   double resolution_;
