@@ -459,7 +459,7 @@ class BoundaryCheck {
       }
     }
     const bool on_hull = gap < supports;
-    if (winding != 0 && !near && !strictly_convex(jet, n)) ++facts_.flat;
+    if (winding != 0 && !near && gap > boundary_.gap && !strictly_convex(jet, n)) ++facts_.flat;
     if (near || (!on_hull && gap < undecided) || (on_hull && !strictly_convex(jet, n))) {
       ++facts_.undecided;
     } else if (winding != (on_hull ? 1 : 0)) {

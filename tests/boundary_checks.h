@@ -52,7 +52,9 @@ struct BoundaryFacts {
   int undecided = 0;   ///< of these: too near to an outline, or to supporting, to tell
   int mismatches = 0;  ///< points that support strictly outside of all regions or not inside of one
   taut::Contact mismatch;
-  int flat = 0;  ///< points of regions at which the surface does not bend strictly away
+  /// Points of regions that are farther below their supporting planes than the boundary's gap, as
+  /// in dents, and do not bend strictly away.
+  int flat = 0;
   /// @}
 
   /// Nothing is wrong, to within these shares of the scene's size.

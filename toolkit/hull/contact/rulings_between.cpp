@@ -23,6 +23,8 @@ constexpr double merging_share = 0.25;
 /// Rates per share of the length, relative to the chord, below which the length falls with the
 /// square of the way: one half, where others are one.
 constexpr double touching_share = 0.6;
+/// Of the way to a free end: what is shorter there than this share of it is a poor measure of it.
+constexpr double slender_share = 0.1;
 /// An arc that is so many times its chord is none that was solved.
 constexpr double longest_arc = 10;
 
@@ -162,11 +164,13 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
   }
 }
 
-/// The longer ruling's length falls towards the end with the square of the way.
+/// The longer ruling's length falls towards the end with the square of the way, or may: it is much
+/// shorter than the way.
 bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
   m.at = support(longer);
   length_ = glm::length(m.at.d());
+  if (length_ < slender_share * length()) return true;
   return find_slope(m, 1) && touches(end, longer, m);
 }
 

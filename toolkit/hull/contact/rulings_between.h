@@ -30,8 +30,8 @@ struct MovingRuling {
 /// one end (a ruling of length zero) it is the one whose length is s or 1 - s times the longer
 /// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
 /// A3 end, m +- rho e; a B3 end, linear). Where a parabolic curve touches an edge their distance
-/// falls with the square of the way, and s is the chord's share there as well. Where one contact
-/// leaves the end of an edge that does not bend there, as the borders of cages end in corners, or a
+/// falls with the square of the way, and where it meets a join at a small angle they hardly part:
+/// s is the chord's share there as well. Where one contact leaves the end of an edge that does not bend there, as the borders of cages end in corners, or a
 /// side across which its patch is level, n and the other contact move with the square of its way:
 /// there the root of the chord's share is s. Where both do so, n alone moves with the square of
 /// their ways, and s is the share. Newton's method starts from Hermite's interpolation. Where n is
@@ -110,7 +110,7 @@ class RulingsBetween {
   std::array<bool, 2> stands_ = {false, false};    // n, at either end
   int free_end_ = -1;                              // at which the contacts merge
   double length_ = 0;                              // of the ruling at the other one
-  bool touches_ = false;          // ... and their distance falls with the square of the way there
+  bool touches_ = false;          // ... and their distance is no measure of the way there
   HermitePolynomial polynomial_;  // in s, or in the length's share
 };
 

@@ -56,7 +56,10 @@ class ArcEndSearch {
                     [&](const ArcPiece& piece) { return piece.tolerant > resolution; })) {
       return false;
     }
-    if (surely && !is_found(way.back())) return false;
+    if (surely &&
+        !std::all_of(way.begin(), way.end(), [&](const auto& p) { return is_found(p); })) {
+      return false;
+    }
     append(pieces, std::move(way));
     return true;
   }
@@ -88,7 +91,7 @@ class ArcEndSearch {
 
   bool is_found(const ArcPiece& piece) const {
     const std::vector<Ruling>& r = piece.rulings;
-    if (r.size() < 2) return true;
+    if (r.size() < 2 || length_of(r[r.size() - 2]) < shortest_solved) return true;
     const RulingsBetween between(search_.system(), r[r.size() - 2], r.back());
     for (int place = 1; place < found_places && !between.empty(); ++place) {
       if (!between(double(place) / found_places)) return false;

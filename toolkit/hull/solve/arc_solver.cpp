@@ -12,6 +12,7 @@
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/solve/arc_pieces.h"
+#include "taut/hull/solve/merged_ends.h"
 
 namespace taut {
 namespace {
@@ -35,6 +36,13 @@ constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
 /// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
+/// Times by which a parameter's speed may change between two rulings that are seen to be neighbours
+/// in the middle alone; where it changes by more, shares of the way at which it is seen, and how
+/// far parameters may be from the interpolated ones there: so that Newton's method surely leads
+/// from the one to the other, along circles of a quarter turn.
+constexpr double most_stretched = 4;
+constexpr std::array<double, 3> on_the_way = {0.125, 0.5, 0.875};
+constexpr double parameter_reach = 0.1;
 /// How far from a border, in units of the resolution, what is tolerant may be told to be on it.
 constexpr double border_depths = 4;
 /// Rates at which a contact moves over an exit, as shares of those at which it moves, that are
@@ -268,11 +276,40 @@ bool ArcSolver::is_smooth(const Ruling& to) {
   if (!exact) return false;
   const Ruling middle = inside(exact->at.ruling());
   if (between.lies_flat() && !is_interpolated(between)) return false;
+  if (passes_pole(to) && !is_well_told(between)) return false;
   if (gap(middle, middle_of(last(), to)) > middle_share * way) return false;
   const double depth = search_.depth(middle);
   if (depth > search_.map().resolution) return false;
   if (depth > geometry_.tie()) pieces_.back().tolerant = std::max(pieces_.back().tolerant, depth);
   return true;
+}
+
+/// On the way a contact comes so near to a pole that its parameter about it is far from linear.
+bool ArcSolver::passes_pole(const Ruling& to) const {
+  for (const std::size_t i : {0u, 1u}) {
+    const ContactJet a = geometry_.jet(last().contact[i]);
+    const ContactJet b = geometry_.jet(to.contact[i]);
+    for (int k = 0; a.dimension == 2 && k < 2; ++k) {
+      const double before = glm::length(a.dx[std::size_t(k)]);
+      const double after = glm::length(b.dx[std::size_t(k)]);
+      if (std::max(before, after) > most_stretched * std::min(before, after)) return true;
+    }
+  }
+  return false;
+}
+
+/// All along the parameters of contacts are near the interpolated ones.
+bool ArcSolver::is_well_told(const RulingsBetween& between) const {
+  return std::all_of(on_the_way.begin(), on_the_way.end(), [&](double s) {
+    const std::optional<MovingRuling> exact = between(s);
+    const MovingRuling start = between.interpolated(s);
+    for (std::size_t i = 0; exact && i < 2; ++i) {
+      const Contact& c = exact->at.contact[i];
+      if (glm::distance(parameters(c), parameters(start.at.contact[i])) > parameter_reach)
+        return false;
+    }
+    return exact.has_value();
+  });
 }
 
 /// Beside a flat end the interpolated ruling is what is integrated: whether it is exact is seen
@@ -426,6 +463,7 @@ bool ArcSolver::solve_change(CommonSupport& s, const Ruling& to, std::size_t i,
   }
   s.evaluate(geometry_);
   const double expected = left * glm::distance(last().point[0], last().point[1]);
+  if (is_smooth && expected < shortest_solved) return true;
   if (!system.settle(s, margin)) return false;
   const double length = glm::length(s.d());
   return 0.5 * expected < length && length < 2 * expected;

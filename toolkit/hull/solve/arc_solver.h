@@ -43,6 +43,8 @@ class ArcSolver {
   bool is_smooth(const Ruling& to);
   Ruling inside(Ruling r) const;
   bool is_interpolated(const RulingsBetween& between) const;
+  bool passes_pole(const Ruling& to) const;
+  bool is_well_told(const RulingsBetween& between) const;
   bool step_over(const Ruling& to);
   void divide(const Ruling& to, int depth);
   void jump(const Ruling& to);

@@ -202,7 +202,9 @@ double distance_from(const Contact& c, Side side) {
 
 std::optional<FreeEnd> cusp_end(const ContactGeometry& geometry, const Contact& root) {
   if (!is_within(root.u) || !is_within(root.v)) return std::nullopt;
-  const Contact c = clamped(root);
+  Contact c = root;
+  c.u = placed(root.u);
+  c.v = placed(root.v);
   const std::optional<SurfaceCurvature> b = surface_curvature(geometry, c);
   if (!b || near_pole(geometry, c)) return std::nullopt;
   return FreeEnd{b->n, c, Kind::face, b->along};

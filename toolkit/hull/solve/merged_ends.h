@@ -16,6 +16,11 @@ inline constexpr double merge_distance = 4e-3;
 /// differ by the fourth power of distances.
 double merging_distance(const ContactGeometry& geometry);
 
+/// Shorter rulings before an end in which contacts of one surface or curve merge are not solved
+/// for: rounding moves their contacts by its unit over the third power of the length, more than
+/// they miss by approaching each other evenly, the length's square. The fifth root of the unit.
+inline constexpr double shortest_solved = 6e-4;
+
 /// The ruling of length zero that lies ahead of one whose contacts approach each other: in a free
 /// end, at full precision where it is of a generic kind, else extrapolated; in a pole about which
 /// planes touch twice; or where two surfaces or curves touch. None if they do not merge there, or
