@@ -38,11 +38,16 @@ class EdgePlaces {
       return t;
     });
   }
-  void add(const EdgeStretch& s) {
-    if (s.piece < 0) return;
-    for (const double t : {s.from, s.to}) {
-      add(s.at(t));
-      level_[{s.instance, s.piece, -1, 0}].insert(t);
+  /// Of a curved side that goes on from stretch to stretch two ends are its own.
+  void add(const FacetNode& node) {
+    const std::size_t count = node.sides.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const EdgeStretch& s = node.sides[k];
+      if (s.piece < 0) continue;
+      std::set<double>& level = level_[{s.instance, s.piece, -1, 0}];
+      for (const double t : {s.from, s.to}) add(s.at(t));
+      if (node.sides[(k + count - 1) % count].piece < 0) level.insert(s.from);
+      if (node.sides[(k + 1) % count].piece < 0) level.insert(s.to);
     }
   }
 
@@ -201,9 +206,7 @@ void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, 
     }
     places.add(c);
   });
-  for (const FacetNode& node : graph.nodes) {
-    for (const EdgeStretch& s : node.sides) places.add(s);
-  }
+  for (const FacetNode& node : graph.nodes) places.add(node);
   places.unite();
   for_each_end(graph, [&](Contact& c, dvec3& x) {
     places.settle(c);

@@ -14,6 +14,9 @@ namespace {
 
 /// Parts of a facet's curved side, and of the way between two rulings, at whose ends it is looked.
 constexpr int places = 8;
+/// Further places, beside the ends: where one of these is moved off the curve that leads there, it
+/// is passed just before.
+constexpr std::array<double, 2> beside_ends = {1.0 / 128, 127.0 / 128};
 /// How often the step to the places next to the deepest one is halved.
 constexpr int closer_looks = 5;
 /// How many times the resolution of exact models that is that rounding makes of a model's numbers.
@@ -47,6 +50,11 @@ class TolerantPlaces {
       for (std::size_t i = 0; i < 2; ++i) {
         deepest = std::max(deepest, off(r.contact[i], r.point[i]));
         touches = touches && !rises(r.contact[i], r.n);
+      }
+    }
+    if (deepest > geometry_.tie()) {
+      for (const Ruling* end : {&piece.rulings.front(), &piece.rulings.back()}) {
+        deepest = std::max(deepest, depth_passed(*end));
       }
     }
     const bool is_exact = !is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie();
@@ -180,12 +188,32 @@ class TolerantPlaces {
       deepest = std::max(deepest, found);
     };
     for (int place = 1; place < places; ++place) look(double(place) / places);
+    for (const double share : beside_ends) look(share);
     if (deepest <= geometry_.tie()) return deepest;
     for (int k = 0; k < closer_looks; ++k) {
       step *= 0.5;
       const double middle = at;
       look(middle - step);
       look(middle + step);
+    }
+    return deepest;
+  }
+
+  /// Of exact rulings that have one of its contacts: what leads to a ruling that is moved off its
+  /// curve may pass it as far.
+  double depth_passed(const Ruling& r) {
+    double deepest = 0;
+    for (const std::size_t i : {0u, 1u}) {
+      if (r.contact[i].kind != SourceKind::edge) continue;
+      CommonSupport s(geometry_, r);
+      const double at = r.contact[i].u;
+      const auto stays = [&](const CommonSupport& now) {
+        LinearEquation e;
+        e.residual = now.contact[i].u - at;
+        e.parameter[i] = {1, 0};
+        return e;
+      };
+      if (system_.solve(s, stays)) deepest = std::max(deepest, depth(s.ruling()));
     }
     return deepest;
   }
