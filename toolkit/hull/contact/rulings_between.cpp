@@ -170,7 +170,8 @@ bool RulingsBetween::touch(const Ruling& end, const Ruling& longer) {
   MovingRuling m;
   m.at = support(longer);
   length_ = glm::length(m.at.d());
-  if (length_ < slender_share * length()) return true;
+  const bool is_smooth = continues(system_.geometry(), longer.contact[0], longer.contact[1]);
+  if (is_smooth && length_ < slender_share * length()) return true;
   return find_slope(m, 1) && touches(end, longer, m);
 }
 

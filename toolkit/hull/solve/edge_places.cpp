@@ -44,10 +44,12 @@ class EdgePlaces {
     for (std::size_t k = 0; k < count; ++k) {
       const EdgeStretch& s = node.sides[k];
       if (s.piece < 0) continue;
+      const EdgeStretch& before = node.sides[(k + count - 1) % count];
+      const EdgeStretch& after = node.sides[(k + 1) % count];
       std::set<double>& level = level_[{s.instance, s.piece, -1, 0}];
       for (const double t : {s.from, s.to}) add(s.at(t));
-      if (node.sides[(k + count - 1) % count].piece < 0) level.insert(s.from);
-      if (node.sides[(k + 1) % count].piece < 0) level.insert(s.to);
+      if (!goes_on(before, s)) level.insert(s.from);
+      if (!goes_on(s, after)) level.insert(s.to);
     }
   }
 
@@ -144,6 +146,13 @@ class EdgePlaces {
   }
   static void set(double& t, double to) { t = to; }
   static void set(const double&, double) {}
+
+  bool goes_on(const EdgeStretch& s, const EdgeStretch& after) const {
+    if (s.piece < 0 || after.piece < 0) return false;
+    const double gap =
+        glm::distance(geometry_.point(s.at(s.to)), geometry_.point(after.at(after.from)));
+    return gap <= geometry_.tie();
+  }
 
   double place_of(const Line& line, double t) const {
     const auto moved = moved_.find(line);

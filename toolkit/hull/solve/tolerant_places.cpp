@@ -52,9 +52,10 @@ class TolerantPlaces {
         touches = touches && !rises(r.contact[i], r.n);
       }
     }
+    double passed = 0;
     if (deepest > geometry_.tie()) {
       for (const Ruling* end : {&piece.rulings.front(), &piece.rulings.back()}) {
-        deepest = std::max(deepest, depth_passed(*end));
+        passed = std::max(passed, depth_passed(*end));
       }
     }
     const bool is_exact = !is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie();
@@ -63,7 +64,7 @@ class TolerantPlaces {
       if (between.empty() || (is_exact && depth_at(between, 0.5) <= geometry_.tie())) continue;
       deepest = std::max(deepest, deepest_of(between));
     }
-    return bound_of(deepest, touches);
+    return std::max(bound_of(deepest, touches), std::min(passed, resolution_));
   }
 
   double of(const HullFace& facet) {
