@@ -14,7 +14,7 @@ using namespace taut_test;  // NOLINT: boundaries
 
 /// How many things are told of the boundary.
 std::size_t told(HullBoundary boundary) {
-  check_closure(boundary);
+  check_closure(boundary, 1e-7);
   return boundary.unresolved.size();
 }
 

@@ -99,7 +99,7 @@ std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const d
 
 }  // namespace
 
-void unite_corners(const ContactGeometry& geometry, double distance, FacetContacts& facet) {
+void move_to_ends(const ContactGeometry& geometry, double distance, FacetContacts& facet) {
   if (facet.sides.empty()) return;
   for (EdgeStretch& s : facet.sides) {
     if (s.piece < 0) continue;
@@ -112,6 +112,10 @@ void unite_corners(const ContactGeometry& geometry, double distance, FacetContac
                            : moved_to_border(geometry, c, distance);
     facet.points[k] = geometry.point(c);
   }
+}
+
+void unite_corners(double distance, FacetContacts& facet) {
+  if (facet.sides.empty()) return;
   // A corner with a curved side behind it stays, as that begins there.
   for (std::size_t k = 0; k < facet.contacts.size() && facet.contacts.size() > 2;) {
     const std::size_t next = (k + 1) % facet.contacts.size();

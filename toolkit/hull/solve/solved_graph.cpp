@@ -174,7 +174,8 @@ class GraphSolver {
     auto found = facet_contacts(geometry_, query_, level.n, corners, level.pieces,
                                 is_rounded ? map_.resolution : 0);
     if (!found || !found->is_facet()) return std::nullopt;
-    if (is_rounded) unite_corners(geometry_, map_.contact_extent(), *found);
+    if (is_rounded) move_to_ends(geometry_, map_.contact_extent(), *found);
+    unite_corners(is_rounded ? map_.contact_extent() : map_.resolution, *found);
     fill_dents(geometry_, map_.resolution, *found);
     FacetNode facet{level.n, found->contacts, found->points, found->sides, {}};
     facet.slots.assign(facet.contacts.size(), {});

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "taut/core/disjoint_sets.h"
-#include "taut/hull/stitch/curve_chains.h"
 #include "taut/surface/point_grid.h"
 
 namespace taut {
@@ -18,7 +17,7 @@ bool share_face(const HullCurve& a, const HullCurve& b) {
 
 /// The points in which curves end, as often as the boundary passes them: ends in one place meet if
 /// a chain of curves about it leads from the one to the other over faces that they share.
-int vertex_count(const HullBoundary& boundary) {
+int vertex_count(const HullBoundary& boundary, double distance) {
   struct End {
     const HullCurve* curve;
     dvec3 x;
@@ -32,7 +31,7 @@ int vertex_count(const HullBoundary& boundary) {
       box.include(p);
     }
   }
-  PointGrid places(box, same_curve_end);
+  PointGrid places(box, distance);
   DisjointSets vertices(ends.size());
   for (int k = 0; k < int(ends.size()); ++k) {
     const End& own = ends[std::size_t(k)];
@@ -62,8 +61,8 @@ int face_characteristic(const HullBoundary& boundary, const HullFace& face) {
 }
 
 /// V - E + F, where a face counts as its own Euler characteristic.
-int euler_characteristic(const HullBoundary& boundary) {
-  int result = vertex_count(boundary);
+int euler_characteristic(const HullBoundary& boundary, double distance) {
+  int result = vertex_count(boundary, distance);
   for (const HullCurve& c : boundary.curves) result -= c.closed ? 0 : 1;
   for (const HullFace& face : boundary.faces) result += face_characteristic(boundary, face);
   return result;
@@ -71,13 +70,13 @@ int euler_characteristic(const HullBoundary& boundary) {
 
 }  // namespace
 
-void check_closure(HullBoundary& boundary) {
+void check_closure(HullBoundary& boundary, double distance) {
   for (const HullCurve& c : boundary.curves) {
     if (c.faces[0] < 0 || c.faces[1] < 0) {
       boundary.unresolved.push_back({unit(c.points.front()), "a curve has no two faces"});
     }
   }
-  if (boundary.unresolved.empty() && euler_characteristic(boundary) != 2) {
+  if (boundary.unresolved.empty() && euler_characteristic(boundary, distance) != 2) {
     boundary.unresolved.push_back(
         {dvec3(0.0), "the faces that were found do not close to a sphere"});
   }

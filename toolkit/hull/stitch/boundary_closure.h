@@ -6,7 +6,7 @@ namespace taut {
 
 /// Adds to HullBoundary::unresolved what keeps the boundary from being closed: every curve without
 /// two faces and, where nothing else is unresolved, an Euler characteristic other than the
-/// sphere's.
-void check_closure(HullBoundary& boundary);
+/// sphere's. Ends of curves nearer than `distance` are one.
+void check_closure(HullBoundary& boundary, double distance);
 
 }  // namespace taut

@@ -11,8 +11,12 @@ namespace {
 /// Puts elements together, each into one chain.
 class Chainer {
  public:
-  Chainer(const std::vector<CurveElement>& elements, const std::vector<dvec3>& corners)
-      : elements_(elements), corners_(corners), used_(elements.size(), false) {}
+  Chainer(const std::vector<CurveElement>& elements, const std::vector<dvec3>& corners,
+          double distance)
+      : elements_(elements),
+        corners_(corners),
+        distance_(distance),
+        used_(elements.size(), false) {}
 
   bool is_used(std::size_t k) const { return used_[k]; }
 
@@ -44,9 +48,7 @@ class Chainer {
            std::none_of(corners_.begin(), corners_.end(),
                         [&](const dvec3& corner) { return are_one(corner, end); });
   }
-  static bool are_one(const dvec3& a, const dvec3& b) {
-    return glm::distance(a, b) < same_curve_end;
-  }
+  bool are_one(const dvec3& a, const dvec3& b) const { return glm::distance(a, b) < distance_; }
   template <class Matches>
   std::vector<std::size_t>::const_iterator unused(const std::vector<std::size_t>& group,
                                                   Matches matches) const {
@@ -56,18 +58,19 @@ class Chainer {
 
   const std::vector<CurveElement>& elements_;
   const std::vector<dvec3>& corners_;
+  double distance_;
   std::vector<bool> used_;
 };
 
 }  // namespace
 
 std::vector<CurveChain> chains(const std::vector<CurveElement>& elements,
-                               const std::vector<dvec3>& corners) {
+                               const std::vector<dvec3>& corners, double distance) {
   std::map<std::tuple<int, int, int>, std::vector<std::size_t>> alike;
   for (std::size_t k = 0; k < elements.size(); ++k) {
     alike[{elements[k].left, elements[k].right, elements[k].source}].push_back(k);
   }
-  Chainer chainer(elements, corners);
+  Chainer chainer(elements, corners, distance);
   std::vector<CurveChain> result;
   for (const auto& [key, group] : alike) {
     for (const std::size_t start : group) {

@@ -6,7 +6,8 @@
 
 namespace taut {
 
-/// Ends of curves of the hull nearer than this, in the scene's frame, are one point.
+/// Ends of curves of the hull nearer than this, in the scene's frame, are one point, and those that
+/// are nearer than the resolution.
 inline constexpr double same_curve_end = 1e-7;
 
 /// A contact of a piece of an arc and, where several curves lie along it, their order.
@@ -36,9 +37,11 @@ struct CurveChain {
 };
 
 /// Chains of the elements that have the same faces and source: every element in one of them, each
-/// as long as it can be, but none over one of the corners. In the order of faces and source.
+/// as long as it can be, but none over one of the corners. In the order of faces and source. Points
+/// nearer than `distance` are one.
 std::vector<CurveChain> chains(const std::vector<CurveElement>& elements,
-                               const std::vector<dvec3>& corners = {});
+                               const std::vector<dvec3>& corners = {},
+                               double distance = same_curve_end);
 
 /// The points along the whole chain; the first one again at the end of a closed one.
 std::vector<dvec3> points_along(const CurveChain& chain, const std::vector<CurveElement>& elements);

@@ -32,7 +32,8 @@ class Stitcher {
         boundary_(begin(geometry, graph_)),
         stretches_(geometry, graph_,
                    regions_of(geometry, query, graph_, depth, boundary_.unresolved),
-                   boundary_.unresolved) {}
+                   boundary_.unresolved),
+        same_end_(std::max(same_curve_end, depth)) {}
 
   HullBoundary run();
 
@@ -94,6 +95,7 @@ class Stitcher {
   std::vector<std::size_t> place_of_region_;  // among those of its face
   std::vector<std::vector<int>> scroll_of_;   // per arc and piece; -1 between vertices
   std::vector<int> facet_of_;                 // per node
+  double same_end_;                           // of curves
   std::vector<dvec3> corners_;                // in which curves end
   /// By arc, piece and contact: the curves along it, with their order.
   std::map<std::tuple<int, int, int>, std::vector<std::pair<double, int>>> along_scroll_;
@@ -266,7 +268,7 @@ void Stitcher::make_bitangents() {
 
 /// Chains elements, and adds the curves that they make.
 void Stitcher::add_chains(HullCurveKind kind, const std::vector<CurveElement>& elements) {
-  for (const CurveChain& chain : chains(elements, corners_)) {
+  for (const CurveChain& chain : chains(elements, corners_, same_end_)) {
     const CurveElement& e = elements[chain.elements.front()];
     const int curve =
         add_curve(kind, e.left, e.right, e.source, points_along(chain, elements), chain.closed);
@@ -402,14 +404,19 @@ void Stitcher::make_rulings() {
   }
 }
 
-/// Where a ruling ends between two parts of one scroll, the curves along it have a corner, and
-/// where its two contacts are one, those along the one end.
+/// Where a ruling ends between two parts of one scroll, or between its beginning and its end, the
+/// curves along it have a corner, and where its two contacts are one, those along the one end.
 std::vector<dvec3> Stitcher::corners_of_scrolls() const {
   std::vector<dvec3> corners;
   for (const SeparatingArc& arc : graph_.arcs) {
-    for (const Ruling* end :
-         {&arc.pieces.front().rulings.front(), &arc.pieces.back().rulings.back()}) {
+    const Ruling& first = arc.pieces.front().rulings.front();
+    const Ruling& last = arc.pieces.back().rulings.back();
+    for (const Ruling* end : {&first, &last}) {
       if (end->point[0] == end->point[1]) corners.push_back(end->point[0]);
+    }
+    for (const std::size_t i : {0u, 1u}) {
+      const bool leads_back = glm::distance(first.point[i], last.point[i]) < same_end_;
+      if (leads_back && !arc.closed) corners.push_back(first.point[i]);
     }
   }
   for (const Cut& cut : cuts()) {
@@ -542,7 +549,7 @@ HullBoundary Stitcher::run() {
   make_loops();
   take_regions();
   take_arcs();
-  check_closure(boundary_);
+  check_closure(boundary_, same_end_);
   label_ruled_faces(geometry_, boundary_);
   return std::move(boundary_);
 }
