@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "boundaries.h"
@@ -51,6 +52,17 @@ TEST(BoundaryClosure, WhatIsMissingIsTold) {
   HullBoundary spheres = two_spheres_boundary().boundary;
   for (HullFace& face : spheres.faces) face.loops.clear();
   EXPECT_EQ(told(spheres), 1U);
+}
+
+/// But not of those so narrow that corners moved by as much as ends of curves may be apart turn
+/// them.
+TEST(BoundaryClosure, FacetsThatAreTurnedInsideOutAreTold) {
+  HullBoundary boundary = tetrahedron_boundary().boundary;
+  std::vector<dvec3>& corners = boundary.faces.front().points;
+  std::reverse(corners.begin(), corners.end());
+  EXPECT_EQ(told(boundary), 1U);
+  corners.back() = 0.5 * (corners[0] + corners[1]) + 1e-8 * (corners.back() - corners[0]);
+  EXPECT_EQ(told(boundary), 0U);
 }
 
 /// It would tell the same once more.

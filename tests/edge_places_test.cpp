@@ -92,6 +92,25 @@ TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {
   EXPECT_NE(begin(two, 0), begin(two, 1));
 }
 
+/// Where a curved side goes on from one piece of an edge to the next it has no end.
+TEST(EdgePlaces, CurvedSidesDoNotEndWhereTheyGoOn) {
+  const Scene scene = make_scene({{}, {circle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})}, {{0, 0, 5}}});
+  const ContactGeometry geometry(scene);
+  const auto united = [&](double side_begin) {
+    SeparatingGraph graph;
+    graph.arcs.push_back(along_curve(geometry, 0.2, 1 - 1e-5));
+    FacetNode facet;
+    const EdgePiece& first = geometry.piece({0, SourceKind::edge, 0, 1, 0});
+    facet.sides = {EdgeStretch{0, 0, 0.1, 1},
+                   EdgeStretch{0, first.end_neighbor[1], side_begin, 0.9}};
+    graph.nodes.push_back(facet);
+    unite_edge_places(geometry, graph, 1e-7, 1e-4, everywhere);
+    return graph.arcs.front().pieces.front().rulings.back().contact[0].u;
+  };
+  EXPECT_EQ(united(0), 1 - 1e-5);
+  EXPECT_EQ(united(0.5), 1);
+}
+
 /// Places beside edges at which rounded walls end are on these, unless their patches rise from the
 /// hull there.
 TEST(EdgePlaces, BesideBentWallsAreOnTheirEdgesWhereThesePatchesTouch) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -149,6 +150,37 @@ TEST(SolvedHull, OfHigherDegreesIsTheSameWhenRounded) {
       expect_counts(placed(natural, variant, random).shape, ruled.counts);
     }
   }
+}
+
+/// A quarter of a unit circle, to one side or the other of where it begins.
+NurbsCurve quarter(const dvec3& shift, double side) {
+  NurbsCurve curve{2, {0, 0, 0, 1, 1, 1}, {}};
+  const std::array<dvec3, 3> corners = {dvec3(side, 0, 0), dvec3(side, 1, 0), dvec3(0, 1, 0)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double w = k == 1 ? std::sqrt(0.5) : 1;
+    curve.points.emplace_back(w * (corners[k] + shift), w);
+  }
+  return curve;
+}
+
+/// Edges that meet smoothly, or miss each other by less than the resolution, bound one half disc.
+TEST(SolvedHull, OfEdgesThatMeetInASmoothCurve) {
+  for (const double gap : {0.0, 1.7e-9, 6e-9}) {
+    SCOPED_TRACE(gap);
+    Shape shape{
+        {}, {quarter(dvec3(0.0), 1), quarter({-gap, 0, 0}, -1)}, {{0.5, 0.2, 2}, {1, -0.3, 2}}};
+    expect_counts(shape, {0, 2, 4});
+    expect_counts(mapped(shape, skew_rotation()), {0, 2, 4});
+  }
+}
+
+/// A scroll about a full circle begins and ends in one of its points: the curve along it does, too.
+TEST(SolvedHull, OfACircleAndAHalfDisc) {
+  const dvec3 up(0.2, 0.1, 2);
+  const Shape shape{
+      {}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0}), quarter(up, 1), quarter(up, -1)}, {}};
+  expect_counts(shape, {0, 1, 3});
+  expect_counts(mapped(shape, skew_rotation()), {0, 1, 3});
 }
 
 /// Whatever rounding does to a truth, its boundary is closed and as near as it says.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "models.h"
@@ -58,6 +60,28 @@ TEST_P(TolerantPlacesOfACone, RulingsThatTurnBackAreTolerant) {
   const double bound = found();
   EXPECT_GT(bound, 0);
   EXPECT_LT(bound, 2 * geometry_.tie());
+}
+
+/// A facet's corner that is not where the arcs beside it end is within the bounds of both.
+TEST(TolerantPlaces, FacetsWithCornersBesideTheirArcsEnds) {
+  const Scene scene =
+      make_scene(sphere(1) + shifted(sphere(0.5), {3, 0, 0}) + shifted(sphere(0.7), {1, 2.5, 0}));
+  const ContactGeometry geometry(scene);
+  HullStatistics statistics;
+  const HullOptions options{.relative = 1e-2, .threads = 1, .progress = {}};
+  HullBoundary boundary = exact_boundary(scene, options, statistics);
+  HullFace& facet = *std::find_if(boundary.faces.begin(), boundary.faces.end(),
+                                  [](const auto& f) { return f.kind == FaceKind::facet; });
+  const double off = 0.5 * boundary.gap;
+  facet.points.front() += off * unit(facet.points[1] - facet.points[0]);
+  SupportQuery query(scene);
+  find_tolerant_places(ContactSystem(geometry), query, boundary, boundary.gap);
+  EXPECT_NEAR(facet.tolerant, off, 0.3 * off);
+  const auto is_told = [&](const SeparatingArc& arc) {
+    const double most = std::max(arc.pieces.front().tolerant, arc.pieces.back().tolerant);
+    return std::abs(most - off) < 0.3 * off;
+  };
+  EXPECT_EQ(std::count_if(boundary.arcs.begin(), boundary.arcs.end(), is_told), 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Clean, TolerantPlacesOfACone, testing::Values(false));

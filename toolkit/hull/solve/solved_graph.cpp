@@ -128,8 +128,13 @@ class GraphSolver {
   /// Across each of its straight sides one of the node's arcs leaves.
   std::optional<FacetNode> facet_of(const MapGraph::Node& node) {
     if (std::optional<FacetNode> crossing = crossing_of(search_, known_, node)) return crossing;
-    std::optional<FacetNode> facet = with_curved_sides(node);
-    const bool fits = facet && sides_of(*facet, node).size() == node.ends.size();
+    const auto fits_node = [&](const std::optional<FacetNode>& own) {
+      return own && sides_of(*own, node).size() == node.ends.size();
+    };
+    std::optional<FacetNode> facet = with_curved_sides(node, false);
+    // Sides so short that no arc leaves across them are none.
+    if (facet && !fits_node(facet)) facet = with_curved_sides(node, true);
+    const bool fits = fits_node(facet);
     if (!fits && node.ends.size() > 2) facet = of_corners(node);
     return fits || node.ends.size() > 2 ? facet : std::nullopt;
   }
@@ -145,21 +150,22 @@ class GraphSolver {
     graph_.nodes.push_back(std::move(*facet));
   }
 
-  /// A plane with contact along curves.
-  std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node) {
+  /// A plane with contact along curves; `rounded` where it is known to the resolution only.
+  std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node, bool rounded) {
     for (const int k : node.cells) {
       const MapCell& cell = map_.cells[std::size_t(k)];
-      if (cell.has_plane()) return with_curved_sides(node, cell.normal);
+      if (cell.has_plane()) return with_curved_sides(node, cell.normal, rounded);
     }
     return std::nullopt;
   }
 
-  std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node, const dvec3& n) {
+  std::optional<FacetNode> with_curved_sides(const MapGraph::Node& node, const dvec3& n,
+                                             bool rounded) {
     LevelPieces level = level_pieces(geometry_, query_, n, map_.resolution);
     if (level.pieces.empty()) return std::nullopt;
     const auto near = level_corners(node, level.n, first_corner_depths);
-    const bool is_rounded =
-        level.off > geometry_.tie() || near.size() > level_corners(node, level.n, 0).size();
+    const bool is_rounded = rounded || level.off > geometry_.tie() ||
+                            near.size() > level_corners(node, level.n, 0).size();
     if (is_rounded) {
       std::vector<dvec3> points;
       points.reserve(near.size());

@@ -291,6 +291,26 @@ void bound_joints(SeparatingArc& arc, double tie) {
   }
 }
 
+/// What the end of an arc misses corners of the facet by in which it ends is within the bounds of
+/// both.
+void bound_ends(HullBoundary& boundary, double tie) {
+  for (SeparatingArc& arc : boundary.arcs) {
+    for (const std::size_t end : {0u, 1u}) {
+      if (arc.closed || arc.facet[end] < 0) continue;
+      HullFace& facet = boundary.faces[std::size_t(arc.facet[end])];
+      ArcPiece& piece = end == 0 ? arc.pieces.front() : arc.pieces.back();
+      for (const dvec3& x : (end == 0 ? piece.rulings.front() : piece.rulings.back()).point) {
+        double missed = infinity;
+        for (const dvec3& corner : facet.points)
+          missed = std::min(missed, glm::distance(x, corner));
+        if (missed <= tie) continue;
+        piece.tolerant = std::max(piece.tolerant, missed);
+        facet.tolerant = std::max(facet.tolerant, missed);
+      }
+    }
+  }
+}
+
 /// From one ruling to the next: n and both contacts.
 using Step = std::array<dvec3, 3>;
 
@@ -350,8 +370,11 @@ void find_tolerant_places(const ContactSystem& system, SupportQuery& query, Hull
     bound_joints(arc, system.geometry().tie());
     bound_turns(arc, system.geometry().tie());
   }
+  bound_ends(boundary, system.geometry().tie());
   for (HullFace& face : boundary.faces) {
-    if (face.kind == FaceKind::facet && !face.contacts.empty()) face.tolerant = found.of(face);
+    if (face.kind == FaceKind::facet && !face.contacts.empty()) {
+      face.tolerant = std::max(face.tolerant, found.of(face));
+    }
     for (const PatchRegion& region : face.regions) {
       face.tolerant = std::max(face.tolerant, found.of(boundary, region));
     }

@@ -68,12 +68,29 @@ int euler_characteristic(const HullBoundary& boundary, double distance) {
   return result;
 }
 
+/// Its corners run clockwise about its normal, by more than corners moved by so much make of it.
+bool is_inside_out(const HullFace& facet, double distance) {
+  double doubled = 0, perimeter = 0;
+  for (std::size_t k = 0; k < facet.points.size(); ++k) {
+    const dvec3& a = facet.points[k];
+    const dvec3& b = facet.points[(k + 1) % facet.points.size()];
+    doubled += glm::dot(glm::cross(a - facet.points[0], b - facet.points[0]), facet.n);
+    perimeter += glm::distance(a, b);
+  }
+  return doubled < -distance * perimeter;
+}
+
 }  // namespace
 
 void check_closure(HullBoundary& boundary, double distance) {
   for (const HullCurve& c : boundary.curves) {
     if (c.faces[0] < 0 || c.faces[1] < 0) {
       boundary.unresolved.push_back({unit(c.points.front()), "a curve has no two faces"});
+    }
+  }
+  for (const HullFace& face : boundary.faces) {
+    if (face.kind == FaceKind::facet && is_inside_out(face, distance)) {
+      boundary.unresolved.push_back({face.n, "a facet is turned inside out"});
     }
   }
   if (boundary.unresolved.empty() && euler_characteristic(boundary, distance) != 2) {
