@@ -31,11 +31,12 @@ struct MovingRuling {
 /// one's: as functions of their distance n and the contacts are smooth there (mathematics: near an
 /// A3 end, m +- rho e; a B3 end, linear). Where a parabolic curve touches an edge their distance
 /// falls with the square of the way, and where it meets a join at a small angle they hardly part:
-/// s is the chord's share there as well. Where one contact leaves the end of an edge that does not bend there, as the borders of cages end in corners, or a
-/// side across which its patch is level, n and the other contact move with the square of its way:
-/// there the root of the chord's share is s. Where both do so, n alone moves with the square of
-/// their ways, and s is the share. Newton's method starts from Hermite's interpolation. Where n is
-/// the same at both ends it starts from contacts that go straight, in one plane.
+/// s is the chord's share there as well. Where one contact leaves the end of an edge that does not
+/// bend there, as the borders of cages end in corners, or a side across which its patch is level, n
+/// and the other contact move with the square of its way: there the root of the chord's share is s.
+/// Where both do so, n alone moves with the square of their ways, and s is the share. Newton's
+/// method starts from Hermite's interpolation. Where n is the same at both ends it starts from
+/// contacts that go straight, in one plane.
 class RulingsBetween {
  public:
   /// @pre the two rulings have the same elements; all outlive this
