@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -181,6 +182,26 @@ TEST(SolvedHull, OfACircleAndAHalfDisc) {
       {}, {circle(dvec3(0.0), {1, 0, 0}, {0, 1, 0}), quarter(up, 1), quarter(up, -1)}, {}};
   expect_counts(shape, {0, 1, 3});
   expect_counts(mapped(shape, skew_rotation()), {0, 1, 3});
+}
+
+/// Two balls that are as high as each other: their common curve passes their poles, at an angle to
+/// the borders of their patches.
+TEST(SolvedHull, ArcsThatPassPolesAreExact) {
+  const dvec3 c(3, 1, 0.5);
+  const double R = 1, r = 0.5, L = glm::length(c);
+  const double sine = (R - r) / L, cosine = std::sqrt(1 - sine * sine), pi = std::numbers::pi;
+  const double area =
+      2 * pi * (R * R * (1 + sine) + r * r * (1 - sine)) + pi * (R + r) * cosine * L * cosine;
+  const double width = R * (1 + sine) + r * (1 - sine) + 0.5 * cosine * cosine * L;
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Scene scene = make_scene(mapped(sphere(R) + shifted(sphere(r), c), turn));
+    const Hull hull = solved_hull_of(scene);
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{2, 1, 0}));
+    const BoundaryMeasures measured = measure(scene, ContactGeometry(scene), *hull.boundary);
+    EXPECT_NEAR(measured.area, area, 1e-10 * area);
+    EXPECT_NEAR(measured.mean_width, width, 1e-9 * width);
+  }
 }
 
 /// Whatever rounding does to a truth, its boundary is closed and as near as it says.

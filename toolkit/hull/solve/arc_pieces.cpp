@@ -6,8 +6,8 @@
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/bounds/poles.h"
-#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/joined_elements.h"
+#include "taut/hull/solve/pole_passage.h"
 
 namespace taut {
 namespace {
@@ -109,16 +109,21 @@ void move_to_borders(const ContactGeometry& geometry, Ruling& ruling, double dis
 
 }  // namespace
 
-void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
+void turn_ends(const ContactSystem& system, std::vector<ArcPiece>& pieces) {
+  const auto turn = [&](Ruling& end, const Ruling& next) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Contact c = turned_to(system.geometry(), end.contact[i], next.contact[i]);
+      const bool at_pole = same_element(c, next.contact[i]) && pole_side(system.geometry(), c) &&
+                           !pole_side(system.geometry(), next.contact[i]);
+      const auto into = at_pole ? into_pole(system, next, end, i) : std::nullopt;
+      end.contact[i] = into.value_or(c);
+    }
+  };
   for (ArcPiece& piece : pieces) {
     std::vector<Ruling>& rulings = piece.rulings;
     if (rulings.size() < 2) continue;
-    for (std::size_t i = 0; i < 2; ++i) {
-      Contact& first = rulings.front().contact[i];
-      Contact& last = rulings.back().contact[i];
-      first = turned_to(geometry, first, rulings[1].contact[i]);
-      last = turned_to(geometry, last, rulings[rulings.size() - 2].contact[i]);
-    }
+    turn(rulings.front(), rulings[1]);
+    turn(rulings.back(), rulings[rulings.size() - 2]);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "taut/bounds/contact_geometry.h"
+#include "taut/hull/contact/contact_system.h"
 #include "taut/hull/result/hull_boundary.h"
 
 namespace taut {
@@ -39,8 +40,9 @@ void tell_along_edges(const ContactGeometry& geometry, std::vector<ArcPiece>& pi
 void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
                       double extent);
 
-/// Contacts with which pieces begin and end in their normal form: turned to the next ones.
-void turn_ends(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
+/// Contacts with which pieces begin and end in their normal form: turned to the next ones; at poles
+/// told with the direction in which they come there.
+void turn_ends(const ContactSystem& system, std::vector<ArcPiece>& pieces);
 
 /// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
 /// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge

@@ -13,6 +13,7 @@
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/solve/arc_pieces.h"
 #include "taut/hull/solve/merged_ends.h"
+#include "taut/hull/solve/pole_passage.h"
 
 namespace taut {
 namespace {
@@ -498,10 +499,16 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   if (!(found.way >= -slack && found.way <= 1 + slack)) return std::nullopt;
   const double farthest = (1 + way_slack) * whole + search_.map().resolution;
   if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
+  const bool at_pole = pole_side(geometry_, s.contact[i]).has_value();
   // A pole is on all patches about it.
-  const std::optional<Contact> next = pole_side(geometry_, s.contact[i])
-                                          ? pole_in(geometry_, s.contact[i], to.contact[i])
-                                          : beyond(geometry_, s.contact[i], exit);
+  std::optional<Contact> next = at_pole ? pole_in(geometry_, s.contact[i], to.contact[i])
+                                        : beyond(geometry_, s.contact[i], exit);
+  const bool goes_through = at_pole && !pole_side(geometry_, to.contact[i]);
+  if (const auto passed = goes_through ? pole_passage(search_.system(), last(), found.before, to, i)
+                                       : std::nullopt) {
+    found.before.contact[i] = passed->into;
+    next = passed->out_of;
+  }
   const bool arrives = next && same_element(*next, to.contact[i]);
   if (!next || (!arrives && !leaves(s, to, i, exit)) ||
       search_.depth(found.before) > geometry_.tie())

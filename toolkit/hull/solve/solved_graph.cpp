@@ -77,7 +77,7 @@ class GraphSolver {
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       tell_corners(arc.pieces, moved);
-      turn_ends(geometry_, arc.pieces);
+      turn_ends(system_, arc.pieces);
       tell_along_edges(geometry_, arc.pieces);
       tell_along_joins(geometry_, arc.pieces, extent);
       join_in_crossings(arc);

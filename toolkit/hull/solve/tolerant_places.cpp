@@ -28,12 +28,32 @@ constexpr double other_places = 1.25;
 /// How many times deeper it may be beside the deepest place, where it was looked closer: what a
 /// parabola over the last steps tops it by.
 constexpr double near_places = 1.001;
-/// Places of a region at which it is looked, along each of the patch's parameters; and where one
-/// of them is deep.
+/// Places of a region at which it is looked, along each of the patch's parameters between its ends;
+/// and where one of them is deep.
 constexpr int region_places = 3;
 constexpr int closer_region_places = 6;
-/// How far beside an outline it is looked, in the patch's parameters.
+/// How far beside an outline it is looked, in the patch's parameters, and as a share of a smaller
+/// region's extent in them.
 constexpr double beside_outline = 3e-3;
+/// Cosine of the turn from which on an outline has a corner.
+constexpr double corner_cosine = 0.9;
+
+/// How far smooth parts of an outline may be from the polygon that stands for it.
+double sag_of(const RegionOutline& outline) {
+  double most = 0;
+  for (const std::vector<dvec2>& loop : outline) {
+    const std::size_t n = loop.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const dvec2 before = loop[(k + 1) % n] - loop[k];
+      const dvec2 after = loop[(k + 2) % n] - loop[(k + 1) % n];
+      const double lengths = glm::length(before) * glm::length(after);
+      if (glm::dot(before, after) <= corner_cosine * lengths) continue;
+      const double turned = std::abs(before.x * after.y - before.y * after.x) / lengths;
+      most = std::max(most, 0.25 * turned * std::max(glm::length(before), glm::length(after)));
+    }
+  }
+  return most;
+}
 
 class TolerantPlaces {
  public:
@@ -120,18 +140,30 @@ class TolerantPlaces {
   /// Inside the outline; if that is tolerant or a place is deep, it is looked closer, most about
   /// the deepest place.
   double deepest_in(const RegionOutline& outline, const PatchRegion& region, bool closer) {
+    dvec2 lower(1), upper(0);
+    for (const std::vector<dvec2>& loop : outline) {
+      for (const dvec2& uv : loop) {
+        lower = glm::min(lower, uv);
+        upper = glm::max(upper, uv);
+      }
+    }
+    lower = glm::max(lower, dvec2(0));
+    upper = glm::min(upper, dvec2(1));
+    const dvec2 size = glm::max(upper - lower, dvec2(0));
+    const double beside = std::min(
+        beside_outline, std::max(beside_outline * std::min(size.x, size.y), sag_of(outline)));
     double deepest = 0;
     dvec2 at(0.5);
     const auto look = [&](const dvec2& uv) {
-      const bool is_inside = std::min({uv.x, uv.y, 1 - uv.x, 1 - uv.y}) > 0 &&
-                             depth_in(outline, uv) >= beside_outline * 0.5;
+      const bool is_inside =
+          std::min({uv.x, uv.y, 1 - uv.x, 1 - uv.y}) > 0 && depth_in(outline, uv) >= beside * 0.5;
       const double found = is_inside ? own_depth(region, uv) : 0;
       if (found > deepest) at = uv;
       deepest = std::max(deepest, found);
     };
     const auto look_at_grid = [&](int places) {
       for (int k = 0; k < places * places; ++k) {
-        look((dvec2(k % places, k / places) + 0.5) / double(places));
+        look(lower + size * ((dvec2(k % places, k / places) + 0.5) / double(places)));
       }
     };
     look_at_grid(region_places);
@@ -144,16 +176,16 @@ class TolerantPlaces {
         const double length = glm::length(along);
         if (!(length > 0)) continue;
         const dvec2 inwards = dvec2(-along.y, along.x) / length;
-        look(from + 0.5 * along + beside_outline * inwards);
+        look(from + 0.5 * along + beside * inwards);
       }
     }
-    double step = 1.0 / closer_region_places;
+    dvec2 step = size / double(closer_region_places);
     for (int k = 0; k < closer_looks; ++k) {
       step *= 0.5;
       const dvec2 middle = at;
-      for (const double side : {-step, step}) {
-        look(middle + dvec2(side, 0));
-        look(middle + dvec2(0, side));
+      for (const double side : {-1.0, 1.0}) {
+        look(middle + dvec2(side * step.x, 0));
+        look(middle + dvec2(0, side * step.y));
       }
     }
     return deepest;
