@@ -175,6 +175,24 @@ TEST(SolvedHull, OfEdgesThatMeetInASmoothCurve) {
   }
 }
 
+/// Where a facet's plane meets an edge in its end only, curves leave it about the vertex first,
+/// however soon they go on along the edge.
+TEST(SolvedHull, CurvesLeaveVerticesBeforeTheyRunAlongTheirEdges) {
+  for (const double tilt : {1e-2, 1e-3, 1e-5}) {
+    SCOPED_TRACE(tilt);
+    const Shape shape{{},
+                      {quarter(dvec3(0.0), 1)},
+                      {{0.5, 0, 1}, {0.6, -0.5, 0.8 - tilt}, {0, 0, -1}, {-1, -0.5, 0}}};
+    for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+      const Scene scene = make_scene(mapped(shape, turn));
+      const Hull hull = solved_hull_of(scene);
+      ASSERT_TRUE(hull.boundary);
+      const BoundaryMeasures measured = measure(scene, ContactGeometry(scene), *hull.boundary);
+      EXPECT_LT(measured.accuracy, 1e-9);
+    }
+  }
+}
+
 /// A scroll about a full circle begins and ends in one of its points: the curve along it does, too.
 TEST(SolvedHull, OfACircleAndAHalfDisc) {
   const dvec3 up(0.2, 0.1, 2);

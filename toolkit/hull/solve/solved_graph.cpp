@@ -38,6 +38,8 @@ constexpr int divisions_limit_each = 4;
 
 /// Places between two on an edge at which it is seen whether it touches a plane.
 constexpr int places_along = 4;
+/// Slope that rounding may leave where an exact plane touches.
+constexpr double exact_slope = 1e-8;
 
 class GraphSolver {
  public:
@@ -332,8 +334,17 @@ class GraphSolver {
     return sides;
   }
 
+  /// The plane with normal n touches the contact's element there.
+  bool is_level(const Contact& c, const dvec3& n) const {
+    const ContactJet j = geometry_.jet(c);
+    const double slope = std::max(search_.place_extent(), exact_slope);
+    return std::all_of(j.dx.begin(), j.dx.begin() + j.dimension, [&](const dvec3& dx) {
+      return std::abs(glm::dot(dx, n)) <= std::max(slope * glm::length(dx), geometry_.rounding());
+    });
+  }
+
   /// The ruling in which an arc begins or ends at a node, with its side, told in the elements of
-  /// the next one as far as it lies on these; none at free ends.
+  /// the next one as far as it lies on these and touches them; none at free ends.
   std::optional<Ruling> plug(int arc, int end, const Ruling& beside) {
     const int node = known_.graph.arcs[std::size_t(arc)].node[std::size_t(end)];
     const int number = number_[std::size_t(node)];
@@ -350,9 +361,8 @@ class GraphSolver {
       std::swap(r.point[0], r.point[1]);
     }
     for (const std::size_t i : {0u, 1u}) {
-      if (const auto own = expressed_in(geometry_, r.contact[i], beside.contact[i])) {
-        r.contact[i] = *own;
-      }
+      const auto own = expressed_in(geometry_, r.contact[i], beside.contact[i]);
+      if (own && is_level(*own, r.n)) r.contact[i] = *own;
     }
     return r;
   }
