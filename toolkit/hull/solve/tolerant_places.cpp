@@ -35,6 +35,9 @@ constexpr int closer_region_places = 6;
 /// How far beside an outline it is looked, in the patch's parameters, and as a share of a smaller
 /// region's extent in them.
 constexpr double beside_outline = 3e-3;
+/// Curvature towards the outside from which a region is looked at closer: over the scene's size a
+/// patch so bent is as deep as the least resolution.
+constexpr double upward = 1e-7;
 /// Cosine of the turn from which on an outline has a corner.
 constexpr double corner_cosine = 0.9;
 
@@ -167,7 +170,8 @@ class TolerantPlaces {
       }
     };
     look_at_grid(region_places);
-    if (!closer && deepest <= geometry_.tie()) return deepest;
+    closer = closer || deepest > geometry_.tie() || bends_up(outline, region);
+    if (!closer) return deepest;
     look_at_grid(closer_region_places);
     for (const std::vector<dvec2>& loop : outline) {
       for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -189,6 +193,30 @@ class TolerantPlaces {
       }
     }
     return deepest;
+  }
+
+  /// Somewhere on its outline the region is no part of a convex surface.
+  bool bends_up(const RegionOutline& outline, const PatchRegion& region) {
+    return std::any_of(outline.begin(), outline.end(), [&](const std::vector<dvec2>& loop) {
+      return std::any_of(loop.begin(), loop.end(),
+                         [&](const dvec2& uv) { return upward_curvature(region, uv) > upward; });
+    });
+  }
+
+  /// The larger principal curvature, positive towards the outside; 0 where the parameters fail.
+  double upward_curvature(const PatchRegion& region, const dvec2& uv) const {
+    const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+    const ContactJet j = geometry_.jet(c);
+    const dvec3 normal = double(region.sign) * glm::cross(j.dx[0], j.dx[1]);
+    const double area = glm::length(normal);
+    if (!(area > 0)) return 0;
+    const double E = glm::dot(j.dx[0], j.dx[0]), F = glm::dot(j.dx[0], j.dx[1]),
+                 G = glm::dot(j.dx[1], j.dx[1]);
+    const double L = glm::dot(j.dxx, normal) / area, M = glm::dot(j.dxy, normal) / area,
+                 N = glm::dot(j.dyy, normal) / area;
+    const double mean = 0.5 * (E * N - 2 * F * M + G * L) / (area * area);
+    const double gauss = (L * N - M * M) / (area * area);
+    return mean + std::sqrt(std::max(mean * mean - gauss, 0.0));
   }
 
   /// Of the patch by its own normal.
