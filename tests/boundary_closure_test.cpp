@@ -65,6 +65,14 @@ TEST(BoundaryClosure, FacetsThatAreTurnedInsideOutAreTold) {
   EXPECT_EQ(told(boundary), 0U);
 }
 
+TEST(BoundaryClosure, FacetsThatAreSegmentsAreTold) {
+  HullBoundary boundary = tetrahedron_boundary().boundary;
+  HullFace& facet = boundary.faces.front();
+  facet.points.pop_back();
+  facet.contacts.pop_back();
+  EXPECT_EQ(told(boundary), 1U);
+}
+
 /// It would tell the same once more.
 TEST(BoundaryClosure, OfUnresolvedOnesTheCharacteristicIsNotTold) {
   HullBoundary boundary = tetrahedron_boundary().boundary;

@@ -80,6 +80,13 @@ bool is_inside_out(const HullFace& facet, double distance) {
   return doubled < -distance * perimeter;
 }
 
+/// It is no more than a segment: none of its sides is curved and it has but two corners.
+bool is_segment(const HullFace& facet) {
+  return facet.points.size() < 3 &&
+         std::none_of(facet.sides.begin(), facet.sides.end(),
+                      [](const EdgeStretch& side) { return side.piece >= 0; });
+}
+
 }  // namespace
 
 void check_closure(HullBoundary& boundary, double distance) {
@@ -89,7 +96,9 @@ void check_closure(HullBoundary& boundary, double distance) {
     }
   }
   for (const HullFace& face : boundary.faces) {
-    if (face.kind == FaceKind::facet && is_inside_out(face, distance)) {
+    if (face.kind != FaceKind::facet) continue;
+    if (is_segment(face)) boundary.unresolved.push_back({face.n, "a facet is but a segment"});
+    if (is_inside_out(face, distance)) {
       boundary.unresolved.push_back({face.n, "a facet is turned inside out"});
     }
   }
