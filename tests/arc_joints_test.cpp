@@ -22,15 +22,17 @@ ArcPiece piece(const dvec3& from, const dvec3& to, const dvec3& a, const dvec3& 
 
 const dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
 
-double curvature_of(const SeparatingArc& arc) {
+double curvature_of(const SeparatingArc& arc, bool in_scroll = false) {
   Sums sums;
-  add_vertex_creases(arc, sums);
+  add_creases(arc, std::vector<bool>(arc.pieces.size(), in_scroll), sums);
   return double(sums.value[curvature]);
 }
 
-void expect_joints(const HullBoundary& boundary, double value, double error) {
+void expect_joints(const HullBoundary& boundary, double value, double error,
+                   bool in_scroll = true) {
+  const ScrollPieces all(1, std::vector<bool>(boundary.arcs[0].pieces.size(), in_scroll));
   Sums sums;
-  add_joints(boundary, sums);
+  add_joints(boundary, all, sums);
   EXPECT_NEAR(double(sums.value[curvature]), value, 1e-15);
   EXPECT_NEAR(sums.error[curvature], error, 1e-15);
 }
@@ -38,9 +40,7 @@ void expect_joints(const HullBoundary& boundary, double value, double error) {
 TEST(ArcJoints, ACreaseIsHalfOfLengthTimesAngle) {
   const SeparatingArc arc{{piece(x, y, dvec3(0.0), 3.0 * z)}};
   EXPECT_NEAR(curvature_of(arc), 0.5 * 3 * pi / 2, 1e-15);
-  EXPECT_FALSE(is_crease(piece(x, y, z, -z, SourceKind::edge)));
-  EXPECT_FALSE(is_crease({}));
-  EXPECT_EQ(curvature_of({{piece(x, y, z, -z, SourceKind::edge)}}), 0);
+  EXPECT_EQ(curvature_of(arc, true), 0);
 }
 
 /// Which of the vertices support is rounding; between pieces n may be left out.
@@ -51,7 +51,17 @@ TEST(ArcJoints, VerticesInLineAreOneCrease) {
   EXPECT_NEAR(curvature_of(arc), 0.5 * 3 * pi / 2, 1e-15);
   HullBoundary boundary;
   boundary.arcs = {arc};
-  expect_joints(boundary, 0, 0);
+  expect_joints(boundary, 0, 0, false);
+}
+
+TEST(ArcJoints, PiecesOfScrollsAreThoseOfTheirFaces) {
+  HullBoundary boundary;
+  boundary.arcs = {{std::vector<ArcPiece>(3)}, {std::vector<ArcPiece>(1)}};
+  HullFace scroll;
+  scroll.kind = FaceKind::scroll;
+  scroll.scroll = {0, 2, 2};
+  boundary.faces = {HullFace{}, scroll};
+  EXPECT_EQ(pieces_of_scrolls(boundary), (ScrollPieces{{true, false, true}, {false}}));
 }
 
 /// Along a ruling at which n turns, and of which a contact makes a step.

@@ -524,7 +524,7 @@ TEST(SolvedHull, OfASlotWithASmallKinkIsFoundAtOnce) {
     SCOPED_TRACE(name_of(variant));
     const Hull hull = solved_hull_of(make_scene(placed({shape, {}, {}}, variant, random).shape));
     ASSERT_TRUE(hull.boundary);
-    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 6, 6}));
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 4, 6}));
     EXPECT_LE(hull.boundary->frame.length_to_model(deepest_tolerant(*hull.boundary)),
               hull.resolution.rho);
   }

@@ -44,18 +44,26 @@ void add_end(const HullBoundary& boundary, const SeparatingArc& arc, std::size_t
 
 }  // namespace
 
-bool is_crease(const ArcPiece& piece) {
-  if (piece.rulings.empty()) return false;
-  const std::array<Contact, 2>& c = piece.rulings[0].contact;
-  return c[0].kind == SourceKind::vertex && c[1].kind == SourceKind::vertex;
+ScrollPieces pieces_of_scrolls(const HullBoundary& boundary) {
+  ScrollPieces in_scroll;
+  in_scroll.reserve(boundary.arcs.size());
+  for (const SeparatingArc& arc : boundary.arcs) in_scroll.emplace_back(arc.pieces.size(), false);
+  for (const HullFace& face : boundary.faces) {
+    if (face.kind != FaceKind::scroll) continue;
+    std::vector<bool>& used = in_scroll[std::size_t(face.scroll.arc)];
+    for (int k = 0; k < face.scroll.count; ++k) {
+      used[std::size_t(face.scroll.first + k) % used.size()] = true;
+    }
+  }
+  return in_scroll;
 }
 
-void add_vertex_creases(const SeparatingArc& arc, Sums& sums) {
+void add_creases(const SeparatingArc& arc, const std::vector<bool>& in_scroll, Sums& sums) {
   for (std::size_t p = 0; p < arc.pieces.size();) {
     std::vector<dvec3> ends;
     double angle = 0;
     const Ruling* last = nullptr;
-    for (; p < arc.pieces.size() && is_crease(arc.pieces[p]); ++p) {
+    for (; p < arc.pieces.size() && !in_scroll[p]; ++p) {
       for (const Ruling& r : arc.pieces[p].rulings) {
         if (last != nullptr) angle += angle_between(last->n, r.n);
         last = &r;
@@ -71,14 +79,16 @@ void add_vertex_creases(const SeparatingArc& arc, Sums& sums) {
   }
 }
 
-void add_joints(const HullBoundary& boundary, Sums& sums) {
-  for (const SeparatingArc& arc : boundary.arcs) {
+void add_joints(const HullBoundary& boundary, const ScrollPieces& in_scroll, Sums& sums) {
+  for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
+    const SeparatingArc& arc = boundary.arcs[a];
     for (std::size_t p = 0; p < arc.pieces.size(); ++p) {
       if (p == 0 && !arc.closed) continue;
-      const ArcPiece& before = arc.pieces[(p == 0 ? arc.pieces.size() : p) - 1];
+      const std::size_t previous = (p == 0 ? arc.pieces.size() : p) - 1;
+      const ArcPiece& before = arc.pieces[previous];
       const ArcPiece& after = arc.pieces[p];
       if (before.rulings.empty() || after.rulings.empty()) continue;
-      if (is_crease(before) && is_crease(after)) continue;
+      if (!in_scroll[a][previous] && !in_scroll[a][p]) continue;
       const Ruling& last = before.rulings.back();
       const Ruling& first = after.rulings.front();
       add_crease(first, last.n, first.n, sums);

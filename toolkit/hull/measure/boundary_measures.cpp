@@ -38,16 +38,16 @@ class Summation {
         boundary_(boundary),
         origin_(interior_point(geometry, boundary)),
         creases_(geometry, boundary, origin_),
-        regions_(geometry, boundary) {
-    find_scrolls();
+        regions_(geometry, boundary),
+        in_scroll_(pieces_of_scrolls(boundary)) {
     for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
       for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) {
         const long double before = sums_.value[ruled];
         const double depth = place_depth(boundary, boundary.arcs[a].pieces[p].tolerant);
-        if (!is_crease(boundary.arcs[a].pieces[p])) add_piece(a, p, depth);
+        if (in_scroll_[a][p]) add_piece(a, p, depth);
         layer_ += depth * std::abs(double(sums_.value[ruled] - before));
       }
-      add_vertex_creases(boundary.arcs[a], sums_);
+      add_creases(boundary.arcs[a], in_scroll_[a], sums_);
     }
     for (const GreenRegion& region : regions_.all()) {
       for (const std::vector<TrimStretch>& loop : region.region->loops) {
@@ -71,7 +71,7 @@ class Summation {
       layer_ += off_plane * place_depth(boundary, face.tolerant) * std::abs(own);
     }
     if (is_polyhedron(boundary)) add_creases(boundary, sums_);
-    add_joints(boundary, sums_);
+    add_joints(boundary, in_scroll_, sums_);
   }
 
   const dvec3& origin() const { return origin_; }
@@ -80,7 +80,6 @@ class Summation {
   const Sums& sums() const { return sums_; }
 
  private:
-  void find_scrolls();
   /// What lies along rulings between two.
   struct Stretch {
     bool scroll = false;
@@ -112,24 +111,10 @@ class Summation {
   dvec3 origin_;
   CreaseOrigins creases_;
   GreenRegions regions_;
-  std::vector<std::vector<bool>> in_scroll_;  // per arc and piece
+  ScrollPieces in_scroll_;
   Sums sums_;
   double layer_ = 0;
 };
-
-void Summation::find_scrolls() {
-  in_scroll_.reserve(boundary_.arcs.size());
-  for (const SeparatingArc& arc : boundary_.arcs) {
-    in_scroll_.emplace_back(arc.pieces.size(), false);
-  }
-  for (const HullFace& face : boundary_.faces) {
-    if (face.kind != FaceKind::scroll) continue;
-    std::vector<bool>& used = in_scroll_[std::size_t(face.scroll.arc)];
-    for (int k = 0; k < face.scroll.count; ++k) {
-      used[std::size_t(face.scroll.first + k) % used.size()] = true;
-    }
-  }
-}
 
 /// The integrands on the line from the base to p, where the inner parameter is `at`.
 void Summation::add_to_line(const GreenRegion& region, const dvec2& p, double at,

@@ -18,9 +18,21 @@
 namespace taut {
 namespace {
 
-bool vertices_only(const ArcPiece& piece) {
-  const Ruling& r = piece.rulings.front();
-  return r.contact[0].kind == SourceKind::vertex && r.contact[1].kind == SourceKind::vertex;
+/// What n turns by less may be rounding: pieces of scrolls that are so short are none by
+/// themselves.
+constexpr double least_turn = 1e-6;
+
+/// Crease along a segment that stands still, to within a distance, while n turns about it: both
+/// contacts are vertices, or stay where edges go on smoothly into the segment.
+bool is_crease(const ArcPiece& piece, double distance) {
+  const Ruling& first = piece.rulings.front();
+  const auto is_vertex = [](const Contact& c) { return c.kind == SourceKind::vertex; };
+  if (is_vertex(first.contact[0]) && is_vertex(first.contact[1])) return true;
+  return glm::distance(first.n, piece.rulings.back().n) > least_turn &&
+         std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
+           return glm::distance(r.point[0], first.point[0]) <= distance &&
+                  glm::distance(r.point[1], first.point[1]) <= distance;
+         });
 }
 
 class Stitcher {
@@ -93,7 +105,7 @@ class Stitcher {
   TrimStretches stretches_;
   std::vector<int> face_of_region_;
   std::vector<std::size_t> place_of_region_;  // among those of its face
-  std::vector<std::vector<int>> scroll_of_;   // per arc and piece; -1 between vertices
+  std::vector<std::vector<int>> scroll_of_;   // per arc and piece; -1 of creases
   std::vector<int> facet_of_;                 // per node
   double same_end_;                           // of curves
   std::vector<dvec3> corners_;                // in which curves end
@@ -130,22 +142,23 @@ void Stitcher::make_patches() {
     place_of_region_.push_back(regions_of[std::size_t(face)]++);
 }
 
-/// Scrolls: runs of pieces of an arc that are not between two vertices.
+/// Scrolls: runs of pieces of an arc that are no creases.
 void Stitcher::make_scrolls() {
+  const double still = geometry_.tie();
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
     const int count = int(arc.pieces.size());
     scroll_of_.emplace_back(std::size_t(count), -1);
     std::vector<int>& own = scroll_of_.back();
-    // A closed arc begins behind a segment between vertices, if there is one.
+    // A closed arc begins behind a crease, if there is one.
     int start = 0;
     for (int k = 0; k < count && arc.closed; ++k) {
-      if (vertices_only(arc.pieces[std::size_t(k)])) start = (k + 1) % count;
+      if (is_crease(arc.pieces[std::size_t(k)], still)) start = (k + 1) % count;
     }
     int current = -1;
     for (int k = 0; k < count; ++k) {
       const int piece = (start + k) % count;
-      if (vertices_only(arc.pieces[std::size_t(piece)])) {
+      if (is_crease(arc.pieces[std::size_t(piece)], still)) {
         current = -1;
         continue;
       }
@@ -353,8 +366,8 @@ void Stitcher::make_creases() {
   add_chains(HullCurveKind::bitangent, seams);
 }
 
-/// The ends of scrolls: segments between a scroll and a facet, another scroll beyond a segment
-/// between vertices, or two facets.
+/// The ends of scrolls: segments between a scroll and a facet, another scroll beyond a crease,
+/// or two facets.
 std::vector<Stitcher::Cut> Stitcher::cuts() const {
   std::vector<Cut> cuts;
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
