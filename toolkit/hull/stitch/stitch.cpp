@@ -18,21 +18,23 @@
 namespace taut {
 namespace {
 
-/// What n turns by less may be rounding: pieces of scrolls that are so short are none by
-/// themselves.
-constexpr double least_turn = 1e-6;
+/// Both contacts are vertices: a crease.
+bool vertices_only(const ArcPiece& piece) {
+  const Ruling& r = piece.rulings.front();
+  return r.contact[0].kind == SourceKind::vertex && r.contact[1].kind == SourceKind::vertex;
+}
 
-/// Crease along a segment that stands still, to within a distance, while n turns about it: both
-/// contacts are vertices, or stay where edges go on smoothly into the segment.
-bool is_crease(const ArcPiece& piece, double distance) {
-  const Ruling& first = piece.rulings.front();
-  const auto is_vertex = [](const Contact& c) { return c.kind == SourceKind::vertex; };
-  if (is_vertex(first.contact[0]) && is_vertex(first.contact[1])) return true;
-  return glm::distance(first.n, piece.rulings.back().n) > least_turn &&
-         std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
-           return glm::distance(r.point[0], first.point[0]) <= distance &&
-                  glm::distance(r.point[1], first.point[1]) <= distance;
-         });
+/// From one facet to the next all rulings are one segment, to within a distance: a crease, be its
+/// ends vertices or where edges go on smoothly into it.
+bool stands_still(const SeparatingArc& arc, double distance) {
+  if (arc.facet[0] < 0 || arc.facet[1] < 0) return false;
+  const Ruling& first = arc.pieces.front().rulings.front();
+  return std::all_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
+    return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
+      return glm::distance(r.point[0], first.point[0]) <= distance &&
+             glm::distance(r.point[1], first.point[1]) <= distance;
+    });
+  });
 }
 
 class Stitcher {
@@ -144,21 +146,21 @@ void Stitcher::make_patches() {
 
 /// Scrolls: runs of pieces of an arc that are no creases.
 void Stitcher::make_scrolls() {
-  const double still = geometry_.tie();
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
     const int count = int(arc.pieces.size());
     scroll_of_.emplace_back(std::size_t(count), -1);
+    if (stands_still(arc, geometry_.tie())) continue;
     std::vector<int>& own = scroll_of_.back();
     // A closed arc begins behind a crease, if there is one.
     int start = 0;
     for (int k = 0; k < count && arc.closed; ++k) {
-      if (is_crease(arc.pieces[std::size_t(k)], still)) start = (k + 1) % count;
+      if (vertices_only(arc.pieces[std::size_t(k)])) start = (k + 1) % count;
     }
     int current = -1;
     for (int k = 0; k < count; ++k) {
       const int piece = (start + k) % count;
-      if (is_crease(arc.pieces[std::size_t(piece)], still)) {
+      if (vertices_only(arc.pieces[std::size_t(piece)])) {
         current = -1;
         continue;
       }
