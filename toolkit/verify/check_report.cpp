@@ -10,9 +10,6 @@
 namespace taut {
 namespace {
 
-/// Relative accuracy of measures that a report states, where it does not state less.
-constexpr double promised_accuracy = 1e-9;
-
 /// Lengths in the report are those of the document but for how they were computed.
 constexpr double length_accuracy = 1e-12;
 
@@ -97,7 +94,6 @@ void ReportCheck::compare_bounds(const HullDocument& hull) {
 void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasures& measures,
                                    double accuracy) {
   const Json* exact = find(&report_, "hull");
-  accuracy = std::max(accuracy, promised_accuracy);
   // Two facets or scrolls within their bounds enclose volumes that differ by what is between them,
   // and strips between their outlines.
   compare("volume", exact, measures.volume,
