@@ -84,6 +84,39 @@ TEST(TolerantPlaces, FacetsWithCornersBesideTheirArcsEnds) {
   EXPECT_EQ(std::count_if(boundary.arcs.begin(), boundary.arcs.end(), is_told), 2);
 }
 
+/// z = -(x^2 + y^2) + a x^2 y^2 is a saddle beside its corner (1, 1) alone if a is just above 1/3:
+/// as far as that is too shallow to be told, it is within the bound all along the border.
+TEST(TolerantPlaces, OfAPatchThatIsASaddleInACorner) {
+  for (const double a : {0.3336, 0.334}) {
+    SCOPED_TRACE(a);
+    BezierPatch sheet{2, 2, {}};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double x2 = i == 2 ? 1 : 0, y2 = j == 2 ? 1 : 0;
+        sheet.points.emplace_back(0.5 * i, 0.5 * j, -(x2 + y2) + a * x2 * y2, 1);
+      }
+    }
+    const Scene scene = make_scene({{as_nurbs(sheet)}, {}, {}});
+    const ContactGeometry geometry(scene);
+    HullStatistics statistics;
+    const HullOptions options{.relative = 1e-2, .threads = 1, .progress = {}};
+    const HullBoundary boundary = exact_boundary(scene, options, statistics);
+    ASSERT_EQ(boundary.count(FaceKind::patch), 1);
+    const HullFace& patch = *std::find_if(boundary.faces.begin(), boundary.faces.end(),
+                                          [](const auto& f) { return f.kind == FaceKind::patch; });
+    SupportQuery query(scene);
+    double deepest = 0;
+    for (int k = 1; k < 1000; ++k) {
+      const Contact c{0, SourceKind::face, 0, 1, 1 - 1e-5 * k};
+      const ContactJet j = geometry.jet(c);
+      const dvec3 n = unit(glm::cross(j.dx[0], j.dx[1]));
+      deepest = std::max(deepest, query(n, c).h - glm::dot(j.x, n));
+    }
+    EXPECT_GT(deepest, geometry.tie());
+    EXPECT_LE(deepest, patch.tolerant + geometry.tie());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Clean, TolerantPlacesOfACone, testing::Values(false));
 INSTANTIATE_TEST_SUITE_P(Turned, TolerantPlacesOfACone, testing::Values(true));
 

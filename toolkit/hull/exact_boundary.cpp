@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "taut/core/error.h"
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/solve/solved_graph.h"
@@ -95,6 +96,40 @@ bool is_within(const HullBoundary& boundary, double resolution) {
   return boundary.unresolved.empty() && deepest_tolerant(boundary) <= resolution;
 }
 
+/// By maps that decide more, or finer; the first boundary that is within the resolution counts.
+void improve(HullBoundary& boundary, const ContactGeometry& geometry,
+             const DirectionMap& directions, const HullOptions& options, HullStatistics& statistics,
+             MapEffort effort) {
+  const double rho = directions.resolution;
+  long left = finer_map_times * candidate_limit(geometry);
+  if (const long open = undecided(directions); open > 0) {
+    const bool helps = open <= few_undecided && left < thorough_candidates;
+    if (effort == MapEffort::usual || !helps) return;
+    const DirectionMap whole = map_of(geometry, rho, thorough_candidates, options, statistics);
+    // What is left undecided then is not decided by finer maps either.
+    if (undecided(whole) > 0) return;
+    boundary = solved(geometry, whole, rho, options, statistics);
+    if (is_within(boundary, rho)) return;
+  }
+  if (boundary.unresolved.size() > few_open_spots) return;
+  // Depths fall with the resolution, mostly: what is deep is first sought with the finest.
+  std::array shares = finer_maps;
+  const double deepest = deepest_tolerant(boundary);
+  std::stable_partition(shares.begin(), shares.end(), [&](double share) {
+    return share == finer_maps.back() || share * deepest <= finer_depths * rho;
+  });
+  for (const double share : shares) {
+    const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
+    left -= finer.statistics.candidates;
+    HullBoundary other = solved(geometry, finer, rho, options, statistics);
+    if (is_within(other, rho)) {
+      boundary = std::move(other);
+      return;
+    }
+    if (left <= 0) return;
+  }
+}
+
 }  // namespace
 
 double same_elements_of(const Scene& scene, const HullOptions& options) {
@@ -113,33 +148,12 @@ DirectionMap directions_of(const ContactGeometry& geometry, const HullOptions& o
 HullBoundary exact_boundary(const ContactGeometry& geometry, const DirectionMap& directions,
                             const HullOptions& options, HullStatistics& statistics,
                             MapEffort effort) {
-  const double rho = directions.resolution;
-  HullBoundary boundary = solved(geometry, directions, rho, options, statistics);
-  if (is_within(boundary, rho)) return boundary;
-  long left = finer_map_times * candidate_limit(geometry);
-  if (const long open = undecided(directions); open > 0) {
-    const bool helps = open <= few_undecided && left < thorough_candidates;
-    if (effort == MapEffort::usual || !helps) return boundary;
-    const DirectionMap whole = map_of(geometry, rho, thorough_candidates, options, statistics);
-    // What is left undecided then is not decided by finer maps either.
-    if (undecided(whole) > 0) return boundary;
-    HullBoundary other = solved(geometry, whole, rho, options, statistics);
-    if (is_within(other, rho)) return other;
-    boundary = std::move(other);
-  }
-  if (boundary.unresolved.size() > few_open_spots) return boundary;
-  // Depths fall with the resolution, mostly: what is deep is first sought with the finest.
-  std::array shares = finer_maps;
-  const double deepest = deepest_tolerant(boundary);
-  std::stable_partition(shares.begin(), shares.end(), [&](double share) {
-    return share == finer_maps.back() || share * deepest <= finer_depths * rho;
-  });
-  for (const double share : shares) {
-    const DirectionMap finer = map_of(geometry, share * rho, left, options, statistics);
-    left -= finer.statistics.candidates;
-    HullBoundary other = solved(geometry, finer, rho, options, statistics);
-    if (is_within(other, rho)) return other;
-    if (left <= 0) break;
+  HullBoundary boundary = solved(geometry, directions, directions.resolution, options, statistics);
+  if (is_within(boundary, directions.resolution)) return boundary;
+  try {
+    improve(boundary, geometry, directions, options, statistics, effort);
+  } catch (const LimitMet&) {
+    // What was found until then is an answer.
   }
   return boundary;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "taut/core/error.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/mesh/boundary_mesh.h"
 #include "taut/hull/sample/polytope_mesh.h"
@@ -92,10 +93,10 @@ std::unique_ptr<Found> found_with(const Scene& scene, const HullOptions& options
 /// by it, in turn.
 constexpr std::array coarser_resolutions = {4.0, 16.0};
 
-/// The first coarser resolution at which the boundary is what it promises; none if one is stated,
-/// or there is none.
+/// With the first coarser resolution at which the boundary is what it promises; none if one is
+/// stated, there is none, or a limit is met.
 std::unique_ptr<Found> found_coarser(const Scene& scene, const HullOptions& options,
-                                     const Resolution& own, HullStatistics& statistics) {
+                                     const Resolution& own, HullStatistics& statistics) try {
   if (options.resolution) return nullptr;
   Resolution coarser = own;
   for (const double times : coarser_resolutions) {
@@ -103,9 +104,11 @@ std::unique_ptr<Found> found_coarser(const Scene& scene, const HullOptions& opti
     if (coarser.rho > coarsest_resolution * scene.diagonal()) break;
     HullOptions with = options;
     with.resolution = coarser.rho / scene.diagonal();
-    std::unique_ptr<Found> found = found_with(scene, with, statistics, MapEffort::usual);
-    if (broken_promise(found->boundary, coarser).empty()) return found;
+    std::unique_ptr<Found> other = found_with(scene, with, statistics, MapEffort::usual);
+    if (broken_promise(other->boundary, coarser).empty()) return other;
   }
+  return nullptr;
+} catch (const LimitMet&) {
   return nullptr;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/contact/local_curvature.h"
 #include "taut/hull/contact/region_outline.h"
 #include "taut/hull/contact/rulings_between.h"
 
@@ -35,9 +36,12 @@ constexpr int closer_region_places = 6;
 /// How far beside an outline it is looked, in the patch's parameters, and as a share of a smaller
 /// region's extent in them.
 constexpr double beside_outline = 3e-3;
-/// Curvature towards the outside from which a region is looked at closer: over the scene's size a
-/// patch so bent is as deep as the least resolution.
-constexpr double upward = 1e-7;
+/// The least share, of the way to a region's middle and to the next places of its outline, up to
+/// which it is followed how far it bends up.
+constexpr double least_share = 1.0 / 4096;
+/// How much higher a curve rises over its tangent where its curvature vanishes linearly, as a share
+/// of that at the start times the square of the length to where it does: the most is at twice that.
+constexpr double linear_bend = 2.0 / 3;
 /// Cosine of the turn from which on an outline has a corner.
 constexpr double corner_cosine = 0.9;
 
@@ -56,6 +60,18 @@ double sag_of(const RegionOutline& outline) {
     }
   }
   return most;
+}
+
+/// The box about an outline in the patch's parameters, within the patch.
+std::array<dvec2, 2> extent_of(const RegionOutline& outline) {
+  dvec2 lower(1), upper(0);
+  for (const std::vector<dvec2>& loop : outline) {
+    for (const dvec2& uv : loop) {
+      lower = glm::min(lower, uv);
+      upper = glm::max(upper, uv);
+    }
+  }
+  return {glm::max(lower, dvec2(0)), glm::min(upper, dvec2(1))};
 }
 
 class TolerantPlaces {
@@ -125,14 +141,14 @@ class TolerantPlaces {
         if (s.arc >= 0) of_arcs = std::max(of_arcs, piece_of(boundary, s).tolerant);
       }
     }
-    double deepest = deepest_in(outline_of(system_, boundary, region), region, of_arcs > 0);
-    deepest = std::max(of_arcs, bound_of(deepest, true));
+    const RegionOutline outline = outline_of(system_, boundary, region);
     // How what stands for others ripples, places do not tell.
-    const Contact any{region.instance, SourceKind::face, region.patch, 0, 0};
-    if (geometry_.patch(any).stand_in) {
-      deepest = std::max(deepest, deviation_of(geometry_.part(any)));
-    }
-    return deepest;
+    const Contact any = contact(region, {0, 0});
+    const bool ripples = geometry_.patch(any).stand_in;
+    const double bent = ripples ? 0 : std::min(deepest_bend(outline, region), resolution_);
+    const double deepest = deepest_in(outline, region, of_arcs > 0 || known(bent, true) > 0);
+    const double deviation = ripples ? deviation_of(geometry_.part(any)) : 0;
+    return std::max({of_arcs, known(bent, true), bound_of(deepest, true), deviation});
   }
 
  private:
@@ -143,15 +159,7 @@ class TolerantPlaces {
   /// Inside the outline; if that is tolerant or a place is deep, it is looked closer, most about
   /// the deepest place.
   double deepest_in(const RegionOutline& outline, const PatchRegion& region, bool closer) {
-    dvec2 lower(1), upper(0);
-    for (const std::vector<dvec2>& loop : outline) {
-      for (const dvec2& uv : loop) {
-        lower = glm::min(lower, uv);
-        upper = glm::max(upper, uv);
-      }
-    }
-    lower = glm::max(lower, dvec2(0));
-    upper = glm::min(upper, dvec2(1));
+    const auto [lower, upper] = extent_of(outline);
     const dvec2 size = glm::max(upper - lower, dvec2(0));
     const double beside = std::min(
         beside_outline, std::max(beside_outline * std::min(size.x, size.y), sag_of(outline)));
@@ -170,8 +178,7 @@ class TolerantPlaces {
       }
     };
     look_at_grid(region_places);
-    closer = closer || deepest > geometry_.tie() || bends_up(outline, region);
-    if (!closer) return deepest;
+    if (!closer && deepest <= geometry_.tie()) return deepest;
     look_at_grid(closer_region_places);
     for (const std::vector<dvec2>& loop : outline) {
       for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -195,33 +202,62 @@ class TolerantPlaces {
     return deepest;
   }
 
-  /// Somewhere on its outline the region is no part of a convex surface.
-  bool bends_up(const RegionOutline& outline, const PatchRegion& region) {
-    return std::any_of(outline.begin(), outline.end(), [&](const std::vector<dvec2>& loop) {
-      return std::any_of(loop.begin(), loop.end(),
-                         [&](const dvec2& uv) { return upward_curvature(region, uv) > upward; });
-    });
+  /// Where a region bends up at its outline it is no part of a convex surface: how deep the places
+  /// there are, or may be, within the resolution, if the bend vanishes linearly as far away as it
+  /// is found to end.
+  double deepest_bend(const RegionOutline& outline, const PatchRegion& region) {
+    const auto [lower, upper] = extent_of(outline);
+    const dvec2 middle = 0.5 * (lower + upper);
+    double deepest = 0;
+    for (const std::vector<dvec2>& loop : outline) {
+      const std::size_t n = loop.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        const double bends = upward_curvature(region, loop[k]);
+        if (bends <= 0) continue;
+        double longest = 0;
+        for (const dvec2& to : {middle, loop[(k + n - 1) % n], loop[(k + 1) % n]}) {
+          longest = std::max(longest, bend_length(region, loop[k], to));
+        }
+        deepest = std::max(deepest, linear_bend * bends * longest * longest);
+      }
+    }
+    return deepest;
+  }
+
+  /// How far a region bends up on the way from a place to another.
+  double bend_length(const PatchRegion& region, const dvec2& from, const dvec2& to) const {
+    const auto bends_at = [&](double share) {
+      return upward_curvature(region, glm::mix(from, to, share)) > 0;
+    };
+    double share = least_share;
+    while (share < 1 && bends_at(share)) share *= 2;
+    double step = 0.25 * share;
+    for (int k = 0; k < closer_looks; ++k, step *= 0.5) {
+      if (share < 1 && !bends_at(share - step)) share -= step;
+    }
+    return glm::distance(point(region, from), point(region, glm::mix(from, to, share)));
   }
 
   /// The larger principal curvature, positive towards the outside; 0 where the parameters fail.
   double upward_curvature(const PatchRegion& region, const dvec2& uv) const {
-    const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+    const Contact c = contact(region, uv);
+    const std::optional<SurfaceCurvature> bent = surface_curvature(geometry_, c);
+    if (!bent) return 0;
     const ContactJet j = geometry_.jet(c);
-    const dvec3 normal = double(region.sign) * glm::cross(j.dx[0], j.dx[1]);
-    const double area = glm::length(normal);
-    if (!(area > 0)) return 0;
-    const double E = glm::dot(j.dx[0], j.dx[0]), F = glm::dot(j.dx[0], j.dx[1]),
-                 G = glm::dot(j.dx[1], j.dx[1]);
-    const double L = glm::dot(j.dxx, normal) / area, M = glm::dot(j.dxy, normal) / area,
-                 N = glm::dot(j.dyy, normal) / area;
-    const double mean = 0.5 * (E * N - 2 * F * M + G * L) / (area * area);
-    const double gauss = (L * N - M * M) / (area * area);
-    return mean + std::sqrt(std::max(mean * mean - gauss, 0.0));
+    const double outwards = glm::dot(bent->n, glm::cross(j.dx[0], j.dx[1])) * region.sign;
+    return outwards > 0 ? bent->flat : -bent->steep;
+  }
+
+  static Contact contact(const PatchRegion& region, const dvec2& uv) {
+    return {region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+  }
+  dvec3 point(const PatchRegion& region, const dvec2& uv) const {
+    return geometry_.point(contact(region, uv));
   }
 
   /// Of the patch by its own normal.
   double own_depth(const PatchRegion& region, const dvec2& uv) {
-    const Contact c{region.instance, SourceKind::face, region.patch, uv.x, uv.y};
+    const Contact c = contact(region, uv);
     const ContactJet j = geometry_.jet(c);
     const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
     return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
