@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/hull/decide/direction_cube.h"
+
 namespace taut {
 namespace {
 
@@ -10,13 +12,6 @@ namespace {
 constexpr int exchange_steps = 12;
 
 }  // namespace
-
-std::array<long long, 3> rounded_direction(const dvec3& d) {
-  const dvec3 n = unit(d);
-  // Cells are wider than 2^-30, and rounding is less than 2^-50.
-  const auto rounded = [](double x) { return std::llround(std::ldexp(x, 40)); };
-  return {rounded(n.x), rounded(n.y), rounded(n.z)};
-}
 
 bool CellContacts::is_closed(int k) const {
   const MapCell& c = cell(k);
@@ -87,7 +82,7 @@ std::optional<dvec3> CellContacts::where_another_supports(int k, const dvec3& fr
 
 /// The point that supports in a direction, which is asked for from several cells.
 const dvec3& CellContacts::point(const dvec3& d) {
-  const auto [known, is_new] = points_.try_emplace(rounded_direction(d), dvec3(0.0));
+  const auto [known, is_new] = points_.try_emplace(place_on_cube(d), dvec3(0.0));
   if (is_new) {
     const Support s = query_(unit(d), hint_);
     hint_ = s.contact;

@@ -57,7 +57,4 @@ class CellContacts {
   Contact hint_;
 };
 
-/// Grid on which directions that are computed in several ways are one.
-std::array<long long, 3> rounded_direction(const dvec3& d);
-
 }  // namespace taut

@@ -21,7 +21,8 @@ CellTree::CellTree(const std::vector<MapCell>& cells) : cells_(cells) {
 }
 
 CellTree::Key CellTree::key(int face, int level, std::uint32_t i, std::uint32_t j) {
-  return (Key(face) << 61) ^ (Key(level) << 56) ^ (Key(i) << 28) ^ Key(j);
+  // The leading one tells the level: of level 30 it is the highest bit.
+  return ((((Key(1) << level) | i) << level | j) << 3) | Key(face);
 }
 
 int CellTree::at(int face, double s, double t) const {

@@ -1,5 +1,6 @@
 #include "taut/hull/decide/direction_cube.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "taut/hull/decide/direction_map.h"
@@ -24,6 +25,14 @@ FaceAxes face_axes(int face) {
   const int own = face / 2;
   const dmat3& e = cube_frame();
   return {face % 2 == 0 ? e[own] : -e[own], e[(own + 1) % 3], e[(own + 2) % 3]};
+}
+
+std::array<long long, 3> place_on_cube(const dvec3& d) {
+  const dvec3 x = glm::transpose(cube_frame()) * d;
+  const double height = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  // Corners are multiples of 2^-29, and rounding is less than 2^-50.
+  const auto rounded = [&](double a) { return std::llround(std::ldexp(a / height, 40)); };
+  return {rounded(x.x), rounded(x.y), rounded(x.z)};
 }
 
 dvec3 DirectionMap::direction(int face, double s, double t) {

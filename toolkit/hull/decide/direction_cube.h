@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "taut/core/geometry.h"
 
 namespace taut {
@@ -12,5 +14,9 @@ struct FaceAxes {
 
 /// @pre 0 <= face < 6
 FaceAxes face_axes(int face);
+
+/// Where a direction meets the cube, on a grid that has the corners of all cells: one place for
+/// those that are computed from several faces.
+std::array<long long, 3> place_on_cube(const dvec3& d);
 
 }  // namespace taut

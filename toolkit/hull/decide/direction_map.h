@@ -55,7 +55,7 @@ struct DirectionMapOptions {
   double resolution = 0;
   /// Levels of cells, cells, and pieces of the model looked at in them, after which what is left
   /// stays undecided.
-  int level_limit = 30;
+  int level_limit = 30;  ///< at most 30
   long cell_limit = 1'000'000;
   long candidate_limit = 1'000'000'000;
   int threads = 0;  ///< 0: as many as the machine has

@@ -11,6 +11,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/decide/cell_contacts.h"
 #include "taut/hull/decide/cell_tree.h"
+#include "taut/hull/decide/direction_cube.h"
 #include "taut/hull/decide/graph_edits.h"
 
 namespace taut {
@@ -313,9 +314,9 @@ class Weaving {
           if (crossing(c).next[first ? 0 : 1] == SideCrossing::none) ending.push_back(c);
         }
         if (!ahead) std::reverse(ending.begin(), ending.end());
-        const Key begin = rounded_direction(own.ends[ahead ? 0 : 1]);
+        const Key begin = place_on_cube(own.ends[ahead ? 0 : 1]);
         from[begin].push_back(std::move(ending));
-        to[begin].push_back(rounded_direction(own.ends[ahead ? 1 : 0]));
+        to[begin].push_back(place_on_cube(own.ends[ahead ? 1 : 0]));
         starts.push_back(begin);
       }
     }

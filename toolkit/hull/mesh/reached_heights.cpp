@@ -58,7 +58,8 @@ bool ReachedHeights::reaches(const dvec3& n, double height, const dvec3& near) c
     if (best.second != nullptr) nearest.push_back(best);
   }
   const std::size_t tried = std::min(nearest.size(), elements_tried);
-  std::partial_sort(nearest.begin(), nearest.begin() + std::ptrdiff_t(tried), nearest.end());
+  std::stable_sort(nearest.begin(), nearest.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   nearest.resize(tried);
   return std::any_of(nearest.begin(), nearest.end(), [&](const auto& from) {
     const ClimbedContact top = climb(geometry_, from.second->contact, n);

@@ -8,6 +8,7 @@
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/hull/decide/cell_contacts.h"
+#include "taut/hull/decide/direction_cube.h"
 #include "taut/hull/decide/graph_edits.h"
 #include "taut/hull/decide/top_parts.h"
 #include "taut/hull/solve/arc_pieces.h"
@@ -166,8 +167,8 @@ class ArcFinder {
 
   const Ruling& ruling_at(const MapCrossing& crossing) {
     const auto [found, is_new] =
-        rulings_.try_emplace({rounded_direction(crossing.ends[0]),
-                              rounded_direction(crossing.ends[1]), crossing.cell, crossing.contact},
+        rulings_.try_emplace({place_on_cube(crossing.ends[0]), place_on_cube(crossing.ends[1]),
+                              crossing.cell, crossing.contact},
                              Ruling{});
     if (is_new) found->second = search_.at(crossing);
     return found->second;
