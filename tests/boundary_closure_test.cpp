@@ -39,7 +39,13 @@ TEST(BoundaryClosure, CurvesWithoutTwoFacesAreTold) {
 
 TEST(BoundaryClosure, WhatIsMissingIsTold) {
   const std::vector<std::function<void(HullBoundary&)>> faults = {
-      [](HullBoundary& b) { b.faces.pop_back(); },
+      [](HullBoundary& b) { b.faces.push_back(b.faces.back()); },
+      [](HullBoundary& b) {
+        b.faces.push_back(b.faces.back());
+        b.faces.back().kind = FaceKind::patch;
+        b.faces.back().loops.resize(2);
+      },
+      [](HullBoundary& b) { std::swap(b.curves[0].faces[0], b.curves[0].faces[1]); },
       [](HullBoundary& b) { b.curves.pop_back(); },
       [](HullBoundary& b) { b.curves.push_back(b.curves.front()); },
       [](HullBoundary& b) { b.curves[0].points.back() += dvec3(1e-6, 0, 0); },

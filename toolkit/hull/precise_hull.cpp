@@ -25,8 +25,11 @@ std::string broken_promise(const HullBoundary& boundary, const Resolution& resol
   std::array<char, 256> text{};
   if (!boundary.unresolved.empty()) {
     const auto& [n, reason] = boundary.unresolved.front();
+    const bool is_of_all = n == dvec3(0.0);
     std::snprintf(text.data(), text.size(),
-                  "no exact boundary was found: %s at the normal %g %g %g", reason, n.x, n.y, n.z);
+                  is_of_all ? "no exact boundary was found: %s"
+                            : "no exact boundary was found: %s at the normal %g %g %g",
+                  reason, n.x, n.y, n.z);
     return text.data();
   }
   const double depth = boundary.frame.length_to_model(deepest_tolerant(boundary));

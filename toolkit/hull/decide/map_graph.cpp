@@ -201,7 +201,8 @@ class Weaving {
       }
     }
     for (auto& [arc, left] : of_arc) {
-      if (left.size() > 2 && left.size() % 2 == 0) {
+      const bool is_of_node = cell(k).kind == MapCellKind::node && cell(k).apart == 3;
+      if (left.size() > 2 && (left.size() % 2 == 0 || is_of_node)) {
         pass_in_order(k, arc, left);
       } else {
         while (left.size() > 1) pass_nearest(k, left);
@@ -210,18 +211,22 @@ class Weaving {
   }
 
   /// An arc that leaves its cell and comes back: the difference of its contacts keeps to one side
-  /// all over the cell, so that across it the arc goes on and on.
+  /// all over the cell, so that across it the arc goes on and on. From a node in the cell it goes
+  /// where the third contact falls behind: the first crossing on that way is left over.
   void pass_in_order(int k, int arc, std::vector<int>& passes) {
     const auto [low, high] = std::div(arc, cell(k).apart);
-    const std::vector<Box>& contacts = cell(k).contacts;
-    const dvec3 apart = contacts[std::size_t(low)].center() - contacts[std::size_t(high)].center();
+    const auto contact = [&](int i) { return cell(k).contacts[std::size_t(i)].center(); };
     const auto d = DirectionMap::corners(cell(k));
-    const dvec3 along = glm::cross(d[0] + d[1] + d[2] + d[3], apart);
+    dvec3 along = glm::cross(d[0] + d[1] + d[2] + d[3], contact(low) - contact(high));
+    const bool from_node = passes.size() % 2 == 1;
+    if (from_node && glm::dot(contact(3 - low - high) - contact(low), along) > 0) along = -along;
     std::sort(passes.begin(), passes.end(), [&](int a, int b) {
       const double before = glm::dot(middle(a), along), after = glm::dot(middle(b), along);
       return before != after ? before < after : a < b;
     });
-    for (std::size_t i = 0; i < passes.size(); i += 2) join(k, passes[i], passes[i + 1]);
+    for (std::size_t i = from_node ? 1 : 0; i < passes.size(); i += 2) {
+      join(k, passes[i], passes[i + 1]);
+    }
   }
 
   /// The two of them that are nearest to each other.

@@ -15,6 +15,7 @@
 #include "taut/hull/solve/crossings.h"
 #include "taut/hull/solve/edge_places.h"
 #include "taut/hull/solve/facet_corners.h"
+#include "taut/hull/solve/facet_union.h"
 #include "taut/hull/solve/known_arcs.h"
 #include "taut/hull/solve/level_pieces.h"
 #include "taut/hull/solve/node_ears.h"
@@ -76,6 +77,9 @@ class GraphSolver {
     for (SeparatingArc& arc : graph_.arcs) {
       tell_vertices(geometry_, arc.pieces);
       for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, map_.contact_extent());
+    }
+    unite_facets(graph_, geometry_.tie());
+    for (SeparatingArc& arc : graph_.arcs) {
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       tell_corners(arc.pieces, moved);

@@ -1,6 +1,7 @@
 #include "taut/hull/stitch/boundary_closure.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include "taut/core/disjoint_sets.h"
@@ -17,35 +18,67 @@ bool share_face(const HullCurve& a, const HullCurve& b) {
 
 /// The points in which curves end, as often as the boundary passes them: ends in one place meet if
 /// a chain of curves about it leads from the one to the other over faces that they share.
-int vertex_count(const HullBoundary& boundary, double distance) {
-  struct End {
-    const HullCurve* curve;
-    dvec3 x;
-  };
-  std::vector<End> ends;
-  Box box;
-  for (const HullCurve& c : boundary.curves) {
-    if (c.closed) continue;
-    for (const dvec3& p : {c.points.front(), c.points.back()}) {
-      ends.push_back({&c, p});
-      box.include(p);
+class CurveEnds {
+ public:
+  CurveEnds(const HullBoundary& boundary, double distance) : vertices_(2 * boundary.curves.size()) {
+    Box box;
+    for (const HullCurve& c : boundary.curves) {
+      for (const dvec3& p : {c.points.front(), c.points.back()}) box.include(p);
+    }
+    PointGrid places(box, distance);
+    for (int k = 0; k < int(2 * boundary.curves.size()); ++k) {
+      const HullCurve& own = boundary.curves[std::size_t(k / 2)];
+      if (own.closed) continue;
+      const dvec3& x = k % 2 == 0 ? own.points.front() : own.points.back();
+      places.visit_near(x, [&](int other) {
+        const bool meets = share_face(own, boundary.curves[std::size_t(other / 2)]);
+        if (meets && k / 2 != other / 2) vertices_.unite(k, other);
+      });
+      places.insert(x, k);
+    }
+    for (int k = 0; k < int(2 * boundary.curves.size()); ++k) {
+      const bool ends = !boundary.curves[std::size_t(k / 2)].closed;
+      count_ += ends && vertices_.find(k) == k ? 1 : 0;
     }
   }
-  PointGrid places(box, distance);
-  DisjointSets vertices(ends.size());
-  for (int k = 0; k < int(ends.size()); ++k) {
-    const End& own = ends[std::size_t(k)];
-    places.visit_near(own.x, [&](int other) {
-      const End& there = ends[std::size_t(other)];
-      if (own.curve != there.curve && share_face(*own.curve, *there.curve)) {
-        vertices.unite(k, other);
-      }
-    });
-    places.insert(own.x, k);
+
+  /// In which a curve begins (0) or ends (1).
+  int vertex(int curve, int end) { return vertices_.find(2 * curve + end); }
+  int count() const { return count_; }
+
+ private:
+  DisjointSets vertices_;
+  int count_ = 0;
+};
+
+/// As many curves of a face begin in a vertex as end there, with the face to their left; and where
+/// there are curves, each face has some.
+bool faces_close(const HullBoundary& boundary, CurveEnds& ends) {
+  std::vector<std::map<int, int>> balance(boundary.faces.size());
+  std::vector<bool> has_any(boundary.faces.size(), boundary.curves.empty());
+  for (int c = 0; c < int(boundary.curves.size()); ++c) {
+    for (const int side : {0, 1}) {
+      const auto face = std::size_t(boundary.curves[std::size_t(c)].faces[std::size_t(side)]);
+      has_any[face] = true;
+      if (boundary.curves[std::size_t(c)].closed) continue;
+      ++balance[face][ends.vertex(c, side)];
+      --balance[face][ends.vertex(c, 1 - side)];
+    }
   }
-  int count = 0;
-  for (int k = 0; k < int(ends.size()); ++k) count += vertices.find(k) == k ? 1 : 0;
-  return count;
+  return std::all_of(has_any.begin(), has_any.end(), [](bool any) { return any; }) &&
+         std::all_of(balance.begin(), balance.end(), [](const std::map<int, int>& at) {
+           return std::all_of(at.begin(), at.end(), [](const auto& b) { return b.second == 0; });
+         });
+}
+
+/// Curves lead from each face to all others.
+bool is_connected(const HullBoundary& boundary) {
+  DisjointSets faces(boundary.faces.size());
+  for (const HullCurve& c : boundary.curves) faces.unite(c.faces[0], c.faces[1]);
+  for (int k = 1; k < int(boundary.faces.size()); ++k) {
+    if (faces.find(k) != faces.find(0)) return false;
+  }
+  return true;
 }
 
 /// Of a face by itself. A closed scroll is an annulus, unless it is a cone.
@@ -61,8 +94,8 @@ int face_characteristic(const HullBoundary& boundary, const HullFace& face) {
 }
 
 /// V - E + F, where a face counts as its own Euler characteristic.
-int euler_characteristic(const HullBoundary& boundary, double distance) {
-  int result = vertex_count(boundary, distance);
+int euler_characteristic(const HullBoundary& boundary, const CurveEnds& ends) {
+  int result = ends.count();
   for (const HullCurve& c : boundary.curves) result -= c.closed ? 0 : 1;
   for (const HullFace& face : boundary.faces) result += face_characteristic(boundary, face);
   return result;
@@ -102,7 +135,11 @@ void check_closure(HullBoundary& boundary, double distance) {
       boundary.unresolved.push_back({face.n, "a facet is turned inside out"});
     }
   }
-  if (boundary.unresolved.empty() && euler_characteristic(boundary, distance) != 2) {
+  if (!boundary.unresolved.empty()) return;
+  CurveEnds ends(boundary, distance);
+  if (!faces_close(boundary, ends)) {
+    boundary.unresolved.push_back({dvec3(0.0), "curves of a face do not close up"});
+  } else if (!is_connected(boundary) || euler_characteristic(boundary, ends) != 2) {
     boundary.unresolved.push_back(
         {dvec3(0.0), "the faces that were found do not close to a sphere"});
   }
