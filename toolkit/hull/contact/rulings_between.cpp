@@ -25,6 +25,8 @@ constexpr double merging_share = 0.25;
 constexpr double touching_share = 0.6;
 /// Of the way to a free end: what is shorter there than this share of it is a poor measure of it.
 constexpr double slender_share = 0.1;
+/// Chords up to this long may be too short for the rates of exact rulings.
+constexpr double longest_noisy = 1e-2;
 /// An arc that is so many times its chord is none that was solved.
 constexpr double longest_arc = 10;
 
@@ -156,6 +158,7 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     };
     leaves_pole_ = length() <= pole_chord &&
                    (lies_at_pole(system.geometry(), from) || lies_at_pole(system.geometry(), to));
+    is_noisy_ = are_rates_noise();
     lies_flat_ = is_straight() || stands_[0] || stands_[1] || lies_flat(from) || lies_flat(to);
     fit();
   } else {
@@ -200,6 +203,15 @@ bool RulingsBetween::nearly_merge() const {
                                  glm::distance(to_.point[0], to_.point[1]));
   return !is_distinct(shorter_) && shorter_ < merging_share * longer && square_ < longer * longer &&
          continues(system_.geometry(), from_.contact[0], from_.contact[1]);
+}
+
+/// Rounding moves contacts by its own size over the smallest singular value of their system, and
+/// their rates by that over it again; between rulings whose own length is no matter Hermite's
+/// interpolation misses rates by the cube of the chord at most.
+bool RulingsBetween::are_rates_noise() const {
+  if (length() > longest_noisy) return false;
+  const double least = std::sqrt(system_.geometry().rounding() * square_ * length());
+  return system_.uncertainty(support(from_)) > least || system_.uncertainty(support(to_)) > least;
 }
 
 /// Between the ends, with their slopes unless these are noise (next to a pole or a free end, say).

@@ -48,9 +48,11 @@ class RulingsBetween {
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about
   /// to, or one of them is at an end or a side where its element is flat, or far from the origin
-  /// lies flat, or it leaves a pole and is still close to it.
+  /// lies flat, or it leaves a pole and is still close to it; or the chord is so short that the
+  /// interpolation misses by less than rounding makes of exact rates, as beside planes in which an
+  /// edge lies as a whole.
   bool is_smoother() const {
-    return merges() || touches_ || nearly_merges_ || lies_flat_ || leaves_pole_;
+    return merges() || touches_ || nearly_merges_ || lies_flat_ || leaves_pole_ || is_noisy_;
   }
   /// One of them is at an end or a side where its element is flat, or lies flat.
   bool lies_flat() const { return lies_flat_; }
@@ -82,6 +84,7 @@ class RulingsBetween {
   double share(double s) const;
   double share_slope(double s) const;
   bool nearly_merge() const;
+  bool are_rates_noise() const;
   bool touch(const Ruling& end, const Ruling& longer);
   void fit();
   void refine();
@@ -107,6 +110,7 @@ class RulingsBetween {
   bool nearly_merges_ = false;
   bool lies_flat_ = false;
   bool leaves_pole_ = false;
+  bool is_noisy_ = false;
   std::array<bool, 2> straight_ = {false, false};  // at either end
   std::array<bool, 2> stands_ = {false, false};    // n, at either end
   int free_end_ = -1;                              // at which the contacts merge

@@ -24,16 +24,20 @@ bool vertices_only(const ArcPiece& piece) {
   return r.contact[0].kind == SourceKind::vertex && r.contact[1].kind == SourceKind::vertex;
 }
 
-/// From one facet to the next all rulings are one segment, to within a distance: a crease, be its
-/// ends vertices or where edges go on smoothly into it.
-bool stands_still(const SeparatingArc& arc, double distance) {
+/// From one facet to the next all rulings are one segment, which supports in all their normals to
+/// within `tie`: a crease, be its ends vertices or where edges go on smoothly into it. Where an
+/// edge is all but level contacts on it may be found a little beside that.
+bool stands_still(const SeparatingArc& arc, double tie) {
   if (arc.facet[0] < 0 || arc.facet[1] < 0) return false;
   const Ruling& first = arc.pieces.front().rulings.front();
+  const auto is_there = [&](const Ruling& r, std::size_t i) {
+    const dvec3 moved = r.point[i] - first.point[i];
+    const double far = r.contact[i].kind == SourceKind::face ? tie : same_curve_end;
+    return glm::length(moved) <= far && std::abs(glm::dot(moved, r.n)) <= tie;
+  };
   return std::all_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
-    return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
-      return glm::distance(r.point[0], first.point[0]) <= distance &&
-             glm::distance(r.point[1], first.point[1]) <= distance;
-    });
+    return std::all_of(piece.rulings.begin(), piece.rulings.end(),
+                       [&](const Ruling& r) { return is_there(r, 0) && is_there(r, 1); });
   });
 }
 
