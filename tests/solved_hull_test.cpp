@@ -552,6 +552,73 @@ TEST(SolvedHull, OfASpunProfileIsTheSameWhenRounded) {
   }
 }
 
+/// From the equator of a sphere to its pole.
+NurbsCurve quarter_of_a_meridian(double radius) {
+  const double w = std::sqrt(0.5);
+  return {2,
+          {0, 0, 0, 1, 1, 1},
+          {{radius, 0, 0, 1}, {w * radius, 0, w * radius, w}, {0, 0, radius, 1}}};
+}
+
+/// Over a rectangle in the plane z = 0, biquadratic: highest in its middle.
+Shape dome(double a, double b, double height) {
+  BezierPatch patch{2, 2, {}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      patch.points.emplace_back(0.5 * i * a, 0.5 * j * b, i == 1 && j == 1 ? 4 * height : 0, 1);
+    }
+  }
+  return of_patch(patch);
+}
+Shape rectangle(const dvec3& corner, const dvec3& a, const dvec3& b) {
+  const dvec3 corners[] = {corner, corner + b, corner + a, corner + a + b};
+  BezierPatch patch{1, 1, {}};
+  for (const dvec3& x : corners) patch.points.emplace_back(x, 1);
+  return of_patch(patch);
+}
+
+/// Contacts in line, of which planes along edges have more than arcs that pass: however they are
+/// turned.
+TEST(SolvedHull, OfContactsInLineIsTheSameTurned) {
+  const dmat3 along_x(dvec3(0, 1, 0), dvec3(0, 0, 1), dvec3(1, 0, 0));
+  const dmat3 along_y(dvec3(0, 0, 1), dvec3(1, 0, 0), dvec3(0, 1, 0));
+  const struct {
+    const char* name;
+    Shape shape;
+    FaceCounts counts;
+  } cases[] = {
+      {"an arc that leaves a node's cell and comes back",
+       shifted(dome(3, 3, 1), {-1, -1, 1}) + shifted(disc(4, -2), {0, 1, 0}),
+       {1, 10, 9}},
+      {"a disc beside the edge of a rectangle, in one plane",
+       mapped(disc(1, 0) + disc(1, 5), along_y, {-3, -2, 1}) +
+           mapped(dome(6, 6, 2), along_y, {0, -3, -4}) +
+           rectangle({-4, -4, -3}, {2, 0, 0}, {0, 0, 4}) +
+           rectangle({-4, -3, -3}, {2, 0, 0}, {0, 0, 4}),
+       {1, 10, 14}},
+      {"cylinders that cross and touch one plane",
+       mapped(solid_cylinder(3, 5), along_x, {-2, 1, -1}) +
+           shifted(solid_cylinder(4, 1), {-2, 0, 2}),
+       {0, 5, 5}},
+      {"a corner in line with a cylinder's ruling",
+       rectangle({-3, 2, -2}, {3, 0, 0}, {0, 0, 4}) + mapped(cylinder(1, 6), along_x, {1, 2, 1}) +
+           mapped({{revolved(quarter_of_a_meridian(2))}, {}, {}}, along_x, {2, -1, -3}),
+       {1, 9, 8}},
+      {"a segment that supports while planes turn about it",
+       mapped(dome(2, 2, 3), dmat3(dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(0, 1, 0)), {3, 3, -4}) +
+           mapped(cylinder(1, 5), along_y, {-2, 1, -4}) + shifted(disc(2, 4), {-1, 4, 0}) +
+           Shape{{}, {circle({2, 2, 0}, {0, 0, 4}, {4, 0, 0})}, {}},
+       {1, 12, 10}},
+  };
+  Random random(3);
+  const dmat3 turn = random_rotation(random);
+  for (const auto& [name, shape, counts] : cases) {
+    SCOPED_TRACE(name);
+    EXPECT_NO_THROW(expect_counts(shape, counts));
+    EXPECT_NO_THROW(expect_counts(mapped(shape, turn), counts));
+  }
+}
+
 /// Contacts of equal spheres run along a join on both, and those of others all but in one place are
 /// told by the shapes.
 TEST(SolvedHull, OfSpheresNextToEachOther) {

@@ -16,10 +16,10 @@ class FacetUnion {
 
   void run() {
     for (int k = 0; k < int(graph_.arcs.size()); ++k) {
-      if (!stands_between_two(graph_.arcs[std::size_t(k)])) continue;
-      const int facet = graph_.arcs[std::size_t(k)].facet[0];
-      unite(k);
-      while (fold_one(facet)) {
+      if (stands_between_two(graph_.arcs[std::size_t(k)])) unite(k);
+    }
+    for (int k = 0; k < int(graph_.nodes.size()); ++k) {
+      while (!graph_.nodes[std::size_t(k)].is_crossing && fold_one(k)) {
       }
     }
     drop_empty();
@@ -89,9 +89,11 @@ class FacetUnion {
   bool fold_one(int number) {
     FacetNode& facet = graph_.nodes[std::size_t(number)];
     const std::size_t count = facet.points.size();
+    // Of three the third would lead nowhere.
+    if (count < 2 || count == 3) return false;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t next = (k + 1) % count, last = (k + 2) % count;
-      if (facet.is_curved(k) || facet.is_curved(next)) continue;
+      if (facet.slots[k].arc < 0 || facet.slots[next].arc < 0) continue;
       if (glm::distance(facet.points[k], facet.points[last]) > tie_) continue;
       const Slot into = facet.slots[k], out = facet.slots[next];
       const auto leave_out = [&](auto& all, std::size_t a, std::size_t b) {
