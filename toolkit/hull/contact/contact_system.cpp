@@ -273,8 +273,7 @@ std::optional<CommonSupport> ContactSystem::crossing(CommonSupport s, double dep
   return std::nullopt;
 }
 
-std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
-                                                   const CurveTangent* before) const {
+std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s) const {
   const Linearized l(s);
   // Across all rows of the system without its free one: the last column of Q in A^T = Q R.
   const Matrix transposed = l.matrix.topRows(l.rows).transpose();
@@ -291,11 +290,7 @@ std::optional<CurveTangent> ContactSystem::tangent(const CommonSupport& s,
   }
   if (!(square > 0)) return std::nullopt;
   const double size = std::sqrt(square);
-  double sense = glm::dot(t.n, unit(glm::cross(s.n, s.d()))) / size;
-  if (before != nullptr && std::abs(sense) < least_turn) {
-    sense =
-        glm::dot(t.n, before->n) + glm::dot(t.x[0], before->x[0]) + glm::dot(t.x[1], before->x[1]);
-  }
+  const double sense = glm::dot(t.n, unit(glm::cross(s.n, s.d()))) / size;
   const double factor = std::copysign(1 / size, sense);
   t.n *= factor;
   for (std::size_t k = 0; k < 2; ++k) {

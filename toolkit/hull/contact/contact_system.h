@@ -95,10 +95,9 @@ class ContactSystem {
   /// as a function of n. None if it does not converge.
   std::optional<CommonSupport> crossing(CommonSupport s, double depth = 0) const;
 
-  /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1) or, where n turns
-  /// too little to tell, on as `before` does; none where all rates vanish. Where the system is
-  /// singular the tangent is one of the directions that solve it.
-  std::optional<CurveTangent> tangent(const CommonSupport& s, const CurveTangent* before) const;
+  /// Tangent of the curve of two contacts along which n moves by n x (x_0 - x_1); none where all
+  /// rates vanish. Where the system is singular the tangent is one of the directions that solve it.
+  std::optional<CurveTangent> tangent(const CommonSupport& s) const;
 
   /// How far the rounding of coordinates may move two contacts off where their curve has them, in
   /// (n, x_0, x_1): the rounding over the smallest singular value of the system. Infinite where the
@@ -115,8 +114,6 @@ class ContactSystem {
   static constexpr double noise_step = 1e-7;
   static constexpr double merging_noise_step = 1e-6;
   static constexpr double residual_limit = 1e-13;
-  /// A turn of n per length below which its sense is not trusted.
-  static constexpr double least_turn = 1e-6;
 
   enum class Steps { full, least };
 

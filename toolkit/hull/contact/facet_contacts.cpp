@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "taut/bounds/contact_climb.h"
 #include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/tolerances.h"
-#include "taut/hull/contact/in_line_contacts.h"
 #include "taut/hull/contact/level_sides.h"
 #include "taut/hull/planar/planar_hull.h"
-#include "taut/hull/polytope/outline.h"
 
 namespace taut {
 namespace {
@@ -21,36 +18,12 @@ namespace {
 /// than that stays hidden.
 constexpr double side_turn = 1e-6;
 
-/// Directions turned all around: any other contact is within 60 degrees of one of three.
-constexpr int turns_around = 3;
-
 /// Corners of facets are on a border or at a vertex that is no farther: Newton's method leaves them
 /// so near to it.
 constexpr double corner_distance = 1e-9;
 
 /// Directions in which a curved side is asked for contacts beyond it differ by no more, in radians.
 constexpr double side_angle = 0.2;
-
-/// The corners of the contacts' convex hull, counter-clockwise about n.
-FacetContacts corners_only(const FacetContacts& f, const dvec3& n) {
-  const auto turn = [&](std::size_t k) {
-    return glm::dot(glm::cross(f.points[1] - f.points[0], f.points[k] - f.points[0]), n);
-  };
-  std::size_t third = 2;
-  for (std::size_t k = 3; k < f.points.size(); ++k) {
-    if (std::abs(turn(k)) > std::abs(turn(third))) third = k;
-  }
-  if (turn(third) == 0) return f;
-  const dvec3& a = f.points[turn(third) > 0 ? 0 : 1];
-  const dvec3& b = f.points[turn(third) > 0 ? 1 : 0];
-  const PlaneView view(a, b, f.points[third]);
-  FacetContacts result;
-  for (const int k : simplified_outline(convex_outline(f.points, view), f.points, same_contact)) {
-    result.contacts.push_back(f.contacts[std::size_t(k)]);
-    result.points.push_back(f.points[std::size_t(k)]);
-  }
-  return result;
-}
 
 /// A plane's contact set, as it becomes known.
 class ContactSet {
@@ -117,8 +90,6 @@ class ContactSet {
     double reach;
   };
   std::optional<FacetContacts> outline() const;
-  bool is_line() const;
-  FacetContacts line() const;
   std::vector<Probe> probes(const FacetContacts& f) const;
   bool is_beyond_end(const FacetContacts& f, const Contact& c) const;
   bool leads_level(const Contact& from, const Contact& c) const;
@@ -135,29 +106,7 @@ class ContactSet {
   std::vector<dvec3> points_;
 };
 
-bool ContactSet::is_line() const {
-  dvec3 far = points_.front();
-  for (const dvec3& x : points_) {
-    if (glm::distance(x, points_.front()) > glm::distance(far, points_.front())) far = x;
-  }
-  return std::all_of(points_.begin(), points_.end(),
-                     [&](const dvec3& x) { return is_in_line(points_.front(), far, x); });
-}
-
-/// The facet of no area that contacts in line make.
-FacetContacts ContactSet::line() const {
-  FacetContacts f;
-  f.contacts = around_line(geometry_, contacts_, n_);
-  for (const Contact& c : f.contacts) f.points.push_back(geometry_.point(c));
-  return f;
-}
-
 std::optional<FacetContacts> ContactSet::outline() const {
-  if (curves_.empty()) {
-    FacetContacts f{contacts_, points_, {}};
-    if (points_.size() < 3) return f;
-    return is_line() ? line() : corners_only(f, n_);
-  }
   std::vector<dvec2> points;
   points.reserve(points_.size());
   for (const dvec3& x : points_) points.push_back(in_plane(x));
@@ -193,10 +142,6 @@ std::vector<ContactSet::Probe> ContactSet::probes(const FacetContacts& f) const 
     result.push_back({towards, glm::dot(x, towards)});
   };
   const std::size_t count = f.points.size();
-  for (int k = 0; count == 1 && k < turns_around; ++k) {
-    const double angle = 2 * std::numbers::pi * k / turns_around;
-    add(f.points[0], std::cos(angle) * frame_[0] + std::sin(angle) * frame_[1]);
-  }
   for (std::size_t k = 0; k < count; ++k) {
     const dvec3& a = f.points[k];
     if (!f.is_curved(k)) {
@@ -273,7 +218,6 @@ bool ContactSet::is_beyond_end(const FacetContacts& f, const Contact& c) const {
 }
 
 std::optional<FacetContacts> ContactSet::complete() {
-  if (contacts_.empty() && pieces_.empty()) add(at_rest(geometry_, query_(n_).contact, n_));
   const bool finite =
       std::all_of(points_.begin(), points_.end(), [](const dvec3& x) { return is_finite(x); });
   if (!finite || !is_finite(n_)) return std::nullopt;

@@ -22,17 +22,17 @@ struct FacetContacts {
   bool is_facet() const { return contacts.size() >= 3 || is_curved(); }
 };
 
-/// All contacts of a direction: its contact set is that of `pieces`, which lie in the supporting
-/// plane as a whole (ContactPlane), and of contacts found by support queries in directions turned a
-/// little all around and towards each of its sides. Begins with the contacts known, none or more.
-/// One or two contacts are no facet. None where there are more than facet_corner_limit contacts
-/// beside the pieces (contact along another curve), or where the outline is not certain: uncertain
-/// are those no wider than same_contact, as of copies that are nearly in one place. Contacts lower
-/// than others by no more than `slack`, beside tie(), count too.
+/// All contacts of a direction: its contact set is that of `pieces`, one at least, which lie in the
+/// supporting plane as a whole (level_pieces), and of contacts found by support queries in
+/// directions turned a little all around and towards each of its sides. Begins with the contacts
+/// known, none or more. One or two contacts are no facet. None where there are more than
+/// facet_corner_limit contacts beside the pieces (contact along another curve), or where the
+/// outline is not certain: uncertain are those no wider than same_contact, as of copies that are
+/// nearly in one place. Contacts lower than others by no more than `slack`, beside tie(), count
+/// too.
 std::optional<FacetContacts> facet_contacts(const ContactGeometry& geometry, SupportQuery& query,
                                             const dvec3& n, const std::vector<Contact>& known,
-                                            const std::vector<Contact>& pieces = {},
-                                            double slack = 0);
+                                            const std::vector<Contact>& pieces, double slack = 0);
 inline constexpr std::size_t facet_corner_limit = 256;
 
 }  // namespace taut

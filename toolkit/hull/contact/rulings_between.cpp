@@ -332,7 +332,7 @@ bool RulingsBetween::is_distinct(double length) {
 
 /// Derivatives with respect to the share of the chord, which its share in the tangent tells.
 bool RulingsBetween::find_speed(MovingRuling& m) const {
-  const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+  const std::optional<CurveTangent> t = system_.tangent(m.at);
   if (!t) return false;
   const double share = glm::dot(to_.n - from_.n, t->n) +
                        glm::dot(to_.point[0] - from_.point[0], t->x[0]) +
@@ -345,7 +345,7 @@ bool RulingsBetween::find_speed(MovingRuling& m) const {
 
 /// Derivatives with respect to the share r of the length.
 bool RulingsBetween::find_slope(MovingRuling& m, double r) const {
-  const std::optional<CurveTangent> t = system_.tangent(m.at, nullptr);
+  const std::optional<CurveTangent> t = system_.tangent(m.at);
   if (!t) return false;
   m.move(*t, r * length_ * length_ / glm::dot(m.at.d(), t->x[0] - t->x[1]));
   return true;

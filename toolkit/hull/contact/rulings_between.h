@@ -60,8 +60,6 @@ class RulingsBetween {
   bool leaves_pole() const { return leaves_pole_; }
   /// At one end one contact, not both, leaves where its element is flat.
   bool is_straight() const { return straight_[0] || straight_[1]; }
-  /// At one end both contacts leave where their elements are flat: n stands still there.
-  bool stands() const { return stands_[0] || stands_[1]; }
   /// Of the chord.
   double length() const { return std::sqrt(square_); }
   /// The s at which the chord is divided in this ratio, unless the two merge.

@@ -423,7 +423,7 @@ bool ArcSolver::step_over(const Ruling& to) {
 /// On the way to a ruling the contact moves over the exit.
 bool ArcSolver::leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
                        const ContactExit& exit) const {
-  const std::optional<CurveTangent> tangent = search_.system().tangent(s, nullptr);
+  const std::optional<CurveTangent> tangent = search_.system().tangent(s);
   if (!tangent) return false;
   const Ruling& from = last();
   const double sense = glm::dot(tangent->n, to.n - from.n) +

@@ -161,7 +161,7 @@ class Merging {
 
 /// The tangent in the sense in which the contacts do so.
 bool Merging::approaches() {
-  const std::optional<CurveTangent> tangent = search_.system().tangent(at_, nullptr);
+  const std::optional<CurveTangent> tangent = search_.system().tangent(at_);
   if (!tangent || !(length_ > 0)) return false;
   tangent_ = *tangent;
   rate_ = glm::dot(tangent_.x[0] - tangent_.x[1], at_.d()) / length_;
