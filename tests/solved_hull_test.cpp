@@ -619,6 +619,24 @@ TEST(SolvedHull, OfContactsInLineIsTheSameTurned) {
   }
 }
 
+/// The sphericon: one closed scroll, which runs along each of two half circles there and back, and
+/// begins in a vertex that is not its apex. (Wikipedia, "Sphericon".)
+TEST(SolvedHull, OfTwoHalfCirclesIsASphericon) {
+  const Shape shape = {{},
+                       {half_circle(dvec3(0.0), {0, 1, 0}, {1, 0, 0}),
+                        half_circle(dvec3(0.0), {0, -1, 0}, {0, 0, 1})},
+                       {}};
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Scene scene = make_scene(mapped(shape, turn));
+    const Hull hull = solved_hull_of(scene);
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{0, 1, 0}));
+    const BoundaryMeasures m = measured(scene, hull);
+    EXPECT_NEAR(m.volume, 2 * pi / 3, 1e-11);
+    EXPECT_NEAR(m.area, 2 * std::sqrt(2.0) * pi, 1e-11);
+  }
+}
+
 /// Contacts of equal spheres run along a join on both, and those of others all but in one place are
 /// told by the shapes.
 TEST(SolvedHull, OfSpheresNextToEachOther) {

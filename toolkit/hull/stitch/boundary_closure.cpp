@@ -85,11 +85,15 @@ bool is_connected(const HullBoundary& boundary) {
 int face_characteristic(const HullBoundary& boundary, const HullFace& face) {
   if (face.kind == FaceKind::patch) return 2 - int(face.loops.size());
   if (face.kind == FaceKind::facet) return 1;
-  const SeparatingArc& arc = boundary.arcs[std::size_t(face.scroll.arc)];
-  const std::array<Contact, 2>& contacts = arc.pieces.front().rulings.front().contact;
-  const bool closed = arc.closed && face.scroll.count == int(arc.pieces.size());
-  const bool cone = std::any_of(contacts.begin(), contacts.end(),
-                                [](const Contact& c) { return c.kind == SourceKind::vertex; });
+  const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
+  const bool closed =
+      boundary.arcs[std::size_t(face.scroll.arc)].closed && face.scroll.count == int(pieces.size());
+  const auto is_apex = [&](std::size_t i) {
+    return std::all_of(pieces.begin(), pieces.end(), [&](const ArcPiece& piece) {
+      return piece.rulings.front().contact[i].kind == SourceKind::vertex;
+    });
+  };
+  const bool cone = is_apex(0) || is_apex(1);
   return closed && !cone ? 0 : 1;
 }
 
