@@ -619,6 +619,15 @@ TEST(SolvedHull, OfContactsInLineIsTheSameTurned) {
   }
 }
 
+/// The point is above a half ball's rim: the curve in which the cone from there touches the ball
+/// touches the rim.
+TEST(SolvedHull, OfCurvesThatTouchABorder) {
+  const Shape half = {{revolved(quarter_of_a_meridian(1))}, {}, {}};
+  const Shape shape = half + Shape{{}, {}, {{-1, 0, 1.0 / 3}}};
+  expect_counts(shape, {1, 1, 1});
+  expect_counts(mapped(shape, skew_rotation()), {1, 1, 1});
+}
+
 /// The sphericon: one closed scroll, which runs along each of two half circles there and back, and
 /// begins in a vertex that is not its apex. (Wikipedia, "Sphericon".)
 TEST(SolvedHull, OfTwoHalfCirclesIsASphericon) {

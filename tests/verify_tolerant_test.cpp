@@ -62,8 +62,8 @@ Sound solved(const std::string& name, Variant variant) {
 struct Rounded {
   const char* family;
   Variant variant;
-  /// Bounds are depths that were found; else the resolution, where no ruling is found between two, or
-  /// what a patch that bends up at its outline amounts to.
+  /// Bounds are depths that were found; else the resolution, where no ruling is found between two,
+  /// or what a patch that bends up at its outline amounts to.
   bool is_found = true;
 };
 

@@ -509,12 +509,20 @@ void Stitcher::make_loops() {
       std::rotate(outline.begin(), std::next(last_before), outline.end());
     }
     HullFace& face = boundary_.faces[std::size_t(face_at(start))];
-    std::vector<std::pair<int, int>>& loop = face.loops.emplace_back();
-    std::vector<StretchPlace>& places = face.outlines.emplace_back();
+    const auto is_closed = [&](const std::pair<int, int>& curve) {
+      return curve.first < 0 || boundary_.curves[std::size_t(curve.first)].closed;
+    };
+    std::pair<int, int> last = {-1, 0};
     for (const int stretch : outline) {
       const std::pair<int, int> curve = directed(stretch);
-      if (loop.empty() || loop.back() != curve) loop.push_back(curve);
-      places.push_back(place_in_face(stretch));
+      // Closed curves that touch are outlines of their own.
+      if (curve != last && (is_closed(curve) || is_closed(last))) {
+        face.loops.emplace_back();
+        face.outlines.emplace_back();
+      }
+      if (curve != last) face.loops.back().push_back(curve);
+      face.outlines.back().push_back(place_in_face(stretch));
+      last = curve;
     }
   }
 }
