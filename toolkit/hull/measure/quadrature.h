@@ -119,7 +119,7 @@ void integrate(const Function& f, const Tolerance& tolerance, double a, double b
       excess = allowed[c] > 0 ? error[c] / allowed[c] : std::numeric_limits<double>::infinity();
     }
   }
-  const bool noise = depth >= 1 && excess > before / 8 && excess < noise_limit;
+  const bool noise = depth >= 1 && excess > before / 2 && excess < noise_limit;
   if (!(excess > 1) || depth == depth_limit || noise) {
     for (std::size_t c = 0; c < count; ++c) {
       long double total = 0;

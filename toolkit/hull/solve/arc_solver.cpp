@@ -52,6 +52,9 @@ constexpr double along_border = 1e-9;
 /// How far before the way or beyond it a change may be by rounding, as a share; beside the
 /// resolution.
 constexpr double way_slack = 1e-9;
+/// How far, as a share, the place may be beyond it at which an arc comes to the element of the next
+/// ruling: where it turns sharply there.
+constexpr double turn_share = 0.02;
 
 double gap(const Ruling& a, const Ruling& b) {
   const auto square = [](const dvec3& x) { return glm::dot(x, x); };
@@ -494,11 +497,6 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   s.evaluate(geometry_);
   Change found{s.ruling(), s.ruling(), 0};
   found.way = share_of_way(last(), to, found.before);
-  const double whole = gap(last(), to);
-  const double slack = way_slack + search_.map().resolution / whole;
-  if (!(found.way >= -slack && found.way <= 1 + slack)) return std::nullopt;
-  const double farthest = (1 + way_slack) * whole + search_.map().resolution;
-  if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
   const bool at_pole = pole_side(geometry_, s.contact[i]).has_value();
   // A pole is on all patches about it.
   std::optional<Contact> next = at_pole ? pole_in(geometry_, s.contact[i], to.contact[i])
@@ -510,6 +508,12 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
     next = passed->out_of;
   }
   const bool arrives = next && same_element(*next, to.contact[i]);
+  const double beyond_ends = arrives ? turn_share : 0;
+  const double whole = gap(last(), to);
+  const double slack = beyond_ends + way_slack + search_.map().resolution / whole;
+  if (!(found.way >= -slack && found.way <= 1 + slack)) return std::nullopt;
+  const double farthest = (1 + beyond_ends + way_slack) * whole + search_.map().resolution;
+  if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
   if (!next || (!arrives && !leaves(s, to, i, exit)) ||
       search_.depth(found.before) > geometry_.tie())
     return std::nullopt;

@@ -91,8 +91,9 @@ double RegionDepths::of(const HullBoundary& boundary, const PatchRegion& region)
 /// the deepest place.
 double RegionDepths::deepest_in(const RegionOutline& outline, const PatchRegion& region,
                                 bool closer) {
-  const auto [lower, upper] = extent_of(outline);
-  const dvec2 size = glm::max(upper - lower, dvec2(0));
+  const std::array<dvec2, 2> extent = extent_of(outline);
+  const dvec2& lower = extent[0];
+  const dvec2 size = glm::max(extent[1] - lower, dvec2(0));
   const double beside = std::min(
       beside_outline, std::max(beside_outline * std::min(size.x, size.y), sag_of(outline)));
   double deepest = 0;
