@@ -628,6 +628,31 @@ TEST(SolvedHull, OfCurvesThatTouchABorder) {
   expect_counts(mapped(shape, skew_rotation()), {1, 1, 1});
 }
 
+/// A contact comes to the border of a patch and turns there, to run back along its edge: the place
+/// is beyond the chord to the next ruling.
+TEST(SolvedHull, OfAnArcThatTurnsAtABorder) {
+  const std::vector<dvec3> points = {{-0.19377402710574154, -0.5930895186477008, 5.023643249400513},
+                                     {-0.475373319116301, 10.500729345260105, 5.90092739265187},
+                                     {-0.43918248402792015, 19.97038194886327, 4.288319225439268},
+                                     {0.9614743996024773, 30.923314387327572, 5.8972988942744875},
+                                     {10.449579881547066, 0.08245371109486843, 4.623662904020971},
+                                     {9.553782408090742, 9.321304017550254, 3.6094235630857456},
+                                     {10.939850826432265, 20.03213717109576, 4.418175852781477},
+                                     {9.23173122494154, 30.246979511075, 4.818398272738323},
+                                     {20.553366228684595, 0.22600660210608092, 5.099187375346119},
+                                     {20.834595409581805, 9.079185753328407, 2.8178888916267306},
+                                     {20.057178526520044, 19.918671765770807, 4.2697968824902075},
+                                     {19.12469915829975, 30.28265633827875, 5.076286626438557},
+                                     {30.705265676961314, 0.18588203620856802, 4.6594634329981846},
+                                     {29.520194895474447, 10.679763042062817, 5.576857406856808},
+                                     {30.01899176304302, 20.021777768933067, 4.60638965858329},
+                                     {30.506060415404356, 29.295844071569913, 4.906995778961303}};
+  BezierPatch patch{3, 3, {}};
+  for (const dvec3& x : points) patch.points.emplace_back(x, 1);
+  expect_counts(of_patch(patch), {1, 15, 6});
+  expect_counts(mapped(of_patch(patch), skew_rotation()), {1, 15, 6});
+}
+
 /// The sphericon: one closed scroll, which runs along each of two half circles there and back, and
 /// begins in a vertex that is not its apex. (Wikipedia, "Sphericon".)
 TEST(SolvedHull, OfTwoHalfCirclesIsASphericon) {

@@ -328,6 +328,7 @@ bool PieceSlopes::are_convex(const Way& way) const {
 
 /// The slope's coefficients in a direction, as those of the degree of the piece, have one sign.
 bool PieceSlopes::are_definite(const Way& way) const {
+  const double noise = noise_ * std::max({1.0, std::abs(way.along_u), std::abs(way.along_v)});
   CoefficientRange range;
   for (int i = 0; i <= p(); ++i) {
     for (int j = 0; j <= q(); ++j) {
@@ -339,7 +340,7 @@ bool PieceSlopes::are_definite(const Way& way) const {
         range.include(dy - seen_.top[c] * dw);
       }
     }
-    if (range.has_zero(noise_)) return false;
+    if (range.has_zero(noise)) return false;
   }
   return true;
 }

@@ -22,18 +22,19 @@ struct Ruling {
 /// patch, a piece of an edge or a vertex. Both bounding elements are closed, so contacts may lie on
 /// their borders at the ends.
 struct ArcPiece {
-  /// In order, at least two. Where seen from outside of the sphere of directions, those supported
-  /// by contact 0 lie to the right, those supported by contact 1 to the left.
+  /// In order, two or more; one where the next piece goes on from it. Where seen from outside of
+  /// the sphere of directions, those supported by contact 0 lie to the right, those supported by
+  /// contact 1 to the left.
   std::vector<Ruling> rulings;
-  /// How far the rulings are below the supporting planes, at most, in the scene's frame; 0: no more
-  /// than rounding makes them, and contacts are no farther than the resolution from where the
-  /// planes touch.
+  /// How far the rulings are below the supporting planes, in the scene's frame, as far as the
+  /// places tell that were looked at (find_tolerant_places); 0: no more than rounding makes them,
+  /// and contacts are no farther than the resolution from where the planes touch.
   double tolerant = 0;
 };
 
 /// A separating curve between two of its ends: a closed one has none (the last ruling of its last
 /// piece has the n of the first of its first). Consecutive pieces share n and points where they
-/// meet, not the element in which one of the contacts is expressed.
+/// meet, to within their bounds, not the element in which one of the contacts is expressed.
 struct SeparatingArc {
   std::vector<ArcPiece> pieces;
   bool closed = false;
