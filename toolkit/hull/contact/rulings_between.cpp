@@ -158,7 +158,6 @@ RulingsBetween::RulingsBetween(const ContactSystem& system, const Ruling& from, 
     };
     leaves_pole_ = length() <= pole_chord &&
                    (lies_at_pole(system.geometry(), from) || lies_at_pole(system.geometry(), to));
-    is_noisy_ = are_rates_noise();
     lies_flat_ = is_straight() || stands_[0] || stands_[1] || lies_flat(from) || lies_flat(to);
     fit();
   } else {

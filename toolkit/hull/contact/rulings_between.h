@@ -52,7 +52,8 @@ class RulingsBetween {
   /// interpolation misses by less than rounding makes of exact rates, as beside planes in which an
   /// edge lies as a whole.
   bool is_smoother() const {
-    return merges() || touches_ || nearly_merges_ || lies_flat_ || leaves_pole_ || is_noisy_;
+    return merges() || touches_ || nearly_merges_ || lies_flat_ || leaves_pole_ ||
+           are_rates_noise();
   }
   /// One of them is at an end or a side where its element is flat, or lies flat.
   bool lies_flat() const { return lies_flat_; }
@@ -108,7 +109,6 @@ class RulingsBetween {
   bool nearly_merges_ = false;
   bool lies_flat_ = false;
   bool leaves_pole_ = false;
-  bool is_noisy_ = false;
   std::array<bool, 2> straight_ = {false, false};  // at either end
   std::array<bool, 2> stands_ = {false, false};    // n, at either end
   int free_end_ = -1;                              // at which the contacts merge

@@ -52,7 +52,8 @@ bool NearConcavity::is_nearly_concave(const CellView& view, const Chart& chart, 
     along_v = std::min(along_v, glm::distance(euclidean(at(i, 0)), euclidean(at(i, shape.q))));
   }
   // Slopes at a pole lead in all directions.
-  if (size > 0 && !(std::min(along_u, along_v) > 0)) return false;
+  const bool collapses = (shape.p > 0 && !(along_u > 0)) || (shape.q > 0 && !(along_v > 0));
+  if (size > 0 && collapses) return false;
   const double m = size > 0 && shape.p > 0 ? chord(along_u) : 1;
   const double n = size > 0 && shape.q > 0 ? chord(along_v) : 1;
   bends_.find(shape, net_);

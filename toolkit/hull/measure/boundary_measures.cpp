@@ -303,9 +303,10 @@ void Summation::add_ways(const Stretch& at, const std::vector<RulingWay>& ways) 
 }
 
 void Summation::add_exact(const Stretch& at, const RulingsBetween& between) {
+  const bool is_smoother = between.is_smoother();
   const auto f = [&](double s, double weight, Quantities& sample) {
     // Where no ruling is found there is none that is exact; the accuracy tells what it costs.
-    const auto exact = between.is_smoother() ? std::nullopt : between(s);
+    const auto exact = is_smoother ? std::nullopt : between(s);
     add_ruling(at, exact ? *exact : between.interpolated(s), weight, sample);
   };
   integrate<6>(f, tolerances, 0, 1, sums_);
