@@ -24,7 +24,7 @@ struct FacetContacts {
 
 /// All contacts of a direction: its contact set is that of `pieces`, one at least, which lie in the
 /// supporting plane as a whole (level_pieces), and of contacts found by support queries in
-/// directions turned a little all around and towards each of its sides. Begins with the contacts
+/// directions turned a little towards each of its sides. Begins with the contacts
 /// known, none or more. One or two contacts are no facet. None where there are more than
 /// facet_corner_limit contacts beside the pieces (contact along another curve), or where the
 /// outline is not certain: uncertain are those no wider than same_contact, as of copies that are

@@ -28,7 +28,7 @@ class FacetUnion {
  private:
   using Slot = FacetNode::Slot;
 
-  /// Two facets are in the plane of the first, and so is the arc from the one to the other.
+  /// From one facet to another, all in the plane of the first.
   bool stands_between_two(const SeparatingArc& arc) const {
     if (arc.pieces.empty() || arc.closed || arc.facet[0] < 0 || arc.facet[1] < 0) return false;
     if (arc.facet[0] == arc.facet[1]) return false;
@@ -47,13 +47,10 @@ class FacetUnion {
     });
   }
 
-  /// With this one the last.
-  static void turn_to(FacetNode& facet, int arc, int end) {
-    const auto at = std::find_if(facet.slots.begin(), facet.slots.end(),
-                                 [&](const Slot& s) { return s.arc == arc && s.end == end; });
-    const auto first = (at - facet.slots.begin() + 1) % std::ptrdiff_t(facet.slots.size());
+  /// With this corner, and the side from it, the first.
+  static void begin_with(FacetNode& facet, std::size_t first) {
     const auto turn = [&](auto& all) {
-      if (!all.empty()) std::rotate(all.begin(), all.begin() + first, all.end());
+      if (!all.empty()) std::rotate(all.begin(), all.begin() + std::ptrdiff_t(first), all.end());
     };
     turn(facet.contacts);
     turn(facet.points);
@@ -61,13 +58,20 @@ class FacetUnion {
     turn(facet.slots);
   }
 
+  /// With the side that this end of the arc leaves across the last. @pre it leaves the facet
+  static void end_with(FacetNode& facet, int arc, int end) {
+    const auto at = std::find_if(facet.slots.begin(), facet.slots.end(),
+                                 [&](const Slot& s) { return s.arc == arc && s.end == end; });
+    begin_with(facet, std::size_t(at - facet.slots.begin() + 1) % facet.slots.size());
+  }
+
   /// The sides of the second facet follow those of the first in the place of what is between them.
   void unite(int k) {
     const auto [first, second] = graph_.arcs[std::size_t(k)].facet;
     FacetNode& own = graph_.nodes[std::size_t(first)];
     FacetNode& other = graph_.nodes[std::size_t(second)];
-    turn_to(own, k, 0);
-    turn_to(other, k, 1);
+    end_with(own, k, 0);
+    end_with(other, k, 1);
     if (!own.sides.empty() || !other.sides.empty()) {
       own.sides.resize(own.slots.size());
       other.sides.resize(other.slots.size());
@@ -92,19 +96,20 @@ class FacetUnion {
     // Of three the third would lead nowhere.
     if (count < 2 || count == 3) return false;
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t next = (k + 1) % count, last = (k + 2) % count;
+      const std::size_t next = (k + 1) % count;
       if (facet.slots[k].arc < 0 || facet.slots[next].arc < 0) continue;
-      if (glm::distance(facet.points[k], facet.points[last]) > tie_) continue;
-      const Slot into = facet.slots[k], out = facet.slots[next];
-      const auto leave_out = [&](auto& all, std::size_t a, std::size_t b) {
-        if (all.empty()) return;
-        all.erase(all.begin() + std::ptrdiff_t(std::max(a, b)));
-        all.erase(all.begin() + std::ptrdiff_t(std::min(a, b)));
+      if (glm::distance(facet.points[k], facet.points[(k + 2) % count]) > tie_) continue;
+      begin_with(facet, k);
+      const Slot into = facet.slots[0], out = facet.slots[1];
+      // The third corner is where the first one is; of two all go.
+      const std::ptrdiff_t corner = count == 2 ? 0 : 1;
+      const auto leave_out = [](auto& all, std::ptrdiff_t first) {
+        if (!all.empty()) all.erase(all.begin() + first, all.begin() + first + 2);
       };
-      leave_out(facet.slots, k, next);
-      leave_out(facet.sides, k, next);
-      leave_out(facet.contacts, next, last);
-      leave_out(facet.points, next, last);
+      leave_out(facet.slots, 0);
+      leave_out(facet.sides, 0);
+      leave_out(facet.contacts, corner);
+      leave_out(facet.points, corner);
       join(into, out);
       return !facet.points.empty();
     }
