@@ -26,14 +26,12 @@ constexpr double rounded_share = 1.0 / 16;
 
 class TolerantPlaces {
  public:
-  TolerantPlaces(const ContactSystem& system, SupportQuery& query, double resolution)
+  TolerantPlaces(const ContactSystem& system, SupportQuery& query, const DepthBounds& bounds)
       : system_(system),
         geometry_(system.geometry()),
         query_(query),
-        resolution_(resolution),
-        bounds_(geometry_.tie(), resolution) {
-    is_rounded_ = is_rounded(geometry_.scene(), resolution_);
-  }
+        bounds_(bounds),
+        is_rounded_(is_rounded(geometry_.scene(), bounds.resolution())) {}
 
   double of(const ArcPiece& piece) {
     double deepest = piece.tolerant;
@@ -57,7 +55,7 @@ class TolerantPlaces {
       if (between.empty() || (is_exact && depth_at(between, 0.5) <= geometry_.tie())) continue;
       deepest = std::max(deepest, deepest_of(between));
     }
-    return std::max(bounds_.elsewhere(deepest, touches), std::min(passed, resolution_));
+    return std::max(bounds_.elsewhere(deepest, touches), std::min(passed, bounds_.resolution()));
   }
 
   double of(const HullFace& facet) {
@@ -93,7 +91,7 @@ class TolerantPlaces {
   double depth_at(const RulingsBetween& between, double share) {
     const double s = between.at_share(share);
     if (const std::optional<MovingRuling> exact = between(s)) return depth(exact->at.ruling());
-    return std::max(resolution_ / DepthBounds::near_places,
+    return std::max(bounds_.resolution() / DepthBounds::near_places,
                     depth(between.interpolated(s).at.ruling()));
   }
   double deepest_of(const RulingsBetween& between) {
@@ -152,8 +150,8 @@ class TolerantPlaces {
       double changed = 0;  // over the resolution
       for (std::size_t i = 0; i < std::size_t(j.dimension); ++i) {
         const double speed = glm::length(j.dx[i]);
-        if (speed > resolution_) {
-          changed += resolution_ / speed * std::abs(glm::dot(ddx[k][i], n));
+        if (speed > bounds_.resolution()) {
+          changed += bounds_.resolution() / speed * std::abs(glm::dot(ddx[k][i], n));
         }
       }
       const double at = t[int(k)];
@@ -176,9 +174,8 @@ class TolerantPlaces {
   const ContactSystem& system_;
   const ContactGeometry& geometry_;
   SupportQuery& query_;
-  double resolution_;
-  DepthBounds bounds_;
-  bool is_rounded_ = false;
+  const DepthBounds& bounds_;
+  bool is_rounded_;
 };
 
 }  // namespace
@@ -195,8 +192,8 @@ bool is_rounded(const Scene& scene, double resolution) {
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution) {
-  TolerantPlaces found(system, query, resolution);
   const DepthBounds bounds(system.geometry().tie(), resolution);
+  TolerantPlaces found(system, query, bounds);
   RegionDepths regions(system, query, bounds);
   for (SeparatingArc& arc : boundary.arcs) {
     for (ArcPiece& piece : arc.pieces) piece.tolerant = found.of(piece);
