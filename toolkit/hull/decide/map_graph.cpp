@@ -53,6 +53,7 @@ class Weaving {
     open_cells_that_differ();
     join_neighbors();
     join_facets();
+    widen_bare_facets();
     make_nodes();
     make_arcs();
     remove_arcs(graph_, map_, arcs_within_nodes(), [](const auto&) { return true; });
@@ -139,25 +140,62 @@ class Weaving {
   bool is_of_node(int k) { return is_open(k) || has_left_over(k); }
 
   /// Cells of more contacts than they tell apart do not tell what is inside of them where something
-  /// is left over in one of those that hang together.
+  /// is left over in one of them, nor do those beside it that tell other contacts apart; nor where
+  /// contacts in line may be taken for each other.
   void open_cells_that_differ() {
     std::vector<int> waiting;
+    std::vector<dvec3> differ;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
-      if (contacts_.has_more(k) && has_left_over(k)) waiting.push_back(k);
+      if (!contacts_.has_more(k)) continue;
+      const std::size_t before = differ.size();
+      for (const int c : left_over(k)) differ.push_back(unit(middle(c)));
+      if (differ.size() > before) waiting.push_back(k);
     }
+    const auto opens_beyond = [&](int s) {
+      if (!tell_alike(side(s))) return true;
+      const dvec3 n = unit(unit(side(s).ends[0]) + unit(side(s).ends[1]));
+      return std::any_of(differ.begin(), differ.end(), [&](const dvec3& other) {
+        return glm::distance(n, other) <= map_.contact_extent();
+      });
+    };
     while (!waiting.empty()) {
       const int k = waiting.back();
       waiting.pop_back();
-      if (!opened_.insert(k).second) continue;
+      if (!open(k)) continue;
       for (const int s : sides_of_[std::size_t(k)]) {
-        for (const int c : side(s).crossings) {
-          crossing(c).next[number_of(crossing(c), k)] = SideCrossing::none;
-        }
+        if (!opens_beyond(s)) continue;
         for (const int beyond : side(s).cell) {
           if (contacts_.has_more(beyond)) waiting.push_back(beyond);
         }
       }
     }
+  }
+
+  /// Arcs end in it. False if they did before.
+  bool open(int k) {
+    if (!opened_.insert(k).second) return false;
+    for (const int s : sides_of_[std::size_t(k)]) {
+      for (const int c : side(s).crossings) {
+        crossing(c).next[number_of(crossing(c), k)] = SideCrossing::none;
+      }
+    }
+    return true;
+  }
+
+  /// The contacts that exchange on the side are the same ones for both of its cells.
+  bool tell_alike(const CrossedSide& own) const {
+    return std::all_of(own.crossings.begin(), own.crossings.end(), [&](int c) {
+      const auto& arc = crossings_[std::size_t(c)].arc;
+      if (arc[0] == SideCrossing::none || arc[1] == SideCrossing::none) return false;
+      const auto contact = [&](std::size_t i, int k) {
+        const MapCell& of = cell(own.cell[i]);
+        return of.contacts[std::size_t(k == 0 ? arc[i] / of.apart : arc[i] % of.apart)];
+      };
+      const auto meet = [&](int k, int other) {
+        return box_gaps(contact(0, k), contact(1, other)) == dvec3(0.0);
+      };
+      return (meet(0, 0) && meet(1, 1)) || (meet(0, 1) && meet(1, 0));
+    });
   }
 
   /// What is left over beside cells that do not tell what is inside of them ends there.
@@ -185,6 +223,43 @@ class Weaving {
         if (cell(facet).shares_plane(cell(other), map_.resolution)) clusters_.unite(facet, other);
       }
     }
+  }
+
+  /// Arcs leave from a facet of several contacts. Of one that comes through a single side of its cell
+  /// and goes back over it the ends of that side do not tell: it is in the cell beyond.
+  void widen_bare_facets() {
+    for (const auto& [first, cells] : cells_of_nodes()) {
+      MapGraph::Node node;
+      node.cells = cells;
+      const auto has_arcs = [&](int k) {
+        return contacts_.is_of_facet(k) && cell(k).contacts.size() > 1;
+      };
+      const auto facet = std::find_if(cells.begin(), cells.end(), has_arcs);
+      if (facet == cells.end() || !border_of(node).empty()) continue;
+      const int beyond = nearest_beyond(*facet);
+      if (beyond < 0) continue;
+      open(beyond);
+      clusters_.unite(*facet, beyond);
+    }
+  }
+
+  /// The cell with arcs in it beyond the side of a facet's cell that is nearest to its normal; -1 if
+  /// there is none.
+  int nearest_beyond(int facet) {
+    const DirectionMap::Place place = DirectionMap::place(cell(facet).normal);
+    const dvec3 normal = DirectionMap::direction(place.face, place.s, place.t);
+    int best = -1;
+    double least = infinity;
+    for (const int s : sides_of_[std::size_t(facet)]) {
+      const CrossedSide& own = side(s);
+      const int beyond = own.cell[own.cell[0] == facet ? 1 : 0];
+      if (is_open(beyond) || cell(beyond).kind == MapCellKind::region) continue;
+      const double gap = distance_to_segment(normal, own.ends[0], own.ends[1]);
+      if (gap >= least) continue;
+      least = gap;
+      best = beyond;
+    }
+    return best;
   }
 
   std::size_t number_of(const SideCrossing& c, int k) const {
@@ -257,12 +332,17 @@ class Weaving {
     return unit(own.ends[0]) + unit(own.ends[1]);
   }
 
-  void make_nodes() {
-    std::map<int, std::vector<int>> clusters;
+  /// The cells of each node, by one of them.
+  std::map<int, std::vector<int>> cells_of_nodes() {
+    std::map<int, std::vector<int>> found;
     for (int k = 0; k < int(map_.cells.size()); ++k) {
-      if (is_of_node(k)) clusters[clusters_.find(k)].push_back(k);
+      if (is_of_node(k)) found[clusters_.find(k)].push_back(k);
     }
-    for (auto& [first, cells] : clusters) {
+    return found;
+  }
+
+  void make_nodes() {
+    for (auto& [first, cells] : cells_of_nodes()) {
       MapGraph::Node node;
       node.cells = std::move(cells);
       for (const int k : node.cells) node.is_facet = node.is_facet || contacts_.is_of_facet(k);
@@ -277,13 +357,17 @@ class Weaving {
     }
   }
 
-  bool has_left_over(int k) {
+  bool has_left_over(int k) const { return !left_over(k).empty(); }
+  /// Crossings from which nothing goes on in the cell.
+  std::vector<int> left_over(int k) const {
+    std::vector<int> found;
     for (const int s : sides_of_[std::size_t(k)]) {
-      for (const int c : side(s).crossings) {
-        if (crossing(c).next[number_of(crossing(c), k)] == SideCrossing::none) return true;
+      for (const int c : sides_[std::size_t(s)].crossings) {
+        const SideCrossing& own = crossings_[std::size_t(c)];
+        if (own.next[number_of(own, k)] == SideCrossing::none) found.push_back(c);
       }
     }
-    return false;
+    return found;
   }
 
   /// In which of the two cells at a crossing an arc ends that ends in one of these.
