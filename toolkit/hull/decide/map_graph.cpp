@@ -225,8 +225,8 @@ class Weaving {
     }
   }
 
-  /// Arcs leave from a facet of several contacts. Of one that comes through a single side of its cell
-  /// and goes back over it the ends of that side do not tell: it is in the cell beyond.
+  /// Arcs leave from a facet of several contacts. Of one that comes through a single side of its
+  /// cell and goes back over it the ends of that side do not tell: it is in the cell beyond.
   void widen_bare_facets() {
     for (const auto& [first, cells] : cells_of_nodes()) {
       MapGraph::Node node;
@@ -243,8 +243,8 @@ class Weaving {
     }
   }
 
-  /// The cell with arcs in it beyond the side of a facet's cell that is nearest to its normal; -1 if
-  /// there is none.
+  /// The cell with arcs in it beyond the side of a facet's cell that is nearest to its normal; -1
+  /// if there is none.
   int nearest_beyond(int facet) {
     const DirectionMap::Place place = DirectionMap::place(cell(facet).normal);
     const dvec3 normal = DirectionMap::direction(place.face, place.s, place.t);

@@ -1,6 +1,7 @@
 #include "taut/hull/solve/known_arcs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -20,6 +21,9 @@ namespace {
 
 /// Depths below a plane, in units of the resolution, up to which what touches it may be told so.
 constexpr double one_node_depths = 4;
+/// Radius, as a share of the scene's size, of what is as high as that over the longest arcs that
+/// are no longer than contacts can be told.
+constexpr double least_radius = 0.1;
 
 /// What a contact moves by where it is another one, as a share of the way to the other contact.
 constexpr double jump_share = 0.1;
@@ -230,14 +234,14 @@ class ArcFinder {
     return true;
   }
 
-  /// All along it each of its contacts is as one.
+  /// All along it each of its contacts is as one, or one of others that are in line with it.
   bool is_short(const std::vector<Ruling>& rulings) const {
     const Ruling& middle = rulings[rulings.size() / 2];
-    const double extent = search_.map().contact_extent();
+    const double extent = extent_of_one();
     return std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& r) {
-      return glm::distance(middle.n, r.n) <= extent &&
-             glm::distance(middle.point[0], r.point[0]) <= extent &&
-             glm::distance(middle.point[1], r.point[1]) <= extent;
+      const bool is_one = glm::distance(middle.point[0], r.point[0]) <= extent &&
+                          glm::distance(middle.point[1], r.point[1]) <= extent;
+      return glm::distance(middle.n, r.n) <= extent && (is_one || jumps(r, middle));
     });
   }
 
@@ -278,7 +282,7 @@ class ArcFinder {
     const auto supports = [&](const dvec3& n) {
       const double least = search_.query()(n, about.front().contact[0]).h - depth_of_one();
       return std::all_of(about.begin(), about.end(), [&](const Ruling& r) {
-        return glm::distance(r.n, n) <= search_.map().contact_extent() &&
+        return glm::distance(r.n, n) <= extent_of_one() &&
                std::min(glm::dot(r.point[0], n), glm::dot(r.point[1], n)) >= least;
       });
     };
@@ -294,6 +298,8 @@ class ArcFinder {
   }
 
   double depth_of_one() const { return one_node_depths * search_.map().resolution; }
+  /// By how much planes turn that touch what is no deeper.
+  double extent_of_one() const { return std::sqrt(2 * depth_of_one() / least_radius); }
 
   bool is_shallow(const std::vector<Ruling>& rulings) const {
     // In the middle an arc is deepest, mostly.
