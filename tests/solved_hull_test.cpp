@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -609,13 +610,27 @@ TEST(SolvedHull, OfContactsInLineIsTheSameTurned) {
            mapped(cylinder(1, 5), along_y, {-2, 1, -4}) + shifted(disc(2, 4), {-1, 4, 0}) +
            Shape{{}, {circle({2, 2, 0}, {0, 0, 4}, {4, 0, 0})}, {}},
        {1, 12, 10}},
+      {"a frustum in line with the rims of two discs in whose planes its own are",
+       mapped({{revolved(quarter_of_a_meridian(3))}, {}, {}}, along_x, {0, -3, 3}) +
+           mapped(disc(4, 0) + disc(4, 2), along_y, {1, 4, -4}) +
+           mapped(frustum(2, 3, 2), along_y, {-2, 4, -2}) +
+           Shape{{}, {circle({3, -3, -4}, {0, 0, 2}, {2, 0, 0})}, {}},
+       {1, 10, 9}},
   };
-  Random random(3);
-  const dmat3 turn = random_rotation(random);
+  std::vector<dmat3> turns = {dmat3(1.0)};
+  for (const unsigned seed : {3u, 7u}) {
+    Random random(seed);
+    turns.push_back(random_rotation(random));
+  }
+  // Of many these are some for which cells tell contacts in line apart in one place and not in the
+  // next, or a facet's cell just misses its arcs.
+  for (const double k : {7.0, 8.0, 18.0}) {
+    const dvec3 axis = unit({0.3 + 0.1 * k, 0.5 - 0.07 * k, 0.7});
+    turns.emplace_back(glm::mat3_cast(glm::angleAxis(0.5 + 0.37 * k, axis)));
+  }
   for (const auto& [name, shape, counts] : cases) {
     SCOPED_TRACE(name);
-    EXPECT_NO_THROW(expect_counts(shape, counts));
-    EXPECT_NO_THROW(expect_counts(mapped(shape, turn), counts));
+    for (const dmat3& turn : turns) EXPECT_NO_THROW(expect_counts(mapped(shape, turn), counts));
   }
 }
 
