@@ -10,6 +10,7 @@
 #include "taut/core/tolerances.h"
 #include "taut/hull/solve/solved_graph.h"
 #include "taut/hull/solve/tolerant_places.h"
+#include "taut/hull/stitch/ruled_faces.h"
 #include "taut/hull/stitch/stitch.h"
 
 namespace taut {
@@ -84,6 +85,7 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   // What is not closed is not known to anything.
   if (boundary.unresolved.empty()) {
     find_tolerant_places(ContactSystem(geometry), query, boundary, rho);
+    label_ruled_faces(geometry, boundary);
   }
   statistics.seconds_stitch += watch.lap();
   statistics.support_queries += query.queries();

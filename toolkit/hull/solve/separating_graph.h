@@ -38,6 +38,7 @@ struct SeparatingGraph {
   std::vector<FacetNode> nodes;
   std::vector<Unresolved> unresolved;
   long newton_iterations = 0;
+  double depth = 0;  ///< to which heights are known, in the scene's frame
 };
 
 }  // namespace taut

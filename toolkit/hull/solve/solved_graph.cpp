@@ -89,6 +89,7 @@ class GraphSolver {
       join_in_crossings(arc);
     }
     graph_.newton_iterations = system_.iterations();
+    graph_.depth = map_.resolution;
     return std::move(graph_);
   }
 

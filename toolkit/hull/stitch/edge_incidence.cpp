@@ -20,12 +20,84 @@ double turn(const ContactJet& edge, const dvec3& n, const dvec3& towards) {
   return glm::dot(towards, glm::cross(unit(edge.dx[0]), n));
 }
 
+/// Rulings of a piece, from one to another, that are on one side of the edge which one of their
+/// contacts runs along.
+struct Run {
+  std::size_t first, last;
+  double from, to;  ///< parameters of the edge
+  double side;      ///< positive: to its left
+};
+
+/// In order.
+std::vector<Run> runs_along(const ContactSystem& system, const std::vector<Ruling>& rulings,
+                            std::size_t i) {
+  const auto side = [&](const Ruling& r) {
+    const dvec3 d = r.point[0] - r.point[1];
+    return turn(system.geometry().jet(r.contact[i]), r.n, i == 0 ? d : -d);
+  };
+  // Where no ruling is found between two, from one to the other.
+  const auto side_between = [&](const Ruling& a, const Ruling& b, double s) {
+    const std::optional<Ruling> r = ruling_between(system, a, b, s);
+    return r ? side(*r) : (1 - s) * side(a) + s * side(b);
+  };
+  std::vector<Run> runs;
+  double from = rulings.front().contact[i].u;
+  std::size_t k = 0;
+  while (k + 1 < rulings.size()) {
+    std::size_t next = k + 1;
+    const double here = side_between(rulings[k], rulings[next], 0.5);
+    while (next + 1 < rulings.size() && side(rulings[next]) * here > 0 &&
+           side_between(rulings[next], rulings[next + 1], 0.5) * here > 0) {
+      ++next;
+    }
+    double to = rulings[next].contact[i].u;
+    if (next + 1 < rulings.size()) {
+      // The parameter turns between the middles of the two chords about `next`.
+      const bool before = side(rulings[next]) * here <= 0;
+      const Ruling& a = before ? rulings[next - 1] : rulings[next];
+      const Ruling& b = before ? rulings[next] : rulings[next + 1];
+      double lower = before ? 0.5 : 0.0;
+      double upper = before ? 1.0 : 0.5;
+      for (int h = 0; h < halving_limit && upper - lower > 1e-15; ++h) {
+        const double middle = 0.5 * (lower + upper);
+        (side_between(a, b, middle) * here > 0 ? lower : upper) = middle;
+      }
+      to = ruling_between(system, a, b, upper).value_or(b).contact[i].u;
+    }
+    runs.push_back({k, next, from, to, here});
+    from = to;
+    k = next;
+  }
+  return runs;
+}
+
+/// Where arcs end they may be tangent to the edge, and noise tells the side: over how far their
+/// planes and contacts move heights differ by less than they are known.
+void unite_shallow_ends(const std::vector<Ruling>& rulings, std::size_t i, double depth,
+                        std::vector<Run>& runs) {
+  const auto is_shallow = [&](const Run& run) {
+    const Ruling& a = rulings[run.first];
+    const Ruling& b = rulings[run.last];
+    return glm::distance(a.n, b.n) * glm::distance(a.point[i], b.point[i]) <= depth;
+  };
+  while (runs.size() > 1 && is_shallow(runs.front())) {
+    runs[1].first = runs[0].first;
+    runs[1].from = runs[0].from;
+    runs.erase(runs.begin());
+  }
+  while (runs.size() > 1 && is_shallow(runs.back())) {
+    runs[runs.size() - 2].last = runs.back().last;
+    runs[runs.size() - 2].to = runs.back().to;
+    runs.pop_back();
+  }
+}
+
 }  // namespace
 
 EdgeIncidence::EdgeIncidence(const ContactGeometry& geometry, const SeparatingGraph& graph,
                              const std::vector<TrimRegion>& regions) {
   for (int a = 0; a < int(graph.arcs.size()); ++a) {
-    add_arc(geometry, graph.arcs[std::size_t(a)], a);
+    add_arc(geometry, graph.arcs[std::size_t(a)], a, graph.depth);
   }
   for (int k = 0; k < int(graph.nodes.size()); ++k) {
     add_facet(graph.nodes[std::size_t(k)], k);
@@ -37,57 +109,23 @@ EdgeIncidence::EdgeIncidence(const ContactGeometry& geometry, const SeparatingGr
 
 /// The parameter along the edge grows or falls along an arc, and turns where a ruling is tangent to
 /// the edge.
-void EdgeIncidence::add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index) {
+void EdgeIncidence::add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index,
+                            double depth) {
   const ContactSystem system(geometry);
   for (int p = 0; p < int(arc.pieces.size()); ++p) {
     const std::vector<Ruling>& rulings = arc.pieces[std::size_t(p)].rulings;
     for (std::size_t i = 0; i < 2; ++i) {
       const Contact& first = rulings.front().contact[i];
       if (first.kind != SourceKind::edge) continue;
-      const auto side = [&](const Ruling& r) {
-        const dvec3 d = r.point[0] - r.point[1];
-        return turn(geometry.jet(r.contact[i]), r.n, i == 0 ? d : -d);
-      };
-      // Where no ruling is found between two, from one to the other.
-      const auto side_between = [&](const Ruling& a, const Ruling& b, double s) {
-        const std::optional<Ruling> r = ruling_between(system, a, b, s);
-        return r ? side(*r) : (1 - s) * side(a) + s * side(b);
-      };
+      std::vector<Run> runs = runs_along(system, rulings, i);
+      unite_shallow_ends(rulings, i, depth, runs);
       Edge& own = edges_[{first.instance, first.element}];
-      const auto add = [&](double from, double to, double sense) {
-        if (std::abs(to - from) < same_edge_parameter) return;
-        own.intervals.push_back({std::min(from, to),
-                                 std::max(from, to),
-                                 sense > 0,
-                                 {index, p, int(i), to - from, -1, 0, 0, -1}});
-      };
-      double from = first.u;
-      // Runs of rulings on one side of the edge; the ends of arcs may be tangent to it.
-      std::size_t k = 0;
-      while (k + 1 < rulings.size()) {
-        std::size_t next = k + 1;
-        const double here = side_between(rulings[k], rulings[next], 0.5);
-        while (next + 1 < rulings.size() && side(rulings[next]) * here > 0 &&
-               side_between(rulings[next], rulings[next + 1], 0.5) * here > 0) {
-          ++next;
-        }
-        double to = rulings[next].contact[i].u;
-        if (next + 1 < rulings.size()) {
-          // The parameter turns between the middles of the two chords about `next`.
-          const bool before = side(rulings[next]) * here <= 0;
-          const Ruling& a = before ? rulings[next - 1] : rulings[next];
-          const Ruling& b = before ? rulings[next] : rulings[next + 1];
-          double lower = before ? 0.5 : 0.0;
-          double upper = before ? 1.0 : 0.5;
-          for (int h = 0; h < halving_limit && upper - lower > 1e-15; ++h) {
-            const double middle = 0.5 * (lower + upper);
-            (side_between(a, b, middle) * here > 0 ? lower : upper) = middle;
-          }
-          to = ruling_between(system, a, b, upper).value_or(b).contact[i].u;
-        }
-        add(from, to, here);
-        from = to;
-        k = next;
+      for (const Run& run : runs) {
+        if (std::abs(run.to - run.from) < same_edge_parameter) continue;
+        own.intervals.push_back({std::min(run.from, run.to),
+                                 std::max(run.from, run.to),
+                                 run.side > 0,
+                                 {index, p, int(i), run.to - run.from, -1, 0, 0, -1}});
       }
     }
   }

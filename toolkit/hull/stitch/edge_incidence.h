@@ -57,7 +57,7 @@ class EdgeIncidence {
     std::vector<Interval> intervals;
     std::vector<double> ends() const;
   };
-  void add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index);
+  void add_arc(const ContactGeometry& geometry, const SeparatingArc& arc, int index, double depth);
   void add_facet(const FacetNode& node, int index);
   void add_region(const ContactGeometry& geometry, const TrimRegion& region, int index);
 

@@ -158,12 +158,14 @@ int source_along(const ContactSystem& system, const ArcPiece& piece) {
   return all ? source : -1;
 }
 
-/// It is one ruling for all that labels tell.
+/// It is one ruling for all that labels tell: its contacts go no farther than they are known on a
+/// surface that curves as the scene is large.
 bool is_short(const ArcPiece& piece) {
+  const double known = std::max(same_ruling, std::sqrt(2 * piece.tolerant));
   const Ruling& first = piece.rulings.front();
   return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
-    return glm::distance(r.point[0], first.point[0]) <= same_ruling &&
-           glm::distance(r.point[1], first.point[1]) <= same_ruling;
+    return glm::distance(r.point[0], first.point[0]) <= known &&
+           glm::distance(r.point[1], first.point[1]) <= known;
   });
 }
 

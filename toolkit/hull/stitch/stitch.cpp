@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "taut/core/disjoint_sets.h"
+#include "taut/hull/solve/tolerant_places.h"
 #include "taut/hull/stitch/boundary_closure.h"
 #include "taut/hull/stitch/curve_chains.h"
 #include "taut/hull/stitch/edge_incidence.h"
-#include "taut/hull/stitch/ruled_faces.h"
 #include "taut/hull/stitch/trim_stretches.h"
 #include "taut/hull/stitch/whole_patches.h"
 
@@ -26,13 +26,13 @@ bool vertices_only(const ArcPiece& piece) {
 
 /// From one facet to the next all rulings are one segment, which supports in all their normals to
 /// within `tie`: a crease, be its ends vertices or where edges go on smoothly into it. Where an
-/// edge is all but level contacts on it may be found a little beside that.
-bool stands_still(const SeparatingArc& arc, double tie) {
+/// edge is all but level contacts on it may be found beside that, no farther than `extent`.
+bool stands_still(const SeparatingArc& arc, double tie, double extent) {
   if (arc.facet[0] < 0 || arc.facet[1] < 0) return false;
   const Ruling& first = arc.pieces.front().rulings.front();
   const auto is_there = [&](const Ruling& r, std::size_t i) {
     const dvec3 moved = r.point[i] - first.point[i];
-    const double far = r.contact[i].kind == SourceKind::face ? tie : same_curve_end;
+    const double far = r.contact[i].kind == SourceKind::face ? tie : extent;
     return glm::length(moved) <= far && std::abs(glm::dot(moved, r.n)) <= tie;
   };
   return std::all_of(arc.pieces.begin(), arc.pieces.end(), [&](const ArcPiece& piece) {
@@ -150,11 +150,14 @@ void Stitcher::make_patches() {
 
 /// Scrolls: runs of pieces of an arc that are no creases.
 void Stitcher::make_scrolls() {
+  const bool rounded = is_rounded(geometry_.scene(), graph_.depth);
+  const double tie = rounded ? graph_.depth : geometry_.tie();
+  const double extent = rounded ? std::sqrt(graph_.depth) : same_curve_end;
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
     const int count = int(arc.pieces.size());
     scroll_of_.emplace_back(std::size_t(count), -1);
-    if (stands_still(arc, geometry_.tie())) continue;
+    if (stands_still(arc, tie, extent)) continue;
     std::vector<int>& own = scroll_of_.back();
     // A closed arc begins behind a crease, if there is one.
     int start = 0;
@@ -577,7 +580,6 @@ HullBoundary Stitcher::run() {
   take_regions();
   take_arcs();
   check_closure(boundary_, same_end_);
-  label_ruled_faces(geometry_, boundary_);
   return std::move(boundary_);
 }
 
