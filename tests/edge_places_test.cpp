@@ -36,7 +36,7 @@ TEST(EdgePlaces, AreOneWithinADistance) {
   graph.arcs.push_back(along_curve(geometry, 1e-9, 0.3));
   graph.arcs.push_back(along_curve(geometry, 0.3 + 1e-9, 0.6));
   graph.arcs.push_back(along_curve(geometry, 0.6 + 1e-3, 1 - 1e-9));
-  unite_edge_places(geometry, graph, 1e-7, 0, everywhere);
+  unite_edge_places(geometry, graph, 1e-8, 1e-7, 0, everywhere);
   const auto end = [&](std::size_t arc, bool last) {
     const std::vector<Ruling>& rulings = graph.arcs[arc].pieces.front().rulings;
     return (last ? rulings.back() : rulings.front()).contact[0].u;
@@ -59,13 +59,31 @@ TEST(EdgePlaces, EndsOfAShortEdgeStayApart) {
   SeparatingGraph graph;
   graph.arcs.push_back(along_curve(geometry, 0, 0.2));
   graph.arcs.push_back(along_curve(geometry, 0.8, 1));
-  unite_edge_places(geometry, graph, 10, 0, everywhere);
+  unite_edge_places(geometry, graph, 10, 10, 0, everywhere);
   const auto ends = [&](std::size_t arc) {
     const std::vector<Ruling>& rulings = graph.arcs[arc].pieces.front().rulings;
     return std::array{rulings.front().contact[0].u, rulings.back().contact[0].u};
   };
   EXPECT_EQ(ends(0), (std::array{0.0, 0.0}));
   EXPECT_EQ(ends(1), (std::array{1.0, 1.0}));
+}
+
+/// A curve that turns back just before its end: what supports where it turns is higher than that.
+TEST(EdgePlaces, WhereALineTurnsBesideItsEndAreNotThere) {
+  const double turn = 1 - 3e-4;
+  const NurbsCurve hook = {
+      2, {0, 0, 0, 1, 1, 1}, {{0, 0, 0, 1}, {turn, 0, 5e-8, 1}, {2 * turn - 1, 0, 1e-7, 1}}};
+  const Scene scene = make_scene({{}, {hook}, {{0, 0, 1}}});
+  const ContactGeometry geometry(scene);
+  SeparatingGraph graph;
+  graph.arcs.push_back(along_curve(geometry, 0.1, turn));
+  std::vector<Ruling>& rulings = graph.arcs.front().pieces.front().rulings;
+  for (Ruling& r : rulings) r.n = {1, 0, 0};
+  unite_edge_places(geometry, graph, 1e-8, 1e-7, 1e-4, everywhere);
+  EXPECT_EQ(rulings.back().contact[0].u, turn);
+  // Where heights are not known to so little it may be.
+  unite_edge_places(geometry, graph, 1e-7, 1e-7, 1e-4, everywhere);
+  EXPECT_EQ(rulings.back().contact[0].u, 1);
 }
 
 /// The end of a facet's curved side is one with a place farther away, but not if it has one where
@@ -79,7 +97,7 @@ TEST(EdgePlaces, EndsOfCurvedSidesReachFarOnlyWhereTheyAreAlone) {
     FacetNode facet;
     facet.sides = {EdgeStretch{0, 0, side_end, 0.8}};
     graph.nodes.push_back(facet);
-    unite_edge_places(geometry, graph, 1e-7, 1e-4, everywhere);
+    unite_edge_places(geometry, graph, 1e-8, 1e-7, 1e-4, everywhere);
     return graph;
   };
   const auto begin = [](const SeparatingGraph& graph, std::size_t arc) {
@@ -104,7 +122,7 @@ TEST(EdgePlaces, CurvedSidesDoNotEndWhereTheyGoOn) {
     facet.sides = {EdgeStretch{0, 0, 0.1, 1},
                    EdgeStretch{0, first.end_neighbor[1], side_begin, 0.9}};
     graph.nodes.push_back(facet);
-    unite_edge_places(geometry, graph, 1e-7, 1e-4, everywhere);
+    unite_edge_places(geometry, graph, 1e-8, 1e-7, 1e-4, everywhere);
     return graph.arcs.front().pieces.front().rulings.back().contact[0].u;
   };
   EXPECT_EQ(united(0), 1 - 1e-5);
@@ -137,7 +155,8 @@ TEST(EdgePlaces, BesideBentWallsAreOnTheirEdgesWhereThesePatchesTouch) {
         const Ruling r{{0, 0, 1}, {c, c}, {geometry.point(c), geometry.point(c)}};
         arc.pieces.push_back({{r, r}});
         graph.arcs.push_back(arc);
-        unite_edge_places(geometry, graph, 1e-9, 1e-2, [&](const Contact&) { return touches; });
+        unite_edge_places(geometry, graph, 1e-4, 1e-9, 1e-2,
+                          [&](const Contact&) { return touches; });
         const Contact& there = graph.arcs.front().pieces.front().rulings.front().contact[0];
         const double at = along_v(side) ? there.u : there.v;
         EXPECT_EQ(at, touches ? std::round(beside) : beside);

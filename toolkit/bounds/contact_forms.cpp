@@ -52,8 +52,12 @@ Contact moved_to_border(const ContactGeometry& geometry, Contact c, double dista
   // Along a pole all parameters are one point, and the contact's tells from where it came.
   const std::optional<Side> pole = pole_side(geometry, c);
   const auto snap = [&](double& t, const dvec3& dx) {
-    const double nearest = std::round(std::clamp(t, 0.0, 1.0));
-    if (std::abs(t - nearest) * glm::length(dx) <= distance) t = nearest;
+    const double own = t, nearest = std::round(std::clamp(t, 0.0, 1.0));
+    if (own == nearest || std::abs(own - nearest) * glm::length(dx) > distance) return;
+    const dvec3 before = geometry.point(c);
+    t = nearest;
+    // Where speeds grow from nearly nothing the border is farther than they tell.
+    if (glm::distance(before, geometry.point(c)) > distance) t = own;
   };
   if (j.dimension == 2 && !(pole && along_v(*pole))) snap(c.v, j.dx[1]);
   if (j.dimension >= 1 && !(pole && !along_v(*pole))) snap(c.u, j.dx[0]);

@@ -21,8 +21,9 @@ constexpr double near_face = 1e-7;
 /// twice.
 constexpr double long_ruling = 1e-2;
 
-/// Which of a scroll's long rulings are looked at where no face is told: it may lie on two faces,
-/// one after the other; and where on a ruling it is looked whether it lies on a face.
+/// Which of a scroll's long rulings are looked at where no face is told, as shares of the way that
+/// their ends go: it may lie on two faces, one after the other; and where on a ruling it is looked
+/// whether it lies on a face.
 constexpr std::array<double, 5> quarters = {0.1, 0.25, 0.5, 0.75, 0.9};
 constexpr std::array<double, 5> along_ruling = {0, 0.25, 0.5, 0.75, 1};
 
@@ -153,9 +154,14 @@ bool LabelCheck::runs_along(int source, const Face& scroll) const {
                  return glm::distance(r.a.p, r.b.p) > long_ruling * hull_.diagonal;
                });
   if (rulings.empty()) return false;
+  std::vector<double> way = {0};  // from the first one on
+  for (std::size_t k = 1; k < rulings.size(); ++k) {
+    way.push_back(way.back() + glm::distance(rulings[k - 1].a.p, rulings[k].a.p) +
+                  glm::distance(rulings[k - 1].b.p, rulings[k].b.p));
+  }
   return std::all_of(quarters.begin(), quarters.end(), [&](double s) {
-    const auto last = double(rulings.size() - 1);
-    return on_face(ruled_geometry_, source, rulings[static_cast<std::size_t>(s * last)],
+    const auto next = std::lower_bound(way.begin(), way.end(), s * way.back());
+    return on_face(ruled_geometry_, source, rulings[std::size_t(next - way.begin())],
                    geometry_.noise() * hull_.diagonal);
   });
 }

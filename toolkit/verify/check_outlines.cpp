@@ -250,7 +250,11 @@ void OutlineCheck::check_sides(std::size_t f, std::size_t k) {
     if (other >= 0) add_borders_of(other, others);
   }
   const NearestPoint curves(points_of(scroll.curves[k]));
-  for (const dvec3& p : contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const HullDocument::Ruling& r = scroll.rulings[i];
+    // That a contact is on its source is checked as well.
+    if (edges.count(k == 0 ? r.a.source : r.b.source) > 0) continue;
+    const dvec3& p = contacts[i];
     double off = distance(p, curves, others);
     for (const int edge : edges) {
       if (off > listed_) off = std::min(off, distance_to_edge(edge, p));

@@ -47,7 +47,7 @@ ClosestOnCurve closest_on_curve(const dvec3& p, double from, double to, const Je
     return own;
   };
   ClosestOnCurve best;
-  for (const int parts : {16, 64}) {
+  for (const int parts : {16, 64, 1024}) {
     std::vector<ClosestOnCurve> sample;
     double apart = 0;  // neighbours, at most
     dvec3 last(0.0);

@@ -307,7 +307,11 @@ void HullVerifier::check_faces() {
               measures->area);
     raise(result_.measures_error, measures->error());
     raise(result_.vector_area_error, measures->vector_area_error);
-    if (!(measures->volume > 0)) faults_.add("measures", "the faces enclose nothing");
+    // What is flat to within the resolution may enclose no more than that over its area.
+    const bool is_flat = std::abs(measures->volume) < resolution_ * measures->area;
+    if (!(measures->volume > 0) && !is_flat) {
+      faults_.add("measures", "the faces enclose nothing");
+    }
     const Coverage coverage(geometry_, outlines, scene_, promised_length());
     raise(result_.patch_outside,
           check_patches(geometry_, outlines, coverage, scene_, resolution_, options_, faults_));

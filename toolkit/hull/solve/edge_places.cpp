@@ -18,8 +18,8 @@ namespace {
 /// Parameters of the places on all edges and seams.
 class EdgePlaces {
  public:
-  EdgePlaces(const ContactGeometry& geometry, double distance, double level_distance)
-      : geometry_(geometry), distance_(distance), level_distance_(level_distance) {}
+  EdgePlaces(const ContactGeometry& geometry, double depth, double distance, double level_distance)
+      : geometry_(geometry), depth_(depth), distance_(distance), level_distance_(level_distance) {}
 
   void add(const Contact& c) {
     for_each_line(c, [&](const Line& line, double t) {
@@ -76,7 +76,8 @@ class EdgePlaces {
         auto last = std::next(first);
         for (auto before = first; last != places.end(); before = last++) {
           const bool wide = is_bent || is_alone(before->first) || is_alone(last->first);
-          const double reach = wide ? level_distance_ : distance_;
+          const bool is_flat = bend(line, before->first, last->first) <= depth_;
+          const double reach = !is_flat ? depth_ : wide ? level_distance_ : distance_;
           if ((last->first - before->first) * speed > reach) break;
         }
         const auto exact =
@@ -163,14 +164,31 @@ class EdgePlaces {
   /// Parameters t of a join differ so much by being told as 1 - (1 - t).
   static constexpr double same_parameter = std::numeric_limits<double>::epsilon();
 
-  double length(const Line& line) const {
+  Contact at(const Line& line, double t) const {
     const auto& [instance, piece, patch, side] = line;
+    return piece >= 0 ? Contact{instance, SourceKind::edge, piece, t, 0}
+                      : on_side(instance, patch, Side(side), t);
+  }
+
+  /// How far one of two places is from the tangent in the other, or all of the way, if the line
+  /// turns back.
+  double bend(const Line& line, double a, double b) const {
+    const auto& [instance, piece, patch, side] = line;
+    const std::size_t along = piece < 0 && along_v(Side(side)) ? 1 : 0;
+    const ContactJet from = geometry_.jet(at(line, a)), to = geometry_.jet(at(line, b));
+    const dvec3 way = to.x - from.x;
+    if (glm::dot(from.dx[along], to.dx[along]) < 0) return glm::length(way);
+    const auto off = [&](const ContactJet& j) {
+      return glm::length(glm::cross(way, unit(j.dx[along])));
+    };
+    return std::max(off(from), off(to));
+  }
+
+  double length(const Line& line) const {
     double sum = 0;
     dvec3 before(0.0);
     for (int k = 0; k <= chords; ++k) {
-      const double t = double(k) / chords;
-      const dvec3 x = geometry_.point(piece >= 0 ? Contact{instance, SourceKind::edge, piece, t, 0}
-                                                 : on_side(instance, patch, Side(side), t));
+      const dvec3 x = geometry_.point(at(line, double(k) / chords));
       if (k > 0) sum += glm::distance(x, before);
       before = x;
     }
@@ -179,6 +197,7 @@ class EdgePlaces {
   static constexpr int chords = 8;
 
   const ContactGeometry& geometry_;
+  double depth_;
   double distance_;
   double level_distance_;
   std::map<Line, std::set<double>> level_;           // ends of curved sides
@@ -191,22 +210,34 @@ void for_each_end(SeparatingGraph& graph, Visit visit) {
   for (SeparatingArc& arc : graph.arcs) {
     for (ArcPiece& piece : arc.pieces) {
       for (Ruling* r : {&piece.rulings.front(), &piece.rulings.back()}) {
-        for (std::size_t i = 0; i < 2; ++i) visit(r->contact[i], r->point[i]);
+        for (std::size_t i = 0; i < 2; ++i) visit(r->contact[i], r->point[i], r->n);
       }
     }
   }
   for (FacetNode& node : graph.nodes) {
-    for (std::size_t k = 0; k < node.contacts.size(); ++k) visit(node.contacts[k], node.points[k]);
+    for (std::size_t k = 0; k < node.contacts.size(); ++k)
+      visit(node.contacts[k], node.points[k], node.n);
   }
+}
+
+/// From a contact with the plane across n to another place of its element heights do not change, to
+/// within the depth, and if it is an edge's that does not turn back.
+bool is_straight_on(const ContactGeometry& geometry, const Contact& c, const Contact& to,
+                    const dvec3& n, double depth) {
+  const ContactJet own = geometry.jet(c), other = geometry.jet(to);
+  const bool turns = own.dimension == 1 && glm::dot(own.dx[0], other.dx[0]) < 0;
+  return !turns && glm::dot(own.x - other.x, n) <= depth;
 }
 
 }  // namespace
 
-void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double distance,
-                       double level_distance, const std::function<bool(const Contact&)>& touches) {
-  EdgePlaces places(geometry, distance, std::max(distance, level_distance));
-  for_each_end(graph, [&](Contact& c, const dvec3&) {
-    const Contact own = moved_to_border(geometry, c, distance);
+void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, double depth,
+                       double distance, double level_distance,
+                       const std::function<bool(const Contact&)>& touches) {
+  EdgePlaces places(geometry, depth, distance, std::max(distance, level_distance));
+  for_each_end(graph, [&](Contact& c, const dvec3&, const dvec3& n) {
+    const Contact border = moved_to_border(geometry, c, distance);
+    const Contact own = is_straight_on(geometry, c, border, n, depth) ? border : c;
     c = own;
     const Contact bent = moved_to_bent(geometry, own, level_distance);
     if (parameters(bent) != parameters(own) && touches(bent)) {
@@ -217,7 +248,7 @@ void unite_edge_places(const ContactGeometry& geometry, SeparatingGraph& graph, 
   });
   for (const FacetNode& node : graph.nodes) places.add(node);
   places.unite();
-  for_each_end(graph, [&](Contact& c, dvec3& x) {
+  for_each_end(graph, [&](Contact& c, dvec3& x, const dvec3&) {
     places.settle(c);
     x = geometry.point(c);
   });

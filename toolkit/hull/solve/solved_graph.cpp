@@ -66,8 +66,8 @@ class GraphSolver {
     }
     drop_arcs();
     const double resolution = search_.place_resolution();
-    unite_edge_places(geometry_, graph_, place_depths * resolution, map_.contact_extent(),
-                      [&](const Contact& c) { return search_.touches(c); });
+    unite_edge_places(geometry_, graph_, resolution, place_depths * resolution,
+                      map_.contact_extent(), [&](const Contact& c) { return search_.touches(c); });
     const double extent = search_.place_extent();
     const double reach =
         std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);

@@ -8,7 +8,7 @@ namespace taut {
 
 /// Ends of curves of the hull nearer than this, in the scene's frame, are one point, and those that
 /// are nearer than the resolution.
-inline constexpr double same_curve_end = 1e-7;
+inline constexpr double same_curve_end = 1e-8;
 
 /// A contact of a piece of an arc and, where several curves lie along it, their order.
 struct ScrollContact {
