@@ -27,7 +27,7 @@ namespace {
 
 /// Depths, in units of the resolution, of corners below a plane that they do not lie in as yet.
 constexpr double first_corner_depths = 8;
-/// Places on edges that are one, in units of the resolution.
+/// Places on edges of rounded models that are one, in units of the resolution; of others one unit.
 constexpr double place_depths = 8;
 /// Pieces of rounded models that may be none, in units of the way from one ruling to the next.
 constexpr double piece_ways = 4;
@@ -66,9 +66,10 @@ class GraphSolver {
     }
     drop_arcs();
     const double resolution = search_.place_resolution();
-    unite_edge_places(geometry_, graph_, resolution, place_depths * resolution,
-                      map_.contact_extent(), [&](const Contact& c) { return search_.touches(c); });
     const double extent = search_.place_extent();
+    const double places = (extent > 0 ? place_depths : 1) * resolution;
+    unite_edge_places(geometry_, graph_, resolution, places, map_.contact_extent(),
+                      [&](const Contact& c) { return search_.touches(c); });
     const double reach =
         std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
     const double beside = std::max(extent, piece_ways * search_.least_way());
