@@ -634,6 +634,34 @@ TEST(SolvedHull, OfContactsInLineIsTheSameTurned) {
   }
 }
 
+/// Two pieces of a wing that is ruled between two profiles: one profile turns back within 1e-7 of
+/// its end, where speeds are next to nothing.
+TEST(SolvedHull, OfProfilesThatTurnBackAtTheirEnds) {
+  const std::vector<dvec3> tail = {{62.25102785299672, -82.05630820819383, 37.73411072066309},
+                                   {64.10871893308918, -82.44078995431194, 37.93698298135693},
+                                   {65.1320848212016, -82.65370816794676, 38.04302294908497},
+                                   {65.11822553372379, -82.65075128429595, 38.04196322925065},
+                                   {33.018852369693754, -243.05371274936897, 61.34782087705557},
+                                   {33.34425350610678, -243.11881733658095, 61.39486288833548},
+                                   {33.52354551924457, -243.15488555808426, 61.41977493707341},
+                                   {33.52111510092865, -243.1543837066495, 61.419503536261715}};
+  const std::vector<dvec3> nose = {{49.638696065711585, -79.45820387674536, 36.29397413483569},
+                                   {51.33744844658865, -79.80583812782086, 36.49976482371651},
+                                   {53.002259750722196, -80.14821228480702, 36.692796455817884},
+                                   {54.564708333124344, -80.46993559346373, 36.8719052877386},
+                                   {102.95429107183843, 73.4544412214288, -0.5941233213967758},
+                                   {103.25172823842061, 73.39562787938804, -0.5475516277160194},
+                                   {103.5432753178526, 73.33768209216737, -0.5034263823406976},
+                                   {103.8169088300951, 73.2832261140436, -0.4623743140296608}};
+  Shape wing;
+  for (const std::vector<dvec3>& points : {tail, nose}) {
+    NurbsSurface piece{1, 3, {0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}, {}};
+    for (const dvec3& p : points) piece.points.emplace_back(p, 1.0);
+    wing.surfaces.push_back(piece);
+  }
+  expect_counts(wing, {0, 10, 11});
+}
+
 /// The point is above a half ball's rim: the curve in which the cone from there touches the ball
 /// touches the rim.
 TEST(SolvedHull, OfCurvesThatTouchABorder) {

@@ -348,7 +348,7 @@ void drop_turns(std::vector<Ruling>& rulings, double extent) {
   }
 }
 
-void tell_corners(std::vector<ArcPiece>& pieces, double extent) {
+void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent) {
   for (ArcPiece& piece : pieces) {
     for (const std::size_t i : {0u, 1u}) {
       const Contact corner = piece.rulings.front().contact[i];
@@ -357,7 +357,7 @@ void tell_corners(std::vector<ArcPiece>& pieces, double extent) {
       const bool is_back =
           corner.kind == SourceKind::edge
               ? 0 < corner.u && corner.u < 1 &&
-                    glm::distance(end, piece.rulings.back().point[i]) <= longest_empty_piece
+                    glm::distance(end, piece.rulings.back().point[i]) <= place
               : corner.u == last.u && corner.v == last.v;
       const bool comes_back =
           corner.kind != SourceKind::vertex && same_element(corner, last) && is_back;

@@ -83,7 +83,7 @@ class GraphSolver {
     for (SeparatingArc& arc : graph_.arcs) {
       drop_empty_pieces(geometry_, arc.pieces, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
-      tell_corners(arc.pieces, moved);
+      tell_corners(arc.pieces, places, moved);
       turn_ends(system_, arc.pieces);
       tell_along_edges(geometry_, arc.pieces);
       tell_along_joins(geometry_, arc.pieces, extent);
