@@ -354,11 +354,10 @@ void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent) {
       const Contact corner = piece.rulings.front().contact[i];
       const dvec3 end = piece.rulings.front().point[i];
       const Contact& last = piece.rulings.back().contact[i];
-      const bool is_back =
-          corner.kind == SourceKind::edge
-              ? 0 < corner.u && corner.u < 1 &&
-                    glm::distance(end, piece.rulings.back().point[i]) <= place
-              : corner.u == last.u && corner.v == last.v;
+      const bool is_back = corner.kind == SourceKind::edge
+                               ? 0 < corner.u && corner.u < 1 &&
+                                     glm::distance(end, piece.rulings.back().point[i]) <= place
+                               : corner.u == last.u && corner.v == last.v;
       const bool comes_back =
           corner.kind != SourceKind::vertex && same_element(corner, last) && is_back;
       const bool stays =
