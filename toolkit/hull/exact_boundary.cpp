@@ -67,14 +67,16 @@ DirectionMap map_of(const ContactGeometry& geometry, double resolution, long can
 }
 
 /// Solved from the map, and stitched. What is not exact is known to `rho`: that of the model, from
-/// which those of maps may differ.
+/// which those of maps may differ. Places on edges that are as near to each other as so many units
+/// of the map's resolution are one.
 HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions, double rho,
-                    const HullOptions& options, HullStatistics& statistics) {
+                    double place_depths, const HullOptions& options, HullStatistics& statistics) {
   Stopwatch watch;
   options.progress.update("trace", 0);
   SupportQuery uncovered(geometry.scene(), options.progress.stop);
   uncovered.leave_out(directions.covered);
-  SeparatingGraph graph = solved_graph(geometry, uncovered, directions, options.progress);
+  SeparatingGraph graph =
+      solved_graph(geometry, uncovered, directions, options.progress, place_depths);
   statistics.support_queries += uncovered.queries();
   statistics.newton_iterations += graph.newton_iterations + uncovered.newton_iterations();
   statistics.seconds_trace += watch.lap();
@@ -91,6 +93,17 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();
   return boundary;
+}
+
+/// Exact models have their places where they are; of others, and where faces do not close up so,
+/// rounding may have moved them.
+HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions, double rho,
+                    const HullOptions& options, HullStatistics& statistics) {
+  if (!is_rounded(geometry.scene(), directions.resolution)) {
+    HullBoundary exact = solved(geometry, directions, rho, 1, options, statistics);
+    if (exact.unresolved.empty()) return exact;
+  }
+  return solved(geometry, directions, rho, most_place_depths, options, statistics);
 }
 
 /// It is closed, and nothing is below the supporting planes by more than the resolution.

@@ -21,8 +21,8 @@ constexpr double near_face = 1e-7;
 /// twice.
 constexpr double long_ruling = 1e-2;
 
-/// Which of a scroll's long rulings are looked at where no face is told, as shares of the way that
-/// their ends go: it may lie on two faces, one after the other; and where on a ruling it is looked
+/// Beside which shares of the way that their ends go a scroll's long rulings are looked at where no
+/// face is told: it may lie on two faces, one after the other; and where on a ruling it is looked
 /// whether it lies on a face.
 constexpr std::array<double, 5> quarters = {0.1, 0.25, 0.5, 0.75, 0.9};
 constexpr std::array<double, 5> along_ruling = {0, 0.25, 0.5, 0.75, 1};
@@ -159,10 +159,13 @@ bool LabelCheck::runs_along(int source, const Face& scroll) const {
     way.push_back(way.back() + glm::distance(rulings[k - 1].a.p, rulings[k].a.p) +
                   glm::distance(rulings[k - 1].b.p, rulings[k].b.p));
   }
+  const auto lies_on = [&](std::size_t k) {
+    return on_face(ruled_geometry_, source, rulings[k], geometry_.noise() * hull_.diagonal);
+  };
   return std::all_of(quarters.begin(), quarters.end(), [&](double s) {
     const auto next = std::lower_bound(way.begin(), way.end(), s * way.back());
-    return on_face(ruled_geometry_, source, rulings[std::size_t(next - way.begin())],
-                   geometry_.noise() * hull_.diagonal);
+    const auto k = std::size_t(next - way.begin());
+    return lies_on(k) && (k == 0 || lies_on(k - 1));
   });
 }
 

@@ -27,8 +27,8 @@ namespace {
 
 /// Depths, in units of the resolution, of corners below a plane that they do not lie in as yet.
 constexpr double first_corner_depths = 8;
-/// Places on edges of rounded models that are one, in units of the resolution; of others one unit.
-constexpr double place_depths = 8;
+/// Units of the resolution up to which pieces of arcs may be none.
+constexpr double empty_depths = 8;
 /// Pieces of rounded models that may be none, in units of the way from one ruling to the next.
 constexpr double piece_ways = 4;
 
@@ -45,12 +45,13 @@ constexpr double exact_slope = 1e-8;
 class GraphSolver {
  public:
   GraphSolver(const ContactGeometry& geometry, SupportQuery& query, const DirectionMap& map,
-              const Progress& progress)
+              double place_depths, const Progress& progress)
       : geometry_(geometry),
         query_(query),
         map_(map),
         system_(geometry),
         search_(system_, query, map),
+        place_depths_(place_depths),
         progress_(progress),
         known_(with_ears_cut(search_, progress)),
         most_divisions_(divisions_limit + divisions_limit_each * int(known_count())) {}
@@ -67,11 +68,11 @@ class GraphSolver {
     drop_arcs();
     const double resolution = search_.place_resolution();
     const double extent = search_.place_extent();
-    const double places = (extent > 0 ? place_depths : 1) * resolution;
+    const double places = place_depths_ * resolution;
     unite_edge_places(geometry_, graph_, resolution, places, map_.contact_extent(),
                       [&](const Contact& c) { return search_.touches(c); });
     const double reach =
-        std::max(place_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
+        std::max(empty_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
     const double beside = std::max(extent, piece_ways * search_.least_way());
     // So far contacts have moved to edges beside which ruled patches are bent.
     const double moved = geometry_.bent() > 0 ? map_.contact_extent() : extent;
@@ -494,6 +495,7 @@ class GraphSolver {
   const DirectionMap& map_;
   ContactSystem system_;
   RulingSearch search_;
+  const double place_depths_;
   const Progress& progress_;
   KnownArcs known_;
   const int most_divisions_;
@@ -505,8 +507,9 @@ class GraphSolver {
 }  // namespace
 
 SeparatingGraph solved_graph(const ContactGeometry& geometry, SupportQuery& query,
-                             const DirectionMap& map, const Progress& progress) {
-  return GraphSolver(geometry, query, map, progress).run();
+                             const DirectionMap& map, const Progress& progress,
+                             double place_depths) {
+  return GraphSolver(geometry, query, map, place_depths, progress).run();
 }
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -158,15 +159,27 @@ int source_along(const ContactSystem& system, const ArcPiece& piece) {
   return all ? source : -1;
 }
 
-/// It is one ruling for all that labels tell: its contacts go no farther than they are known on a
-/// surface that curves as the scene is large.
-bool is_short(const ArcPiece& piece) {
-  const double known = std::max(same_ruling, std::sqrt(2 * piece.tolerant));
+/// It is one ruling, to within a distance.
+bool is_short(const ArcPiece& piece, double distance) {
   const Ruling& first = piece.rulings.front();
   return std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
-    return glm::distance(r.point[0], first.point[0]) <= known &&
-           glm::distance(r.point[1], first.point[1]) <= known;
+    return glm::distance(r.point[0], first.point[0]) <= distance &&
+           glm::distance(r.point[1], first.point[1]) <= distance;
   });
+}
+
+/// The face on which a scroll lies, from its pieces that are not short: `known` tells how far their
+/// contacts may go and be one. None if all are.
+std::optional<int> source_of_scroll(const ContactSystem& system,
+                                    const std::vector<const ArcPiece*>& pieces,
+                                    const std::function<double(const ArcPiece&)>& known) {
+  std::optional<int> own;
+  for (const ArcPiece* piece : pieces) {
+    if (is_short(*piece, known(*piece))) continue;
+    const int source = source_along(system, *piece);
+    own = !own || source == *own ? source : -1;
+  }
+  return own;
 }
 
 }  // namespace
@@ -176,14 +189,16 @@ void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) 
   const ContactSystem system(geometry);
   for (HullFace& face : boundary.faces) {
     if (face.kind != FaceKind::scroll) continue;
-    const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
-    std::optional<int> own;
+    const std::vector<ArcPiece>& all = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
+    std::vector<const ArcPiece*> pieces;
     for (int k = 0; k < face.scroll.count; ++k) {
-      const ArcPiece& piece = pieces[std::size_t(face.scroll.first + k) % pieces.size()];
-      if (is_short(piece)) continue;
-      const int source = source_along(system, piece);
-      own = !own || source == *own ? source : -1;
+      pieces.push_back(&all[std::size_t(face.scroll.first + k) % all.size()]);
     }
+    // On a surface that curves as the scene is large.
+    std::optional<int> own = source_of_scroll(system, pieces, [](const ArcPiece& piece) {
+      return std::max(same_ruling, std::sqrt(2 * piece.tolerant));
+    });
+    if (!own) own = source_of_scroll(system, pieces, [](const ArcPiece&) { return same_ruling; });
     face.source = own.value_or(-1);
   }
 }
