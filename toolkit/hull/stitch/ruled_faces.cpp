@@ -191,6 +191,7 @@ void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) 
     if (face.kind != FaceKind::scroll) continue;
     const std::vector<ArcPiece>& all = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
     std::vector<const ArcPiece*> pieces;
+    pieces.reserve(std::size_t(face.scroll.count));
     for (int k = 0; k < face.scroll.count; ++k) {
       pieces.push_back(&all[std::size_t(face.scroll.first + k) % all.size()]);
     }
