@@ -355,7 +355,7 @@ TEST(ExactBoundary, CountsAllQueries) {
   exact_boundary(geometry, directions, options(), statistics);
   SupportQuery query(scene);
   SeparatingGraph graph = solved_graph(geometry, query, directions, {});
-  HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
+  HullBoundary boundary = stitch(geometry, query, std::move(graph));
   find_tolerant_places(ContactSystem(geometry), query, boundary, directions.resolution);
   EXPECT_EQ(statistics.support_queries, query.queries());
 }

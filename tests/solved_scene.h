@@ -27,7 +27,7 @@ struct SolvedScene {
     graph = solved_graph(geometry, query, map, {});
     unresolved = graph.unresolved;
     regions = trim_regions(geometry, graph, unresolved);
-    add_whole_patches(geometry, query, graph, map.resolution, regions, unresolved);
+    add_whole_patches(geometry, query, graph, regions, unresolved);
   }
 };
 

@@ -28,7 +28,7 @@ struct Stitched {
     HullStatistics statistics;
     const DirectionMap map = directions_of(geometry, {}, statistics);
     boundary = std::make_shared<const HullBoundary>(
-        stitch(geometry, query, solved_graph(geometry, query, map, {}), map.resolution));
+        stitch(geometry, query, solved_graph(geometry, query, map, {})));
   }
 
   /// Patches, scrolls, facets; bitangents, edges, joins, rulings.

@@ -17,7 +17,7 @@ std::vector<TrimRegion> whole(const Shape& shape, std::vector<Unresolved>& unres
   const ContactGeometry geometry(scene);
   SupportQuery query(scene);
   std::vector<TrimRegion> regions;
-  add_whole_patches(geometry, query, {}, 0, regions, unresolved);
+  add_whole_patches(geometry, query, {}, regions, unresolved);
   return regions;
 }
 
@@ -75,7 +75,8 @@ TEST(WholePatches, AreNotThoseInFacets) {
     std::vector<TrimRegion> regions;
     std::vector<Unresolved> unresolved;
     const double depth = scene.frame().length_to_frame(2e-8);
-    add_whole_patches(geometry, query, graph, depth, regions, unresolved);
+    graph.depth = depth;
+    add_whole_patches(geometry, query, graph, regions, unresolved);
     EXPECT_TRUE(regions.empty()) << sag;
     EXPECT_TRUE(unresolved.empty()) << sag;
   }

@@ -69,8 +69,9 @@ DirectionMap map_of(const ContactGeometry& geometry, double resolution, long can
 /// Solved from the map, and stitched. What is not exact is known to `rho`: that of the model, from
 /// which those of maps may differ. Places on edges that are as near to each other as so many units
 /// of the map's resolution are one.
-HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions, double rho,
-                    double place_depths, const HullOptions& options, HullStatistics& statistics) {
+HullBoundary solved_with(double place_depths, const ContactGeometry& geometry,
+                         const DirectionMap& directions, double rho, const HullOptions& options,
+                         HullStatistics& statistics) {
   Stopwatch watch;
   options.progress.update("trace", 0);
   SupportQuery uncovered(geometry.scene(), options.progress.stop);
@@ -82,7 +83,7 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
   statistics.seconds_trace += watch.lap();
   options.progress.update("stitch", 0);
   SupportQuery query(geometry.scene(), options.progress.stop);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph), directions.resolution);
+  HullBoundary boundary = stitch(geometry, query, std::move(graph));
   boundary.gap = directions.resolution;
   // What is not closed is not known to anything.
   if (boundary.unresolved.empty()) {
@@ -100,10 +101,10 @@ HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directi
 HullBoundary solved(const ContactGeometry& geometry, const DirectionMap& directions, double rho,
                     const HullOptions& options, HullStatistics& statistics) {
   if (!is_rounded(geometry.scene(), directions.resolution)) {
-    HullBoundary exact = solved(geometry, directions, rho, 1, options, statistics);
+    HullBoundary exact = solved_with(1, geometry, directions, rho, options, statistics);
     if (exact.unresolved.empty()) return exact;
   }
-  return solved(geometry, directions, rho, most_place_depths, options, statistics);
+  return solved_with(most_place_depths, geometry, directions, rho, options, statistics);
 }
 
 /// It is closed, and nothing is below the supporting planes by more than the resolution.

@@ -76,9 +76,9 @@ class EdgePlaces {
         auto last = std::next(first);
         for (auto before = first; last != places.end(); before = last++) {
           const bool wide = is_bent || is_alone(before->first) || is_alone(last->first);
-          const bool is_flat = bend(line, before->first, last->first) <= depth_;
-          const double reach = !is_flat ? depth_ : wide ? level_distance_ : distance_;
-          if ((last->first - before->first) * speed > reach) break;
+          const double gap = (last->first - before->first) * speed;
+          if (gap > (wide ? level_distance_ : distance_)) break;
+          if (gap > depth_ && bend(line, before->first, last->first) > depth_) break;
         }
         const auto exact =
             std::find_if(first, last, [&](const auto& p) { return !is_level(p.first); });

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -168,14 +167,15 @@ bool is_short(const ArcPiece& piece, double distance) {
   });
 }
 
-/// The face on which a scroll lies, from its pieces that are not short: `known` tells how far their
-/// contacts may go and be one. None if all are.
+/// The face on which a scroll lies, from its pieces that are not short; none if all are. Contacts
+/// that are known to so much only may be one where they go as far as that tells on a surface that
+/// curves as the scene is large.
 std::optional<int> source_of_scroll(const ContactSystem& system,
-                                    const std::vector<const ArcPiece*>& pieces,
-                                    const std::function<double(const ArcPiece&)>& known) {
+                                    const std::vector<const ArcPiece*>& pieces, bool as_known) {
   std::optional<int> own;
   for (const ArcPiece* piece : pieces) {
-    if (is_short(*piece, known(*piece))) continue;
+    const double known = as_known ? std::sqrt(2 * piece->tolerant) : 0;
+    if (is_short(*piece, std::max(same_ruling, known))) continue;
     const int source = source_along(system, *piece);
     own = !own || source == *own ? source : -1;
   }
@@ -195,11 +195,8 @@ void label_ruled_faces(const ContactGeometry& geometry, HullBoundary& boundary) 
     for (int k = 0; k < face.scroll.count; ++k) {
       pieces.push_back(&all[std::size_t(face.scroll.first + k) % all.size()]);
     }
-    // On a surface that curves as the scene is large.
-    std::optional<int> own = source_of_scroll(system, pieces, [](const ArcPiece& piece) {
-      return std::max(same_ruling, std::sqrt(2 * piece.tolerant));
-    });
-    if (!own) own = source_of_scroll(system, pieces, [](const ArcPiece&) { return same_ruling; });
+    std::optional<int> own = source_of_scroll(system, pieces, true);
+    if (!own) own = source_of_scroll(system, pieces, false);
     face.source = own.value_or(-1);
   }
 }

@@ -43,15 +43,13 @@ bool stands_still(const SeparatingArc& arc, double tie, double extent) {
 
 class Stitcher {
  public:
-  Stitcher(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
-           double depth)
+  Stitcher(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph)
       : geometry_(geometry),
         graph_(std::move(graph)),
         boundary_(begin(geometry, graph_)),
-        stretches_(geometry, graph_,
-                   regions_of(geometry, query, graph_, depth, boundary_.unresolved),
+        stretches_(geometry, graph_, regions_of(geometry, query, graph_, boundary_.unresolved),
                    boundary_.unresolved),
-        same_end_(std::max(same_curve_end, depth)) {}
+        same_end_(std::max(same_curve_end, graph_.depth)) {}
 
   HullBoundary run();
 
@@ -64,10 +62,11 @@ class Stitcher {
   }
 
   static std::vector<TrimRegion> regions_of(const ContactGeometry& geometry, SupportQuery& query,
-                                            const SeparatingGraph& graph, double depth,
+                                            const SeparatingGraph& graph,
                                             std::vector<Unresolved>& unresolved) {
-    std::vector<TrimRegion> regions = trim_regions(geometry, graph, unresolved, std::sqrt(depth));
-    add_whole_patches(geometry, query, graph, depth, regions, unresolved);
+    std::vector<TrimRegion> regions =
+        trim_regions(geometry, graph, unresolved, std::sqrt(graph.depth));
+    add_whole_patches(geometry, query, graph, regions, unresolved);
     return regions;
   }
 
@@ -585,9 +584,8 @@ HullBoundary Stitcher::run() {
 
 }  // namespace
 
-HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
-                    double depth) {
-  return Stitcher(geometry, query, std::move(graph), depth).run();
+HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph) {
+  return Stitcher(geometry, query, std::move(graph)).run();
 }
 
 }  // namespace taut

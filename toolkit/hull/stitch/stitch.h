@@ -11,8 +11,7 @@ namespace taut {
 /// scrolls and facets with the curves between them. What does not fit is told in
 /// HullBoundary::unresolved, after what the graph has there; a boundary without any is closed:
 /// every curve has two faces, and its Euler characteristic is that of the sphere. What lies below
-/// supporting planes by no more than `depth` and rounding may be on the hull.
-HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
-                    double depth = 0);
+/// supporting planes by no more than the graph's depth and rounding may be on the hull.
+HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph);
 
 }  // namespace taut

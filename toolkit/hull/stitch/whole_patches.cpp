@@ -17,11 +17,11 @@ constexpr double flat_curvature = 1e-10;
 class WholePatches {
  public:
   WholePatches(const ContactGeometry& geometry, SupportQuery& query, const SeparatingGraph& graph,
-               double depth, std::vector<TrimRegion>& regions, std::vector<Unresolved>& unresolved)
+               std::vector<TrimRegion>& regions, std::vector<Unresolved>& unresolved)
       : geometry_(geometry),
         query_(query),
         graph_(graph),
-        depth_(depth),
+        depth_(graph.depth),
         regions_(regions),
         unresolved_(unresolved) {
     for (const TrimRegion& r : regions) known_.emplace(r.instance, r.patch, r.sign);
@@ -233,9 +233,9 @@ class WholePatches {
 }  // namespace
 
 void add_whole_patches(const ContactGeometry& geometry, SupportQuery& query,
-                       const SeparatingGraph& graph, double depth, std::vector<TrimRegion>& regions,
+                       const SeparatingGraph& graph, std::vector<TrimRegion>& regions,
                        std::vector<Unresolved>& unresolved) {
-  WholePatches(geometry, query, graph, depth, regions, unresolved).run();
+  WholePatches(geometry, query, graph, regions, unresolved).run();
 }
 
 }  // namespace taut
