@@ -7,8 +7,10 @@
 namespace taut {
 
 /// Ends of curves of the hull nearer than this, in the scene's frame, are one point, and those that
-/// are nearer than the resolution.
+/// are nearer than the resolution; of rounded models, of which finer maps than that may be solved,
+/// those that rounding makes miss each other.
 inline constexpr double same_curve_end = 1e-8;
+inline constexpr double rounded_curve_end = 1e-7;
 
 /// A contact of a piece of an arc and, where several curves lie along it, their order.
 struct ScrollContact {

@@ -49,7 +49,8 @@ class Stitcher {
         boundary_(begin(geometry, graph_)),
         stretches_(geometry, graph_, regions_of(geometry, query, graph_, boundary_.unresolved),
                    boundary_.unresolved),
-        same_end_(std::max(same_curve_end, graph_.depth)) {}
+        rounded_(is_rounded(geometry.scene(), graph_.depth)),
+        same_end_(std::max(rounded_ ? rounded_curve_end : same_curve_end, graph_.depth)) {}
 
   HullBoundary run();
 
@@ -112,8 +113,9 @@ class Stitcher {
   std::vector<std::size_t> place_of_region_;  // among those of its face
   std::vector<std::vector<int>> scroll_of_;   // per arc and piece; -1 of creases
   std::vector<int> facet_of_;                 // per node
-  double same_end_;                           // of curves
-  std::vector<dvec3> corners_;                // in which curves end
+  bool rounded_;
+  double same_end_;             // of curves
+  std::vector<dvec3> corners_;  // in which curves end
   /// By arc, piece and contact: the curves along it, with their order.
   std::map<std::tuple<int, int, int>, std::vector<std::pair<double, int>>> along_scroll_;
 };
@@ -149,9 +151,8 @@ void Stitcher::make_patches() {
 
 /// Scrolls: runs of pieces of an arc that are no creases.
 void Stitcher::make_scrolls() {
-  const bool rounded = is_rounded(geometry_.scene(), graph_.depth);
-  const double tie = rounded ? graph_.depth : geometry_.tie();
-  const double extent = rounded ? std::sqrt(graph_.depth) : same_curve_end;
+  const double tie = rounded_ ? graph_.depth : geometry_.tie();
+  const double extent = rounded_ ? std::sqrt(graph_.depth) : same_curve_end;
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
     const int count = int(arc.pieces.size());
