@@ -12,6 +12,7 @@
 #include "taut/hull/contact/joined_elements.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/solve/arc_pieces.h"
+#include "taut/hull/solve/contact_way.h"
 #include "taut/hull/solve/merged_ends.h"
 #include "taut/hull/solve/pole_passage.h"
 
@@ -22,18 +23,14 @@ namespace {
 constexpr int division_limit = 40;
 /// Divisions of one way, after which its parts are taken as they are.
 constexpr int most_divisions = 100;
-/// Elements that a contact passes on one way, or passes by, at most. They may be much smaller than
-/// ways that are not divided, but those that lead so many times farther off are not passed.
-constexpr int most_passed = 256;
-constexpr double astray = 2;
+/// How many times longer than a straight way one through a dent may be.
+constexpr double longest_detour = 2;
 /// Share of the way between two rulings by which the one in the middle may be off theirs.
 constexpr double middle_share = 0.05;
 /// Largest turn between neighbours, in radians.
 constexpr double largest_turn = 0.4;
 /// Parts of the way between rulings between which none is found, at whose ends it is looked at.
 constexpr int places_on_the_way = 8;
-/// Steps of Newton's method to where a segment passes a side.
-constexpr int side_steps = 3;
 /// Shares of a way at which an interpolated ruling is compared with the exact one: midway between
 /// an end and the first exact ruling that the interpolation is made of (RulingsBetween).
 constexpr std::array<double, 2> beside_ends = {0.125, 0.875};
@@ -80,109 +77,6 @@ Ruling middle_of(const Ruling& a, const Ruling& b) {
   return r;
 }
 
-/// Where the segment from one point to another passes a side of a patch, nearly: of the side's
-/// points the nearest to the segment's line, from the contact on the side on.
-Contact passed_on_side(const ContactGeometry& geometry, Contact c, Side side, const dvec3& from,
-                       const dvec3& to) {
-  const dvec3 way = unit(to - from);
-  const auto off = [&](const dvec3& x) { return x - glm::dot(x, way) * way; };
-  double& t = along_v(side) ? c.v : c.u;
-  for (int k = 0; k < side_steps; ++k) {
-    const ContactJet j = geometry.jet(c);
-    const dvec3 rate = off(j.dx[along_v(side) ? 1 : 0]);
-    const double square = glm::dot(rate, rate);
-    if (!(square > 0)) break;
-    t = std::clamp(t - glm::dot(rate, off(j.x - from)) / square, 0.0, 1.0);
-  }
-  return c;
-}
-
-/// Ways over borders from one element to another: always on from the element that has come the
-/// nearest, over borders that are no farther than some depth below the two along n, or else are the
-/// highest.
-class WaySearch {
- public:
-  WaySearch(const ContactGeometry& geometry, const Contact& from, const Contact& to, const dvec3& n,
-            double depth)
-      : geometry_(geometry),
-        to_(to),
-        aim_(geometry.point(to)),
-        n_(n),
-        least_(std::min(glm::dot(geometry.point(from), n), glm::dot(aim_, n)) - depth),
-        ways_({{from, -1, from, glm::distance(geometry.point(from), aim_)}}) {}
-
-  /// Borders that are passed, in each the contact as one of the element before and one of that
-  /// beyond. None if there are more than some elements between the two.
-  std::vector<std::array<Contact, 2>> run() {
-    for (int at = 0; at >= 0 && int(ways_.size()) < most_passed; at = nearest()) {
-      way(at).done = true;
-      if (same_element(way(at).at, to_)) return steps_to(at);
-      for (const ContactExit& exit : exits(geometry_, way(at).at)) go_on(at, exit);
-    }
-    return {};
-  }
-
- private:
-  struct Way {
-    Contact at;
-    int before = -1;
-    Contact border;     ///< of the element before
-    double left = 0;    ///< from where it goes
-    double low = 0;     ///< how far below the depth a border was on the way, at most
-    bool done = false;  ///< it has been gone on from
-
-    bool comes_before(const Way& other) const {
-      return low != other.low ? low < other.low : left < other.left;
-    }
-  };
-  Way& way(int k) { return ways_[std::size_t(k)]; }
-
-  int nearest() {
-    int best = -1;
-    for (int k = 0; k < int(ways_.size()); ++k) {
-      if (!way(k).done && (best < 0 || way(k).comes_before(way(best)))) best = k;
-    }
-    return best;
-  }
-
-  void go_on(int from, const ContactExit& exit) {
-    const Way here = way(from);
-    Contact border = at_exit(here.at, exit);
-    if (exit.kind == ContactExit::Kind::side) {
-      border = passed_on_side(geometry_, border, Side(exit.index), geometry_.point(here.at), aim_);
-    }
-    const std::optional<Contact> over = beyond(geometry_, border, exit);
-    if (!over) return;
-    const dvec3 x = geometry_.point(*over);
-    const Way next = {*over, from, border, glm::distance(x, aim_),
-                      std::max(here.low, least_ - glm::dot(x, n_))};
-    const double reach = astray * ways_.front().left;
-    if (from > 0 && next.left > reach && !same_element(*over, to_)) return;
-    const auto known = std::find_if(ways_.begin(), ways_.end(),
-                                    [&](const Way& w) { return same_element(w.at, *over); });
-    if (known == ways_.end()) {
-      ways_.push_back(next);
-    } else if (!known->done && next.comes_before(*known)) {
-      *known = next;
-    }
-  }
-
-  std::vector<std::array<Contact, 2>> steps_to(int end) {
-    std::vector<std::array<Contact, 2>> steps;
-    for (int k = end; way(k).before >= 0; k = way(k).before) {
-      steps.push_back({way(k).border, way(k).at});
-    }
-    std::reverse(steps.begin(), steps.end());
-    return steps;
-  }
-
-  const ContactGeometry& geometry_;
-  const Contact& to_;
-  const dvec3 aim_, n_;
-  const double least_;
-  std::vector<Way> ways_;
-};
-
 bool are_vertices(const Ruling& r) {
   return r.contact[0].kind == SourceKind::vertex && r.contact[1].kind == SourceKind::vertex;
 }
@@ -213,7 +107,8 @@ void ArcSolver::go_on(const Ruling& to, int depth) {
   if (!same_elements(last(), to)) {
     const Ruling own = told_as_last(to);
     if (!same_elements(own, to)) return go_on(own, depth + 1);
-    if (stays(to, geometry_.tie()) || step_over(to) || stays(to, search_.map().resolution)) {
+    const double tie = geometry_.tie(), resolution = search_.map().resolution;
+    if (stays(to, tie) || step_over(to, tie) || stays(to, resolution)) {
       ++passed_;
       return go_on(to, depth);
     }
@@ -349,51 +244,66 @@ void ArcSolver::divide(const Ruling& to, int depth) {
   go_on(to, depth + 1);
 }
 
-/// The two are neighbours for all that is known.
+/// The two are neighbours for all that is known. Where contacts pass a dent that is no deeper than
+/// the resolution their planes touch the model on the way, though they do not support.
 void ArcSolver::jump(const Ruling& to) {
-  // Between the places on the way it may be deeper.
-  const double depth = std::max(depth_on_the_way(to), geometry_.tie());
+  while (!same_elements(last(), to) && passed_ <= most_passed &&
+         step_over(to, search_.map().resolution)) {
+    ++passed_;
+  }
+  if (same_elements(last(), to) && is_smooth(to)) return append(to);
+  const auto way = [&](std::size_t i) {
+    return ContactWay(geometry_, last().contact[i], to.contact[i], last().n,
+                      search_.map().resolution);
+  };
+  const ContactWays ways = {way(0), way(1)};
+  const double depth = std::max(depth_on_the_way(to, ways), geometry_.tie());
   const std::size_t first = pieces_.size() - 1;
-  leap(to);
+  leap(to, ways);
   for (std::size_t k = first; k < pieces_.size(); ++k) {
     pieces_[k].tolerant = std::max(pieces_[k].tolerant, depth);
   }
 }
 
-/// How far straight ways of the contacts are below supporting planes.
-double ArcSolver::depth_on_the_way(const Ruling& to) const {
+/// How far the contacts are below supporting planes on their ways: straight where these are not
+/// known.
+double ArcSolver::depth_on_the_way(const Ruling& to, const ContactWays& ways) const {
   const Ruling& from = last();
   double deepest = 0;
   for (int k = 1; k < places_on_the_way; ++k) {
     const double share = double(k) / places_on_the_way;
     Ruling r = from;
     r.n = unit(glm::mix(from.n, to.n, share));
-    for (std::size_t i = 0; i < 2; ++i) r.point[i] = glm::mix(from.point[i], to.point[i], share);
+    for (std::size_t i = 0; i < 2; ++i) {
+      r.contact[i] = ways[i].at(share);
+      r.point[i] = ways[i].is_known() ? geometry_.point(r.contact[i])
+                                      : glm::mix(from.point[i], to.point[i], share);
+    }
     deepest = std::max(deepest, search_.depth(r));
   }
   return deepest;
 }
 
-void ArcSolver::leap(const Ruling& to) {
+/// Both contacts go their ways, and n turns with them, over the borders between their elements.
+void ArcSolver::leap(const Ruling& to, const ContactWays& ways) {
   if (same_elements(last(), to)) return append(to);
-  // Each contact over the borders between its elements, as far as these have one: first the one
-  // that goes away from the other, lest it is passed.
-  const dvec3 apart = last().point[1] - last().point[0];
-  const std::size_t first = glm::dot(to.point[1] - last().point[1], apart) > 0 ? 1 : 0;
-  for (const std::size_t i : {first, 1 - first}) {
-    if (same_element(last().contact[i], to.contact[i])) continue;
-    WaySearch search(geometry_, last().contact[i], to.contact[i], last().n,
-                     search_.map().resolution);
-    for (const auto& [from, over] : search.run()) {
-      Ruling before = last();
-      before.contact[i] = from;
-      before.point[i] = geometry_.point(from);
-      append(before);
-      Ruling after = before;
-      after.contact[i] = over;
-      after.point[i] = geometry_.point(over);
-      pieces_.push_back({{after}});
-    }
+  const Ruling from = last();
+  std::array<std::size_t, 2> passed = {0, 0};
+  const auto share = [&](std::size_t i) { return ways[i].share(passed[i]); };
+  while (std::min(share(0), share(1)) <= 1) {
+    const std::size_t i = share(0) <= share(1) ? 0 : 1;
+    const double t = share(i);
+    Ruling before = to;
+    before.n = unit(glm::mix(from.n, to.n, t));
+    before.contact[i] = ways[i].borders()[passed[i]][0];
+    before.contact[1 - i] = ways[1 - i].at(t, passed[1 - i]);
+    for (const std::size_t k : {0u, 1u}) before.point[k] = geometry_.point(before.contact[k]);
+    append(before);
+    Ruling after = before;
+    after.contact[i] = ways[i].borders()[passed[i]][1];
+    after.point[i] = geometry_.point(after.contact[i]);
+    pieces_.push_back({{after}});
+    ++passed[i];
   }
   if (!same_elements(last(), to)) {
     pieces_.push_back({{to}});
@@ -402,14 +312,14 @@ void ArcSolver::leap(const Ruling& to) {
   }
 }
 
-/// Goes on to the first change of elements on the way.
-bool ArcSolver::step_over(const Ruling& to) {
+/// Goes on to the first change of elements on the way that is no deeper than so much.
+bool ArcSolver::step_over(const Ruling& to, double depth) {
   std::optional<Change> first;
   bool leads_there = false;
   for (std::size_t i = 0; i < 2; ++i) {
     if (same_element(last().contact[i], to.contact[i])) continue;
     for (const ContactExit& exit : exits(geometry_, last().contact[i])) {
-      const std::optional<Change> found = change(to, i, exit);
+      const std::optional<Change> found = change(to, i, exit, depth);
       if (!found) continue;
       const bool arrives = same_element(found->after.contact[i], to.contact[i]);
       if (first && (arrives == leads_there ? found->way >= first->way : leads_there)) continue;
@@ -474,7 +384,7 @@ bool ArcSolver::solve_change(CommonSupport& s, const Ruling& to, std::size_t i,
 }
 
 std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t i,
-                                                   const ContactExit& exit) const {
+                                                   const ContactExit& exit, double depth) const {
   CommonSupport s(geometry_, last());
   s.contact[i] = at_exit(s.contact[i], exit);
   s.evaluate(geometry_);
@@ -512,11 +422,11 @@ std::optional<ArcSolver::Change> ArcSolver::change(const Ruling& to, std::size_t
   const double whole = gap(last(), to);
   const double slack = beyond_ends + way_slack + search_.map().resolution / whole;
   if (!(found.way >= -slack && found.way <= 1 + slack)) return std::nullopt;
-  const double farthest = (1 + beyond_ends + way_slack) * whole + search_.map().resolution;
+  const double detour = depth > geometry_.tie() ? longest_detour : 1 + beyond_ends + way_slack;
+  const double farthest = detour * whole + search_.map().resolution;
   if (gap(last(), found.before) > farthest || gap(found.before, to) > farthest) return std::nullopt;
-  if (!next || (!arrives && !leaves(s, to, i, exit)) ||
-      search_.depth(found.before) > geometry_.tie())
-    return std::nullopt;
+  if (!next || (!arrives && !leaves(s, to, i, exit))) return std::nullopt;
+  if (search_.depth(found.before) > depth) return std::nullopt;
   found.after.contact[i] = *next;
   found.after.point[i] = geometry_.point(*next);
   return found;

@@ -8,6 +8,7 @@
 
 namespace taut {
 
+class ContactWay;
 class RulingsBetween;
 
 /// A separating curve as it becomes known, from ruling to ruling.
@@ -35,6 +36,8 @@ class ArcSolver {
     Ruling before, after;
     double way = 0;  ///< share of that to where it leads
   };
+  using ContactWays = std::array<ContactWay, 2>;
+
   const Ruling& last() const { return pieces_.back().rulings.back(); }
   void append(const Ruling& r) { pieces_.back().rulings.push_back(r); }
   void go_on(const Ruling& to, int depth);
@@ -45,16 +48,17 @@ class ArcSolver {
   bool is_interpolated(const RulingsBetween& between) const;
   bool passes_pole(const Ruling& to) const;
   bool is_well_told(const RulingsBetween& between) const;
-  bool step_over(const Ruling& to);
+  bool step_over(const Ruling& to, double depth);
   void divide(const Ruling& to, int depth);
   void jump(const Ruling& to);
-  void leap(const Ruling& to);
-  double depth_on_the_way(const Ruling& to) const;
+  void leap(const Ruling& to, const ContactWays& ways);
+  double depth_on_the_way(const Ruling& to, const ContactWays& ways) const;
   bool leaves(const CommonSupport& s, const Ruling& to, std::size_t i,
               const ContactExit& exit) const;
   bool solve_change(CommonSupport& s, const Ruling& to, std::size_t i,
                     const ContactExit& exit) const;
-  std::optional<Change> change(const Ruling& to, std::size_t i, const ContactExit& exit) const;
+  std::optional<Change> change(const Ruling& to, std::size_t i, const ContactExit& exit,
+                               double depth) const;
 
   const RulingSearch& search_;
   const ContactGeometry& geometry_;
