@@ -234,12 +234,12 @@ double shortest_piece(const ContactGeometry& geometry, const ArcPiece& piece) {
 
 }  // namespace
 
-void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces, double reach,
-                       double extent) {
+void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces, double place,
+                       double reach, double extent) {
   // At its ends, where heights tie over as much.
   const double tied =
       std::max({longest_empty_piece, std::sqrt(geometry.rounding()), reach, extent});
-  const double off = std::max(longest_empty_piece, reach);
+  const double off = std::max(longest_empty_piece, place);
   const auto is_empty = [&](std::size_t k) {
     const std::vector<Ruling>& rulings = pieces[k].rulings;
     const bool ends = k == 0 || k + 1 == pieces.size();

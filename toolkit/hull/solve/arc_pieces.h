@@ -15,9 +15,9 @@ inline constexpr double longest_empty_piece = 1e-7;
 /// Leaves out pieces without length, as they arise where a contact passes a corner between elements
 /// or the arc ends in it, or where two ways along a curve are joined: their neighbours meet there.
 /// `reach`: up to so long they may be none, and up to `extent` the first and the last, if that is
-/// more than rounding tells.
+/// more than rounding tells; but what ends on an edge is on the next one only up to `place` away.
 void drop_empty_pieces(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
-                       double reach = 0, double extent = 0);
+                       double place = 0, double reach = 0, double extent = 0);
 
 /// Leaves out rulings so near to the first or the last of a piece that they are the same place: of
 /// rounded surfaces rounding tells the way from one to the other.

@@ -82,7 +82,7 @@ class GraphSolver {
     }
     unite_facets(graph_, geometry_.tie());
     for (SeparatingArc& arc : graph_.arcs) {
-      drop_empty_pieces(geometry_, arc.pieces, reach, extent);
+      drop_empty_pieces(geometry_, arc.pieces, places, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       tell_corners(arc.pieces, places, moved);
       turn_ends(system_, arc.pieces);

@@ -26,10 +26,16 @@ bool vertices_only(const ArcPiece& piece) {
 
 /// From one facet to the next all rulings are one segment, which supports in all their normals to
 /// within `tie`: a crease, be its ends vertices or where edges go on smoothly into it. Where an
-/// edge is all but level contacts on it may be found beside that, no farther than `extent`.
+/// edge is all but level contacts on it may be found beside that on the way, no farther than
+/// `extent`.
 bool stands_still(const SeparatingArc& arc, double tie, double extent) {
   if (arc.facet[0] < 0 || arc.facet[1] < 0) return false;
   const Ruling& first = arc.pieces.front().rulings.front();
+  const Ruling& last = arc.pieces.back().rulings.back();
+  if (std::max(glm::distance(first.point[0], last.point[0]),
+               glm::distance(first.point[1], last.point[1])) > tie) {
+    return false;
+  }
   const auto is_there = [&](const Ruling& r, std::size_t i) {
     const dvec3 moved = r.point[i] - first.point[i];
     const double far = r.contact[i].kind == SourceKind::face ? tie : extent;
