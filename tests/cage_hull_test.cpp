@@ -552,6 +552,10 @@ TEST(CageHull, OfSheetsWithCornersAndBoundary) {
 TEST(CageHull, OfANonManifoldCage) {
   expect_whole("A17_osd_nonmanifold_edges.obj", 1e-9, Scheme::catmark);
 }
+/// Dents that are no deeper than the resolution lie between ridges of its mudguards.
+TEST(CageHull, OfACarWithCreases) {
+  expect_whole("A15_osd_car_creases_boundary.obj", 1e-9, std::nullopt);
+}
 /// Contacts run along planes of symmetry, which are joins of thousands of small patches.
 TEST(CageHull, OfSemiSharpLoopCages) {
   expect_whole("A18_osd_loop_icos_semisharp.obj", 1e-9, std::nullopt);
