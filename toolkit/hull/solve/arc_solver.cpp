@@ -162,6 +162,27 @@ bool ArcSolver::stays(const Ruling& to, double distance) {
   return true;
 }
 
+/// A contact that is no farther than so much from the border of its patch to that of the next
+/// ruling's is beyond it from here on.
+bool ArcSolver::is_beyond(const Ruling& to, double distance) {
+  Ruling before = last();
+  Ruling after = before;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Contact& own = last().contact[i];
+    if (own.kind != SourceKind::face || same_element(own, to.contact[i])) continue;
+    const Contact border = moved_to_border(geometry_, own, distance);
+    const auto over = expressed_in(geometry_, border, to.contact[i]);
+    if (!over || over->kind != SourceKind::face) continue;
+    before.contact[i] = border;
+    after.contact[i] = *over;
+    before.point[i] = after.point[i] = geometry_.point(border);
+  }
+  if (same_elements(after, last())) return false;
+  append(before);
+  pieces_.push_back({{after}});
+  return true;
+}
+
 /// The piece goes on smoothly to the ruling; tells how deep it is on the way.
 bool ArcSolver::is_smooth(const Ruling& to) {
   const double way = gap(last(), to);
@@ -247,8 +268,9 @@ void ArcSolver::divide(const Ruling& to, int depth) {
 /// The two are neighbours for all that is known. Where contacts pass a dent that is no deeper than
 /// the resolution their planes touch the model on the way, though they do not support.
 void ArcSolver::jump(const Ruling& to) {
+  const double resolution = search_.map().resolution;
   while (!same_elements(last(), to) && passed_ <= most_passed &&
-         step_over(to, search_.map().resolution)) {
+         (is_beyond(to, border_depths * resolution) || step_over(to, resolution))) {
     ++passed_;
   }
   if (same_elements(last(), to) && is_smooth(to)) return append(to);

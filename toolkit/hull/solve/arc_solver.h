@@ -43,6 +43,7 @@ class ArcSolver {
   void go_on(const Ruling& to, int depth);
   Ruling told_as_last(Ruling to) const;
   bool stays(const Ruling& to, double distance);
+  bool is_beyond(const Ruling& to, double distance);
   bool is_smooth(const Ruling& to);
   Ruling inside(Ruling r) const;
   bool is_interpolated(const RulingsBetween& between) const;

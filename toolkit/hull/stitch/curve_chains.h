@@ -24,10 +24,8 @@ struct CurveElement {
   int left = -1;
   int right = -1;
   int source = -1;
-  std::vector<dvec3> points;  ///< two or more
-  /// Numbers of the stretches (TrimStretches) along it: of the face to the left, and to the right.
-  int stretch_left = -1;
-  int stretch_right = -1;
+  std::vector<dvec3> points;   ///< two or more
+  std::vector<int> stretches;  ///< numbers of the stretches (TrimStretches) along it
   /// The scrolls' contacts along it.
   std::vector<ScrollContact> contacts;
 };

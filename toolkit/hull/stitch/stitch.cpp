@@ -33,7 +33,7 @@ bool stands_still(const SeparatingArc& arc, double tie, double extent) {
   const Ruling& first = arc.pieces.front().rulings.front();
   const Ruling& last = arc.pieces.back().rulings.back();
   if (std::max(glm::distance(first.point[0], last.point[0]),
-               glm::distance(first.point[1], last.point[1])) > tie) {
+               glm::distance(first.point[1], last.point[1])) > std::max(tie, same_curve_end)) {
     return false;
   }
   const auto is_there = [&](const Ruling& r, std::size_t i) {
@@ -80,7 +80,7 @@ class Stitcher {
   void make_patches();
   void make_scrolls();
   void make_facets();
-  void make_bitangents();
+  std::vector<CurveElement> bitangents() const;
   std::vector<int> patches_along(int arc, int contact) const;
   std::vector<dvec3> contact_points(int arc, int contact, const std::vector<int>& pieces) const;
   void make_joins();
@@ -250,8 +250,10 @@ std::vector<dvec3> Stitcher::contact_points(int arc, int contact,
   return points;
 }
 
-/// Where a contact of a scroll runs along a patch: maximal runs of pieces with the same two faces.
-void Stitcher::make_bitangents() {
+/// Where a contact of a scroll runs along a patch: runs of pieces with the same two faces, with the
+/// patch to the left.
+std::vector<CurveElement> Stitcher::bitangents() const {
+  std::vector<CurveElement> elements;
   for (int a = 0; a < int(graph_.arcs.size()); ++a) {
     const SeparatingArc& arc = graph_.arcs[std::size_t(a)];
     const int count = int(arc.pieces.size());
@@ -279,19 +281,22 @@ void Stitcher::make_bitangents() {
           pieces.push_back((start + k) % count);
           ++k;
         } while (k < count && run_on(pieces.back(), (start + k) % count));
-        std::vector<dvec3> points = contact_points(a, contact, pieces);
-        if (closed) points.back() = points.front();
-        // Walked along with the patch to the left.
-        if (contact == 0) std::reverse(points.begin(), points.end());
-        const int curve = add_curve(HullCurveKind::bitangent, patch[std::size_t(first)],
-                                    scroll_of(a, first), -1, std::move(points), closed);
+        CurveElement e;
+        e.left = patch[std::size_t(first)];
+        e.right = scroll_of(a, first);
+        e.points = contact_points(a, contact, pieces);
+        if (closed) e.points.back() = e.points.front();
+        if (contact == 0) std::reverse(e.points.begin(), e.points.end());
         for (const int piece : pieces) {
-          for (const int s : stretches_.along(a, piece, contact)) stretches_.set_curve(s, curve);
-          along_scroll_[{a, piece, contact}].emplace_back(0.0, curve);
+          const std::span<const int> along = stretches_.along(a, piece, contact);
+          e.stretches.insert(e.stretches.end(), along.begin(), along.end());
+          e.contacts.push_back({a, piece, contact});
         }
+        elements.push_back(std::move(e));
       }
     }
   }
+  return elements;
 }
 
 /// Chains elements, and adds the curves that they make.
@@ -301,9 +306,7 @@ void Stitcher::add_chains(HullCurveKind kind, const std::vector<CurveElement>& e
     const int curve =
         add_curve(kind, e.left, e.right, e.source, points_along(chain, elements), chain.closed);
     for (const std::size_t k : chain.elements) {
-      for (const int s : {elements[k].stretch_left, elements[k].stretch_right}) {
-        if (s >= 0) stretches_.set_curve(s, curve);
-      }
+      for (const int s : elements[k].stretches) stretches_.set_curve(s, curve);
       for (const ScrollContact& c : elements[k].contacts) {
         along_scroll_[{c.arc, c.piece, c.contact}].emplace_back(c.order, curve);
       }
@@ -324,8 +327,7 @@ void Stitcher::make_joins() {
     e.left = face_at(k);
     e.right = face_at(twin);
     e.points = stretches_.polyline(k);
-    e.stretch_left = k;
-    e.stretch_right = twin;
+    e.stretches = {k, twin};
     elements.push_back(std::move(e));
   }
   add_chains(HullCurveKind::join, elements);
@@ -338,9 +340,6 @@ CurveElement Stitcher::crease(const EdgeIncidence::Stretch& c) const {
            : t.node >= 0 ? facet_of_[std::size_t(t.node)]
                          : face_of(t.region);
   };
-  const auto stretch = [&](const EdgeIncidence::Neighbor& t) {
-    return t.region < 0 ? -1 : stretches_.number(t.region, t.loop, t.index);
-  };
   CurveElement e;
   e.left = face(c.low);
   e.right = face(c.high);
@@ -350,19 +349,18 @@ CurveElement Stitcher::crease(const EdgeIncidence::Stretch& c) const {
     const double t = k == border_points ? c.to : (1 - share) * c.from + share * c.to;
     e.points.push_back(geometry_.point({c.instance, SourceKind::edge, c.piece, t, 0}));
   }
-  e.stretch_left = stretch(c.low);
-  e.stretch_right = stretch(c.high);
   for (const EdgeIncidence::Neighbor& t : {c.low, c.high}) {
+    if (t.region >= 0) e.stretches.push_back(stretches_.number(t.region, t.loop, t.index));
     // Along the arc the parameter grows or falls.
     if (t.arc >= 0) e.contacts.push_back({t.arc, t.piece, t.contact, t.sense * c.from});
   }
   return e;
 }
 
-/// Where faces meet in edges, and in seams.
+/// Where faces meet in edges, and patches with scrolls along seams or inside.
 void Stitcher::make_creases() {
   std::vector<CurveElement> edges;
-  std::vector<CurveElement> seams;
+  std::vector<CurveElement> inside = bitangents();
   for (const EdgeIncidence::Stretch& c :
        EdgeIncidence(geometry_, graph_, stretches_.regions()).overlay()) {
     const Contact at{c.instance, SourceKind::edge, c.piece, 0.5 * (c.from + c.to), 0};
@@ -375,10 +373,16 @@ void Stitcher::make_creases() {
     if (edge >= 0) {
       e.source = geometry_.scene().model().source_id({SourceKind::edge, c.instance, edge});
     }
-    (edge >= 0 ? edges : seams).push_back(std::move(e));
+    const bool lies_to_the_right =
+        e.right >= 0 && boundary_.faces[std::size_t(e.right)].kind == FaceKind::patch;
+    if (edge < 0 && lies_to_the_right) {
+      std::swap(e.left, e.right);
+      std::reverse(e.points.begin(), e.points.end());
+    }
+    (edge >= 0 ? edges : inside).push_back(std::move(e));
   }
   add_chains(HullCurveKind::edge, edges);
-  add_chains(HullCurveKind::bitangent, seams);
+  add_chains(HullCurveKind::bitangent, inside);
 }
 
 /// The ends of scrolls: segments between a scroll and a facet, another scroll beyond a crease,
@@ -577,7 +581,6 @@ HullBoundary Stitcher::run() {
   make_scrolls();
   make_facets();
   corners_ = corners_of_scrolls();
-  make_bitangents();
   make_joins();
   make_creases();
   make_rulings();
