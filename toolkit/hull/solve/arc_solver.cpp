@@ -169,13 +169,20 @@ bool ArcSolver::is_beyond(const Ruling& to, double distance) {
   Ruling after = before;
   for (std::size_t i = 0; i < 2; ++i) {
     const Contact& own = last().contact[i];
+    const dvec3& x = last().point[i];
     if (own.kind != SourceKind::face || same_element(own, to.contact[i])) continue;
-    const Contact border = moved_to_border(geometry_, own, distance);
-    const auto over = expressed_in(geometry_, border, to.contact[i]);
-    if (!over || over->kind != SourceKind::face) continue;
-    before.contact[i] = border;
-    after.contact[i] = *over;
-    before.point[i] = after.point[i] = geometry_.point(border);
+    for (const ContactExit& exit : exits(geometry_, own)) {
+      if (exit.kind != ContactExit::Kind::side) continue;
+      const Contact beside = at_exit(own, exit);
+      if (glm::distance(geometry_.point(beside), x) > distance) continue;
+      const Contact on = passed_on_side(geometry_, beside, Side(exit.index), x, to.point[i]);
+      const std::optional<Contact> over = beyond(geometry_, on, exit);
+      if (!over || !same_element(*over, to.contact[i])) continue;
+      before.contact[i] = on;
+      after.contact[i] = *over;
+      before.point[i] = after.point[i] = geometry_.point(on);
+      break;
+    }
   }
   if (same_elements(after, last())) return false;
   append(before);

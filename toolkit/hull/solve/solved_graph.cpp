@@ -71,8 +71,8 @@ class GraphSolver {
     const double places = place_depths_ * resolution;
     unite_edge_places(geometry_, graph_, resolution, places, map_.contact_extent(),
                       [&](const Contact& c) { return search_.touches(c); });
-    const double reach =
-        std::max(empty_depths * resolution, extent > 0 ? piece_ways * search_.least_way() : 0);
+    const double empty = empty_depths * resolution;
+    const double reach = std::max(empty, extent > 0 ? piece_ways * search_.least_way() : 0);
     const double beside = std::max(extent, piece_ways * search_.least_way());
     // So far contacts have moved to edges beside which ruled patches are bent.
     const double moved = geometry_.bent() > 0 ? map_.contact_extent() : extent;
@@ -82,7 +82,7 @@ class GraphSolver {
     }
     unite_facets(graph_, geometry_.tie());
     for (SeparatingArc& arc : graph_.arcs) {
-      drop_empty_pieces(geometry_, arc.pieces, places, reach, extent);
+      drop_empty_pieces(geometry_, arc.pieces, empty, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
       tell_corners(arc.pieces, places, moved);
       turn_ends(system_, arc.pieces);
