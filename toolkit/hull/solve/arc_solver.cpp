@@ -163,7 +163,7 @@ bool ArcSolver::stays(const Ruling& to, double distance) {
 }
 
 /// A contact that is no farther than so much from the border of its patch to that of the next
-/// ruling's is beyond it from here on.
+/// ruling's passes it on the straight way there, if that is no deeper than the resolution.
 bool ArcSolver::is_beyond(const Ruling& to, double distance) {
   Ruling before = last();
   Ruling after = before;
@@ -184,7 +184,9 @@ bool ArcSolver::is_beyond(const Ruling& to, double distance) {
       break;
     }
   }
-  if (same_elements(after, last())) return false;
+  if (same_elements(after, last()) || search_.depth(before) > search_.map().resolution) {
+    return false;
+  }
   append(before);
   pieces_.push_back({{after}});
   return true;
