@@ -12,6 +12,8 @@ constexpr int side_steps = 3;
 /// Elements that lead so many times farther off than the way is long are not passed.
 constexpr double astray = 2;
 
+/// From element to element over borders, by the length of the way so far and what is left straight
+/// to its end (A*); ways over lower borders only where no other leads there.
 class WaySearch {
  public:
   WaySearch(const ContactGeometry& geometry, const Contact& from, const Contact& to, const dvec3& n,
