@@ -18,9 +18,9 @@ Contact passed_on_side(const ContactGeometry& geometry, Contact c, Side side, co
 
 /// A contact's way to another place, straight as far as borders between elements let it: the
 /// shortest over borders that are no farther than some depth below the two along n, or else over
-/// the highest. (A detour over a corner would enclose what does not support.) Where it is not known,
-/// as between parts or over more than `most_passed` elements, it has no borders, and at() stays at
-/// its beginning.
+/// the highest. (A detour over a corner would enclose what does not support.) Where it is not
+/// known, as between parts or over more than `most_passed` elements, it has no borders, and at()
+/// stays at its beginning.
 class ContactWay {
  public:
   ContactWay(const ContactGeometry& geometry, const Contact& from, const Contact& to,
