@@ -71,7 +71,7 @@ TEST(ArcPieces, ContactsThatComeBackToACornerStayThere) {
     return result;
   };
   std::vector<ArcPiece> pieces = {piece(1e-4), piece(1e-2)};
-  tell_corners(pieces, 1e-7, 1e-3);
+  tell_corners(pieces, 1e-7, 1e-3, 1e-8);
   EXPECT_EQ(pieces[0].rulings[1].contact[0].u, 1);
   EXPECT_EQ(pieces[0].rulings[1].point[0], dvec3(0.0));
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.5);
@@ -87,13 +87,13 @@ TEST(ArcPieces, ContactsThatComeBackToAPlaceOfAnEdgeStayThere) {
     return result;
   };
   std::vector<ArcPiece> pieces = {piece(1e-8), piece(1e-5)};
-  tell_corners(pieces, 1e-7, 1e-3);
+  tell_corners(pieces, 1e-7, 1e-3, 1e-8);
   for (const Ruling& r : pieces[0].rulings) EXPECT_EQ(r.contact[0].u, 0.25);
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.25 + 1e-4);
   // At an end of it they may be a vertex's.
   std::vector<ArcPiece> at_end = {piece(0)};
   for (Ruling& r : at_end[0].rulings) r.contact[0].u -= 0.25;
-  tell_corners(at_end, 1e-7, 1e-3);
+  tell_corners(at_end, 1e-7, 1e-3, 1e-8);
   EXPECT_NEAR(at_end[0].rulings[1].contact[0].u, 1e-4, 1e-15);
 }
 

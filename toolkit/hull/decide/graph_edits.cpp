@@ -8,6 +8,10 @@
 namespace taut {
 namespace {
 
+/// Where cells are left undecided arcs may pass many of them: as a share of what is between the two
+/// contacts of an arc, how far each may move on the way.
+constexpr double way_share = 0.05;
+
 class GraphEdit {
  public:
   GraphEdit(MapGraph& graph, const DirectionMap& map) : graph_(graph), map_(map) {}
@@ -60,10 +64,11 @@ class GraphEdit {
   /// each other there between the same contacts.
   std::vector<std::array<MapGraph::End, 2>> pairs_that_pass(const MapGraph::Node& node) const {
     std::vector<MapGraph::End> left = node.ends;
+    const double slack = is_undecided(node) ? way_share : 0;
     std::vector<std::array<MapGraph::End, 2>> pairs;
     for (std::size_t i = 0; i < left.size() && left.size() > 1;) {
       const std::size_t j = (i + 1) % left.size();
-      if (left.size() > 2 && !go_on(left[i], left[j])) {
+      if (left.size() > 2 && !go_on(left[i], left[j], slack)) {
         ++i;
         continue;
       }
@@ -96,20 +101,28 @@ class GraphEdit {
   bool may_be_crossing(const MapGraph::Node& node) const {
     const std::vector<MapGraph::End>& ends = node.ends;
     for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (!go_on(ends[i], ends[(i + 1) % ends.size()])) return false;
+      if (!go_on(ends[i], ends[(i + 1) % ends.size()], 0)) return false;
     }
     return ends.size() > 2;
   }
 
   /// Between the same contacts: what is to the right of the way out along the one is to the left of
   /// that along the other.
-  bool go_on(const MapGraph::End& a, const MapGraph::End& b) const {
-    return are_near(contact_beside(a, 0), contact_beside(b, 1)) &&
-           are_near(contact_beside(a, 1), contact_beside(b, 0));
+  /// `slack`: by how much contacts move on the way, as a share of what is between them.
+  bool go_on(const MapGraph::End& a, const MapGraph::End& b, double slack) const {
+    const std::array<Box, 2> from = {contact_beside(a, 0), contact_beside(a, 1)};
+    const std::array<Box, 2> to = {contact_beside(b, 1), contact_beside(b, 0)};
+    const double between = std::min(gap(from[0], from[1]), gap(to[0], to[1]));
+    const double far = std::max(map_.resolution, slack * between);
+    return gap(from[0], to[0]) <= far && gap(from[1], to[1]) <= far;
   }
-  bool are_near(const Box& a, const Box& b) const {
-    const dvec3 gap = box_gaps(a, b);
-    return std::max({gap.x, gap.y, gap.z}) <= map_.resolution;
+  static double gap(const Box& a, const Box& b) {
+    const dvec3 gaps = box_gaps(a, b);
+    return std::max({gaps.x, gaps.y, gaps.z});
+  }
+  bool is_undecided(const MapGraph::Node& node) const {
+    return std::all_of(node.cells.begin(), node.cells.end(),
+                       [&](int k) { return cell(k).kind == MapCellKind::undecided; });
   }
   /// To the right (0) or left of the way out of the node.
   const Box& contact_beside(const MapGraph::End& end, int side) const {

@@ -348,7 +348,7 @@ void drop_turns(std::vector<Ruling>& rulings, double extent) {
   }
 }
 
-void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent) {
+void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent, double depth) {
   for (ArcPiece& piece : pieces) {
     for (const std::size_t i : {0u, 1u}) {
       const Contact corner = piece.rulings.front().contact[i];
@@ -362,7 +362,8 @@ void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent) {
           corner.kind != SourceKind::vertex && same_element(corner, last) && is_back;
       const bool stays =
           comes_back && std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
-            return glm::distance(r.point[i], end) <= extent;
+            return glm::distance(r.point[i], end) <= extent &&
+                   glm::dot(r.point[i] - end, r.n) <= depth;
           });
       if (!stays) continue;
       for (Ruling& r : piece.rulings) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "taut/bounds/contact_exits.h"
 #include "taut/bounds/contact_forms.h"
 #include "taut/core/geometry.h"
 
@@ -63,38 +64,12 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
   return goes_on ? std::optional(s) : std::nullopt;
 }
 
-/// The pieces of edges that lead from a point straight to another one, one behind the other; none
-/// where they do not lead all the way.
-std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const dvec3& a,
-                                        const dvec3& b, double distance) {
-  // By where they begin: where they end.
-  std::multimap<double, std::pair<double, EdgeStretch>> found;
-  const dvec3 way = unit(b - a);
-  for (const int i : geometry.scene().distinct_instances()) {
-    const int count = int(geometry.part({i, SourceKind::edge, 0, 0, 0}).pieces().size());
-    for (int k = 0; k < count; ++k) {
-      const Contact piece{i, SourceKind::edge, k, 0, 0};
-      const std::vector<dvec4>& points = geometry.curve(piece).points;
-      const bool is_near = std::all_of(points.begin(), points.end(), [&](const dvec4& p) {
-        return distance_to_segment(euclidean(p), a, b) <= distance;
-      });
-      if (!is_near || geometry.is_repeated(piece)) continue;
-      const double first = glm::dot(euclidean(points.front()) - a, way);
-      const double last = glm::dot(euclidean(points.back()) - a, way);
-      const bool forwards = first < last;
-      found.emplace(std::min(first, last),
-                    std::pair(std::max(first, last),
-                              EdgeStretch{i, k, forwards ? 0.0 : 1.0, forwards ? 1.0 : 0.0}));
-    }
-  }
-  std::vector<EdgeStretch> pieces;
-  double end = 0;
-  for (const auto& [from, piece] : found) {
-    if (std::abs(from - end) > distance) continue;  // of another edge along the same segment
-    end = piece.first;
-    pieces.push_back(piece.second);
-  }
-  return std::abs(end - glm::distance(a, b)) <= distance ? pieces : std::vector<EdgeStretch>();
+/// No farther from the line through a along `way`.
+bool is_near_line(const std::vector<dvec4>& points, const dvec3& a, const dvec3& way,
+                  double distance) {
+  return std::all_of(points.begin(), points.end(), [&](const dvec4& p) {
+    return glm::length(glm::cross(euclidean(p) - a, way)) <= distance;
+  });
 }
 
 }  // namespace
@@ -156,6 +131,58 @@ void fill_dents(const ContactGeometry& geometry, double depth, FacetContacts& fa
   }
 }
 
+std::optional<ClimbedContact> level_border(const ContactGeometry& geometry, const Contact& c,
+                                           const dvec3& n, double least) {
+  const dvec3 x = geometry.point(c);
+  std::optional<ClimbedContact> nearest;
+  for (const ContactExit& exit : exits(geometry, c)) {
+    if (!leads_over_border(exit)) continue;
+    const Contact there = at_exit(c, exit);
+    const dvec3 y = geometry.point(there);
+    if (!(glm::dot(y, n) >= least)) continue;
+    if (nearest && glm::distance(nearest->x, x) <= glm::distance(y, x)) continue;
+    nearest = ClimbedContact{geometry.canonical(there), y, glm::dot(y, n)};
+  }
+  return nearest;
+}
+
+std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const Contact& from,
+                                        const Contact& to, double distance) {
+  const dvec3 a = geometry.point(from);
+  const dvec3 b = geometry.point(to);
+  const dvec3 way = unit(b - a);
+  const double length = glm::distance(a, b);
+  // By where they begin: where they end.
+  std::multimap<double, std::pair<double, EdgeStretch>> found;
+  for (const int i : geometry.scene().distinct_instances()) {
+    const int count = int(geometry.part({i, SourceKind::edge, 0, 0, 0}).pieces().size());
+    for (int k = 0; k < count; ++k) {
+      const Contact piece{i, SourceKind::edge, k, 0, 0};
+      const std::vector<dvec4>& points = geometry.curve(piece).points;
+      double begin = glm::dot(euclidean(points.front()) - a, way);
+      double end = glm::dot(euclidean(points.back()) - a, way);
+      const bool forwards = begin < end;
+      if (!forwards) std::swap(begin, end);
+      if (end <= distance || begin >= length - distance) continue;
+      if (!is_near_line(points, a, way, distance) || geometry.is_repeated(piece)) continue;
+      EdgeStretch s{i, k, forwards ? 0.0 : 1.0, forwards ? 1.0 : 0.0};
+      // Of a piece that goes on beyond a place, what is between.
+      if (begin < -distance) s.from = parameter_on(geometry, s, from).value_or(s.to);
+      if (end > length + distance) s.to = parameter_on(geometry, s, to).value_or(s.from);
+      if (s.from == s.to) continue;
+      found.emplace(std::max(begin, 0.0), std::pair(std::min(end, length), s));
+    }
+  }
+  std::vector<EdgeStretch> pieces;
+  double end = 0;
+  for (const auto& [begin, piece] : found) {
+    if (std::abs(begin - end) > distance) continue;  // of another edge along the same segment
+    end = piece.first;
+    pieces.push_back(piece.second);
+  }
+  return std::abs(end - length) <= distance ? pieces : std::vector<EdgeStretch>();
+}
+
 void run_along_edges(const ContactGeometry& geometry, double distance, FacetNode& facet) {
   FacetNode result{facet.n, {}, {}, {}, {}, facet.is_crossing};
   bool any = false;
@@ -165,9 +192,9 @@ void run_along_edges(const ContactGeometry& geometry, double distance, FacetNode
     result.sides.push_back(facet.sides.empty() ? EdgeStretch{} : facet.sides[k]);
     result.slots.push_back(facet.slots[k]);
     if (facet.is_curved(k) || facet.slots[k].arc >= 0) continue;
-    const dvec3& next = facet.points[(k + 1) % facet.points.size()];
+    const Contact& next = facet.contacts[(k + 1) % facet.points.size()];
     bool is_first = true;
-    for (const EdgeStretch& s : pieces_between(geometry, facet.points[k], next, distance)) {
+    for (const EdgeStretch& s : pieces_between(geometry, facet.contacts[k], next, distance)) {
       if (is_first) {
         result.sides.back() = s;
       } else {

@@ -32,6 +32,9 @@ constexpr double empty_depths = 8;
 /// Pieces of rounded models that may be none, in units of the way from one ruling to the next.
 constexpr double piece_ways = 4;
 
+/// Share of the resolution that a contact may be lower where it is told as in one place.
+constexpr double corner_share = 0.5;
+
 /// Divisions of ways between rulings, and for each that is known, after which it is seen that what
 /// the map tells is no graph of arcs: as of maps that are left undecided.
 constexpr int divisions_limit = 1000;
@@ -84,7 +87,7 @@ class GraphSolver {
     for (SeparatingArc& arc : graph_.arcs) {
       drop_empty_pieces(geometry_, arc.pieces, empty, reach, extent);
       for (ArcPiece& piece : arc.pieces) drop_beside_ends(piece.rulings, beside);
-      tell_corners(arc.pieces, places, moved);
+      tell_corners(arc.pieces, places, moved, corner_share * resolution);
       turn_ends(system_, arc.pieces);
       tell_along_edges(geometry_, arc.pieces);
       tell_along_joins(geometry_, arc.pieces, extent);
@@ -256,11 +259,16 @@ class GraphSolver {
     return false;
   }
 
-  /// The corner of a facet, or the place on the same straight edge where the arcs beside it have
-  /// theirs, if all between the two touches the plane, too.
+  /// The corner of a facet, or nearer to where the arcs beside it have theirs: on the border of the
+  /// same element, or on the same straight edge, if all between the two touches the plane, too.
   ClimbedContact corner_beside(const Contact& beside, const ClimbedContact& corner,
                                const dvec3& n) const {
     const double extent = map_.contact_extent();
+    const dvec3 from = geometry_.point(beside);
+    const auto level = level_border(geometry_, beside, n, corner.h - geometry_.tie());
+    if (level && glm::distance(level->x, from) + extent < glm::distance(corner.x, from)) {
+      return *level;
+    }
     const Contact own = geometry_.canonical(moved_to_border(geometry_, beside, extent));
     const std::optional<double> end = place_on(own, geometry_.canonical(corner.contact));
     if (!end || glm::distance(geometry_.point(own), corner.x) <= extent) return corner;
@@ -288,6 +296,21 @@ class GraphSolver {
     return std::nullopt;
   }
 
+  /// Where the arc before a corner has its contact elsewhere in the plane the facet runs from there
+  /// to the corner along a straight border.
+  void run_to(const ClimbedContact& corner, const MapGraph::End& before, FacetNode& facet) const {
+    const Contact& beside = known_.ruling_at(before).contact[contact_beside(before, 1)];
+    const ClimbedContact c = corner_beside(beside, climb(geometry_, beside, facet.n), facet.n);
+    if (c.h < corner.h - geometry_.tie()) return;
+    if (glm::distance(c.x, corner.x) <= map_.contact_extent()) return;
+    for (const EdgeStretch& s :
+         pieces_between(geometry_, c.contact, corner.contact, map_.resolution)) {
+      facet.contacts.push_back(s.at(s.from));
+      facet.points.push_back(geometry_.point(s.at(s.from)));
+      facet.sides.push_back(s);
+    }
+  }
+
   /// Contacts between arcs that follow each other are its corners.
   std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
     const NodeCorners corners = corners_of(known_, node, map_);
@@ -304,8 +327,10 @@ class GraphSolver {
     facet.n = plane.n;
     for (std::size_t k = 0; k < plane.contacts.size(); ++k) {
       const ClimbedContact c = corner_beside(corners.contacts[k], plane.contacts[k], plane.n);
+      run_to(c, node.ends[(k + node.ends.size() - 1) % node.ends.size()], facet);
       facet.contacts.push_back(c.contact);
       facet.points.push_back(c.x);
+      facet.sides.emplace_back();
     }
     facet.slots.assign(facet.contacts.size(), {});
     return facet;
