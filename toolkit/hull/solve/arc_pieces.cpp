@@ -374,22 +374,37 @@ void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent, do
   }
 }
 
-void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces) {
-  for (ArcPiece& piece : pieces) {
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
+                   double extent) {
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    std::vector<Ruling>& rulings = pieces[k].rulings;
+    Ruling* before = k > 0 ? &pieces[k - 1].rulings.back() : nullptr;
+    Ruling* after = k + 1 < pieces.size() ? &pieces[k + 1].rulings.front() : nullptr;
     for (const std::size_t i : {0u, 1u}) {
-      const Ruling first = piece.rulings.front();
-      const dvec3& end = first.point[i];
-      const bool stays =
-          piece.rulings.back().point[i] == end &&
-          std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const Ruling& r) {
-            return glm::dot(r.point[i] - end, r.n) <= geometry.tie();
-          });
-      if (!stays || first.contact[i].kind != SourceKind::edge) continue;
-      const Contact vertex = geometry.first(geometry.canonical(first.contact[i]));
+      Contact end = rulings.front().contact[i];
+      if (end.kind != SourceKind::edge) continue;
+      end.u = std::round(end.u);
+      const Contact vertex = geometry.first(geometry.canonical(end));
       if (vertex.kind != SourceKind::vertex) continue;
-      for (Ruling& r : piece.rulings) {
+      const dvec3 x = geometry.point(vertex);
+      // What it meets beside is there, or goes on along the edge.
+      const auto meets = [&](const Ruling& own, const Ruling* beside) {
+        const double far = beside && same_element(beside->contact[i], end) ? extent : geometry.tie();
+        return glm::distance(own.point[i], x) <= far;
+      };
+      const bool stays = meets(rulings.front(), before) && meets(rulings.back(), after) &&
+                         std::all_of(rulings.begin(), rulings.end(), [&](const Ruling& r) {
+                           return glm::dot(r.point[i] - x, r.n) <= geometry.tie();
+                         });
+      if (!stays) continue;
+      for (Ruling& r : rulings) {
         r.contact[i] = vertex;
-        r.point[i] = first.point[i];
+        r.point[i] = x;
+      }
+      for (Ruling* beside : {before, after}) {
+        if (!beside || !same_element(beside->contact[i], end)) continue;
+        beside->contact[i] = end;
+        beside->point[i] = x;
       }
     }
   }

@@ -45,10 +45,11 @@ void tell_along_joins(const ContactGeometry& geometry, std::vector<ArcPiece>& pi
 /// told with the direction in which they come there.
 void turn_ends(const ContactSystem& system, std::vector<ArcPiece>& pieces);
 
-/// Contacts that leave an end of an edge along a piece and come back to it, while it is as high to
-/// within tie(), are told as ones of its vertex: however far rounding makes them go, where the edge
-/// leaves it along the ruling. Pieces that go on into each other then are one.
-void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces);
+/// Contacts that leave an end of an edge along a piece and come back to it, to within `extent`,
+/// while it is as high to within tie(), are told as ones of its vertex: however far rounding makes
+/// them go, where the edge leaves it along the ruling. Pieces that go on into each other then are
+/// one.
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces, double extent);
 
 /// With the order of contacts reversed.
 Ruling reversed(const Ruling& r);

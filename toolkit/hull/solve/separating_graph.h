@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "taut/hull/result/hull_boundary.h"
@@ -28,6 +29,9 @@ struct FacetNode {
   bool is_crossing = false;
 
   bool is_curved(std::size_t side) const { return !sides.empty() && sides[side].piece >= 0; }
+  bool has_curved_side() const {
+    return std::any_of(sides.begin(), sides.end(), [](const auto& s) { return s.piece >= 0; });
+  }
 };
 
 /// The separating curves of a scene's support function on the sphere of directions: a planar graph

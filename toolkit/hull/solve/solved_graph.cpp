@@ -80,7 +80,7 @@ class GraphSolver {
     // So far contacts have moved to edges beside which ruled patches are bent.
     const double moved = geometry_.bent() > 0 ? map_.contact_extent() : extent;
     for (SeparatingArc& arc : graph_.arcs) {
-      tell_vertices(geometry_, arc.pieces);
+      tell_vertices(geometry_, arc.pieces, map_.contact_extent());
       for (ArcPiece& piece : arc.pieces) drop_turns(piece.rulings, map_.contact_extent());
     }
     unite_facets(graph_, geometry_.tie());
@@ -146,9 +146,9 @@ class GraphSolver {
     std::optional<FacetNode> facet = with_curved_sides(node, false);
     // Sides so short that no arc leaves across them are none.
     if (facet && !fits_node(facet)) facet = with_curved_sides(node, true);
-    const bool fits = fits_node(facet);
-    if (!fits && node.ends.size() > 2) facet = of_corners(node);
-    return fits || node.ends.size() > 2 ? facet : std::nullopt;
+    if (node.ends.size() <= 2) return fits_node(facet) ? facet : std::nullopt;
+    // Without curved sides its corners are where arcs leave.
+    return fits_node(facet) && facet->has_curved_side() ? facet : of_corners(node);
   }
 
   void add(const MapGraph::Node& node, std::optional<FacetNode> facet) {
