@@ -9,6 +9,7 @@
 #include "hull_checks.h"
 #include "taut/core/error.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/convex_hull.h"
 
 namespace taut {
 namespace {

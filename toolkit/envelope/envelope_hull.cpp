@@ -6,10 +6,12 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
 #include "taut/envelope/envelope_content.h"
+#include "taut/hull/polytope/affine_span.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_hull.h"
 #include "taut/hull/sample/sampled_polytope.h"
@@ -53,11 +55,15 @@ class ImagePolytope {
         }
       }
     }
+    if (options.vertex_budget) keep_spanning();
   }
 
   SampledPolytope run();
 
  private:
+  void keep_spanning();
+  /// How many samples a round may leave.
+  std::size_t most_samples() const;
   void refine(std::optional<SampledPolytope>& last);
   using Cell = std::array<std::int64_t, 3>;
   Cell cell_of(const dvec3& x) const;
@@ -77,6 +83,26 @@ class ImagePolytope {
   std::vector<dvec3> frame_points_;         ///< per sample, in the scene's frame
   std::map<Cell, std::vector<int>> cells_;  ///< samples by cells as wide as rise_
 };
+
+/// Keeps four samples that span space, if there are such.
+void ImagePolytope::keep_spanning() {
+  const AffineSpan span = affine_span(frame_points_, meaningful_width(content_.scene));
+  if (span.dimension < 3) return;
+  const std::vector<Sample> all = std::exchange(samples_, {});
+  points_.clear();
+  frame_points_.clear();
+  cells_.clear();
+  for (const int k : span.witnesses) add(all[std::size_t(k)]);
+}
+
+/// Of a budget so few more that the farthest come first.
+std::size_t ImagePolytope::most_samples() const {
+  if (!options_.vertex_budget) return std::size_t(options_.max_vertices);
+  constexpr std::size_t batch_share = 16;
+  const std::size_t count = samples_.size();
+  return std::min(count + std::max<std::size_t>(count / batch_share, 1),
+                  std::size_t(*options_.vertex_budget));
+}
 
 ImagePolytope::Cell ImagePolytope::cell_of(const dvec3& x) const {
   const auto index = [&](double t) { return std::int64_t(std::floor(t / rise_)); };
@@ -116,6 +142,11 @@ std::vector<int> ImagePolytope::wanted_facets(const SampledPolytope& polytope) c
     });
     if (bounds) wanted.push_back(int(f));
   }
+  // The farthest first; where all are taken, the order does not matter.
+  const auto higher = [&](int a, int b) {
+    return polytope.gaps[std::size_t(a)] > polytope.gaps[std::size_t(b)];
+  };
+  if (options_.vertex_budget) std::stable_sort(wanted.begin(), wanted.end(), higher);
   return wanted;
 }
 
@@ -186,16 +217,16 @@ void ImagePolytope::refine(std::optional<SampledPolytope>& last) {
     statistics = last->statistics;
     if (last->limit || last->distance_bound <= tolerance_) return;
     last->failure = images_too_coarse;
-    if (int(samples_.size()) >= options_.max_vertices) {
-      last->failure = vertex_limit_met;
-      return;
-    }
-    const std::vector<Sample> more = seen_above(*last, wanted_facets(*last));
+    const auto full = std::size_t(options_.vertex_budget.value_or(options_.max_vertices));
+    if (samples_.size() >= full) last->failure = vertex_limit_met;
     bool added = false;
-    for (const Sample& sample : more) {
-      if (int(samples_.size()) < options_.max_vertices) added = add(sample) || added;
+    const std::size_t most = most_samples();
+    for (const Sample& sample : seen_above(*last, wanted_facets(*last))) {
+      if (samples_.size() < most) added = add(sample) || added;
     }
-    if (!added) return;
+    if (added) continue;
+    if (tolerance_ == 0) last->failure = nullptr;
+    return;
   }
 }
 

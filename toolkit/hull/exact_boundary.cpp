@@ -63,6 +63,7 @@ DirectionMap map_of(const ContactGeometry& geometry, double resolution, long can
   for (const MapCell& cell : map.cells) statistics.map_contacts += long(cell.contacts.size());
   statistics.support_queries += map.statistics.queries;
   statistics.seconds_map += watch.seconds();
+  options.progress.update("cull", 1);
   return map;
 }
 
@@ -81,6 +82,7 @@ HullBoundary solved_with(double place_depths, const ContactGeometry& geometry,
   statistics.support_queries += uncovered.queries();
   statistics.newton_iterations += graph.newton_iterations + uncovered.newton_iterations();
   statistics.seconds_trace += watch.lap();
+  options.progress.update("trace", 1);
   options.progress.update("stitch", 0);
   SupportQuery query(geometry.scene(), options.progress.stop);
   HullBoundary boundary = stitch(geometry, query, std::move(graph));
@@ -91,6 +93,7 @@ HullBoundary solved_with(double place_depths, const ContactGeometry& geometry,
     label_ruled_faces(geometry, boundary);
   }
   statistics.seconds_stitch += watch.lap();
+  options.progress.update("stitch", 1);
   statistics.support_queries += query.queries();
   statistics.newton_iterations += query.newton_iterations();
   return boundary;

@@ -85,6 +85,32 @@ void drop_reached(const ReachedHeights& boundary, const ContactGeometry& geometr
   });
 }
 
+/// Samples of the boundary; of a budget of vertices four, and no chords that are to stay.
+BoundarySamples start_of(const ContactGeometry& geometry, const HullBoundary& boundary,
+                         const ContactFaces& faces, const SampleSpacing& sampling,
+                         SupportQuery& query, const HullOptions& options) {
+  const Scene& scene = geometry.scene();
+  BoundarySamples start;
+  const auto add = [&](const SampledStart& apart) {
+    for (std::size_t k = 0; k < apart.samples.size(); ++k) {
+      start.samples.push_back(apart.samples[k]);
+      start.points.push_back(apart.points[k]);
+      start.faces.push_back(faces.touched(apart.samples[k].contact));
+    }
+  };
+  if (options.vertex_budget) {
+    add(spanning(sampled_start(scene, query), meaningful_width(scene)));
+    return start;
+  }
+  start = boundary_samples(geometry, boundary, faces, sampling, query);
+  std::vector<dvec3> in_frame;
+  for (const dvec3& p : start.points) in_frame.push_back(scene.frame().to_frame(p));
+  if (in_frame.empty() || affine_span(in_frame, meaningful_width(scene)).dimension < 3) {
+    add(sampled_start(scene, query));
+  }
+  return start;
+}
+
 }  // namespace
 
 Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
@@ -97,17 +123,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   const double width =
       std::max(width_share * tolerance, scene.frame().length_to_model(meaningful_width(scene)));
   SupportQuery query(scene, options.progress.stop);
-  BoundarySamples start = boundary_samples(geometry, *boundary, faces, {tolerance, width}, query);
-  std::vector<dvec3> in_frame;
-  for (const dvec3& p : start.points) in_frame.push_back(scene.frame().to_frame(p));
-  if (in_frame.empty() || affine_span(in_frame, meaningful_width(scene)).dimension < 3) {
-    const SampledStart apart = sampled_start(scene, query);
-    for (std::size_t k = 0; k < apart.samples.size(); ++k) {
-      start.samples.push_back(apart.samples[k]);
-      start.points.push_back(apart.points[k]);
-      start.faces.push_back(faces.touched(apart.samples[k].contact));
-    }
-  }
+  BoundarySamples start = start_of(geometry, *boundary, faces, {tolerance, width}, query, options);
   ConstrainedEdges chords(geometry, *boundary, faces, start.chords, width);
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);

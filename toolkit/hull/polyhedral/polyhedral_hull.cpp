@@ -20,6 +20,10 @@
 namespace taut {
 namespace {
 
+bool keeps_all(const HullOptions& options) {
+  return options.resolution && *options.resolution == 0;
+}
+
 /// Builds the hull of whatever dimension from all points.
 class PolyhedralHull {
  public:
@@ -27,9 +31,12 @@ class PolyhedralHull {
       : model_(model),
         points_(model),
         options_(options),
-        width_(points_.product_scale() == 1 ? std::min(coordinate_rounding * points_.reach(),
-                                                       spurious_share * points_.diagonal())
-                                            : 0) {}
+        rounding_(
+            points_.product_scale() == 1 && !keeps_all(options)
+                ? rounding_width(points_.points(), std::min(coordinate_rounding * points_.reach(),
+                                                            spurious_share * points_.diagonal()))
+                : RoundingWidth()),
+        width_(rounding_.largest()) {}
 
   Hull run();
 
@@ -47,6 +54,8 @@ class PolyhedralHull {
   void make_solid(const PointHull& hull);
   void make_polytope(const PointHull& hull, const std::vector<int>* original = nullptr);
   void finish(std::vector<int> corners);
+  /// How many of the points are vertices of the hull.
+  long extreme_count(const PointHull& hull) const;
   dvec3 normal_of(OpenMesh::FaceHandle f) const;
 
   /// Of a length or height that is computed from differences of points, each operation's at most.
@@ -59,7 +68,9 @@ class PolyhedralHull {
   const Model& model_;
   ModelPoints points_;
   const HullOptions& options_;
-  double width_;  ///< what is put down to rounding, scaled as the points are; zero: nothing
+  RoundingWidth rounding_;
+  double width_;  ///< the largest of it: what is put down to rounding, scaled as the points are;
+                  ///< zero: nothing
   Hull result_;
   std::vector<int> corners_;    ///< per vertex of the mesh: its number among the points
   std::vector<dvec3> normals_;  ///< per face of the mesh
@@ -121,11 +132,12 @@ void PolyhedralHull::make_planar(std::span<const int> candidates,
   for (const int c : candidates) points.push_back(point(c));
   const PlaneView view(point(witnesses[0]), point(witnesses[1]), point(witnesses[2]));
   const std::vector<int> exact = convex_outline(points, view);
-  std::vector<int> outline = width_ > 0 ? simplified_outline(exact, points, width_) : exact;
+  std::vector<int> outline = width_ > 0 ? simplified_outline(exact, points, rounding_) : exact;
   // Along the axis of the view, which is no more than 55 degrees from the normal, every point has
   // some of the exact outline's hull across from it.
   double bound = std::sqrt(3.0) * thickness;
   if (outline.size() < exact.size()) bound += width_ + rounding();
+  result_.points_left_out += long(exact.size() - outline.size());
   for (int& corner : outline) corner = candidates[std::size_t(corner)];
   if (outline.size() < 3) {
     make_segment(outline.front(), outline.back(), bound);
@@ -175,17 +187,25 @@ void PolyhedralHull::make_solid(const PointHull& hull) {
       high = std::max(high, height);
     }
     make_planar(vertices, span.witnesses, high - low + 2 * rounding());
-  } else if (!has_nearly_flat_edges(hull, width_) || coarsening_work(hull) > most_work) {
+  } else if (!has_nearly_flat_edges(hull, rounding_) || coarsening_work(hull) > most_work) {
     make_polytope(hull);
   } else {
-    const CoarseHull coarse = coarse_hull(hull, span.witnesses, width_, options_.progress);
+    const CoarseHull coarse = coarse_hull(hull, span.witnesses, rounding_, options_.progress);
     if (coarse.distance_bound <= spurious_share * points_.diagonal()) {
       result_.distance_bound = coarse.distance_bound;
+      result_.points_left_out = extreme_count(hull) - extreme_count(coarse.hull);
       make_polytope(coarse.hull, &coarse.original);
     } else {
       make_polytope(hull);  // at a corner too sharp to tell how much is rounding
     }
   }
+}
+
+long PolyhedralHull::extreme_count(const PointHull& hull) const {
+  std::vector<int> numbers;
+  return long(
+      bare_mesh(hull, 1, hull.merged_polygons(options_.progress), numbers, options_.progress)
+          .n_vertices());
 }
 
 /// Convex polygons as fans of triangles.
@@ -265,6 +285,7 @@ Hull polyhedral_hull(const Model& model, const HullOptions& asked) {
   warn_if_capped(resolution, options.progress);
   Hull hull = PolyhedralHull(model, options).run();
   hull.resolution = resolution;
+  if (keeps_all(options)) hull.resolution.rho = 0;
   return hull;
 }
 

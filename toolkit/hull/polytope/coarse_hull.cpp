@@ -23,7 +23,7 @@ const dvec3 skew(0.67123, 0.31798, 0.66957);
 /// facet goes in while it is above the width.
 class Coarsener {
  public:
-  Coarsener(const PointHull& fine, const std::array<int, 4>& spanning, double width)
+  Coarsener(const PointHull& fine, const std::array<int, 4>& spanning, const RoundingWidth& width)
       : fine_(fine), support_(fine), width_(width), result_{PointHull(box_of(fine)), {}, 0} {
     for (const dvec3& n : directions_across({})) {
       add(support_(unit(n + 0.1 * dvec3(skew.y, skew.z, skew.x) * n.x + 0.1 * skew)));
@@ -66,7 +66,7 @@ class Coarsener {
 
   const PointHull& fine_;
   PolytopeSupport support_;
-  double width_;
+  RoundingWidth width_;
   CoarseHull result_;
   std::vector<int> tops_;  ///< per facet: the point highest above it; -1: not known
 };
@@ -86,11 +86,11 @@ bool Coarsener::grow() {
     double height = height_of(top);
     tops_[f] = top;
     const int corner = support_(unit(n + tie_break * skew), top);
-    if (height_of(corner) > std::max(width_, 0.5 * height)) {
+    if (height_of(corner) > std::max(width_.along(n), 0.5 * height)) {
       top = corner;
       height = height_of(corner);
     }
-    if (height > width_) candidates.push_back({height, int(f), top, facet.vertex});
+    if (height > width_.along(n)) candidates.push_back({height, int(f), top, facet.vertex});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.height != b.height ? a.height > b.height : a.facet < b.facet;
@@ -137,7 +137,7 @@ void Coarsener::bound_distance() {
 
 }  // namespace
 
-bool has_nearly_flat_edges(const PointHull& hull, double width) {
+bool has_nearly_flat_edges(const PointHull& hull, const RoundingWidth& width) {
   for (std::size_t f = 0; f < hull.facets().size(); ++f) {
     const PointHull::Facet& facet = hull.facet(int(f));
     if (!facet.alive) continue;
@@ -146,7 +146,8 @@ bool has_nearly_flat_edges(const PointHull& hull, double width) {
       for (const int v : hull.facet(g).vertex) {
         if (std::find(facet.vertex.begin(), facet.vertex.end(), v) != facet.vertex.end()) continue;
         const double height = glm::dot(hull.point(v) - hull.point(facet.vertex[0]), n);
-        if (height > -width && facet.side.side(hull.point(v)) == Sign::negative) return true;
+        if (height > -width.along(n) && facet.side.side(hull.point(v)) == Sign::negative)
+          return true;
       }
     }
   }
@@ -162,8 +163,8 @@ double coarsening_work(const PointHull& hull) {
   return double(hull.facet_count()) * *std::max_element(valence.begin(), valence.end());
 }
 
-CoarseHull coarse_hull(const PointHull& hull, const std::array<int, 4>& spanning, double width,
-                       const Progress& progress) {
+CoarseHull coarse_hull(const PointHull& hull, const std::array<int, 4>& spanning,
+                       const RoundingWidth& width, const Progress& progress) {
   return Coarsener(hull, spanning, width).run(progress);
 }
 

@@ -61,7 +61,7 @@ std::vector<int> convex_outline(std::span<const dvec3> points, const PlaneView& 
 }
 
 std::vector<int> simplified_outline(const std::vector<int>& outline, std::span<const dvec3> points,
-                                    double width) {
+                                    const RoundingWidth& width) {
   const std::size_t count = outline.size();
   const auto point = [&](std::size_t k) { return points[std::size_t(outline[k % count])]; };
   const auto farthest = [&](std::size_t from) {
@@ -91,7 +91,9 @@ std::vector<int> simplified_outline(const std::vector<int>& outline, std::span<c
       const double height = glm::length(glm::cross(side, point(k) - point(from)));
       if (height > highest.first) highest = {height, k};
     }
-    if (highest.first > width) {
+    const dvec3 to_highest = point(highest.second) - point(from);
+    const dvec3 across = to_highest - glm::dot(to_highest, side) * side;
+    if (highest.first > 0 && highest.first > width.along(unit(across))) {
       chains.emplace_back(highest.second, to);
       chains.emplace_back(from, highest.second);
     } else if (to != end) {

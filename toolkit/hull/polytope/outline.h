@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "taut/core/geometry.h"
+#include "taut/hull/polytope/rounding_width.h"
 
 namespace taut {
 
@@ -31,6 +32,6 @@ std::vector<int> convex_outline(std::span<const dvec3> points, const PlaneView& 
 /// A convex polygon with fewer corners: every one that is left out lies within the width of a side.
 /// Two corners are left where all lie within the width of a line. @pre at least one corner
 std::vector<int> simplified_outline(const std::vector<int>& outline, std::span<const dvec3> points,
-                                    double width);
+                                    const RoundingWidth& width);
 
 }  // namespace taut

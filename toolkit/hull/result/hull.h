@@ -26,6 +26,9 @@ struct Hull {
   /// What is nearer than this may be taken for one: as the options ask, or as the model tells, or
   /// coarser than that (Resolution::raised_from).
   Resolution resolution;
+  /// Extreme points of points and polygons that are no vertices, since rounding of coordinates may
+  /// have made them: they are within distance_bound.
+  long points_left_out = 0;
   /// The exact boundary, where the method finds it.
   std::shared_ptr<const HullBoundary> boundary;
   HullStatistics statistics;

@@ -7,11 +7,16 @@
 namespace taut {
 
 double tolerance_for(const HullOptions& options, double diagonal) {
+  constexpr int fewest = 4;
+  if (options.vertex_budget && *options.vertex_budget < fewest) {
+    throw InvalidInput("the budget of vertices must be four or more");
+  }
   // Asked in forms that NaN fails.
   if (!(options.tolerance >= 0)) {
     throw InvalidInput("the tolerance must be positive");
   }
   if (options.tolerance > 0) return options.tolerance;
+  if (options.vertex_budget) return 0;
   if (!(options.relative > 0 && std::isfinite(options.relative))) {
     throw InvalidInput("the relative tolerance must be positive");
   }

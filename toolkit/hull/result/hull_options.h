@@ -22,6 +22,10 @@ struct HullOptions {
   /// Vertices, some thirty to begin with apart, after which refinement gives up (HullNotConverged
   /// is thrown). Each takes about 700 bytes meanwhile.
   int max_vertices = 4'000'000;
+  /// A budget: at most so many vertices, four in space and three in a plane at least, and the best
+  /// mesh for them. `relative` does not count then, `tolerance` does where it is given:
+  /// HullNotConverged tells that the budget does not reach it.
+  std::optional<int> vertex_budget = std::nullopt;
   /// Seconds from the call on, and bytes of main memory that the process holds (resident_bytes),
   /// after which the best hull that is there is thrown with HullLimitExceeded, or LimitMet where
   /// there is none as yet. To finish and label it takes some more. None: no limit. Where results
@@ -31,9 +35,10 @@ struct HullOptions {
   Progress progress;
 };
 
-/// The tolerance that the options ask for, in model units; positive where the diagonal is.
+/// The tolerance that the options ask for, in model units; positive where the diagonal is, but 0
+/// where there is a budget alone.
 /// @throws InvalidInput if the tolerance is negative or no number, or the relative one counts and
-/// is not positive and finite, or leaves the range of doubles
+/// is not positive and finite, or leaves the range of doubles; or the budget is below four
 double tolerance_for(const HullOptions& options, double diagonal);
 
 /// The same options, with a progress that stops at the limits they ask for, which begin now, and at

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "taut/core/error.h"
 #include "taut/hull/polytope/certificate.h"
@@ -22,7 +23,10 @@ class FlatSampler {
         options_(options),
         tolerance_(tolerance * scene.frame().scale),
         start_(std::move(start)),
-        query_(query) {}
+        query_(query) {
+    constexpr int planar = 2;
+    if (options.vertex_budget && start_.span.dimension == planar) keep_triangle();
+  }
 
   Hull run();
 
@@ -41,7 +45,12 @@ class FlatSampler {
   std::vector<int> outline(const PlaneView& view) const {
     return convex_outline(start_.points, view);
   }
+  void keep_triangle();
+  /// Bound of the distance in the directions in which a corner is highest.
+  double arc_bound(int corner, const Side& in, const Side& out);
   void certify(const std::vector<int>& corners);
+  std::size_t most_samples() const;
+  std::vector<Side> wanted_sides(const std::vector<int>& corners);
   double across_bound(int sample);
   Hull make_hull(HullKind kind, const std::vector<int>& corners);
   Hull refine();
@@ -90,6 +99,42 @@ double FlatSampler::across_bound(int sample) {
   return sides * bound / depth[std::size_t(start_.span.dimension)];
 }
 
+/// Three samples that span the plane.
+void FlatSampler::keep_triangle() {
+  constexpr std::size_t corners = 3;
+  const SampledStart all = std::exchange(start_, {});
+  start_.span = all.span;
+  for (std::size_t k = 0; k < corners; ++k) {
+    const auto own = std::size_t(all.span.witnesses[k]);
+    start_.samples.push_back(all.samples[own]);
+    start_.points.push_back(all.points[own]);
+    start_.frame_points.push_back(all.frame_points[own]);
+    start_.span.witnesses[k] = int(k);
+  }
+}
+
+/// Of a budget the arc is seen in steps so short that the bound is nearly what is seen.
+double FlatSampler::arc_bound(int corner, const Side& in, const Side& out) {
+  constexpr double step = 0.1;  // radians: a bound by its ends is high by an eighth of a percent
+  const double angle = std::acos(std::clamp(glm::dot(in.n, out.n), -1.0, 1.0));
+  const int steps = options_.vertex_budget ? std::max(1, int(std::ceil(angle / step))) : 1;
+  double bound = 0;
+  Side first = in;
+  for (int k = 1; k <= steps; ++k) {
+    Side last = out;
+    if (k < steps) {
+      const double t = double(k) / steps;
+      last.n = unit((1 - t) * in.n + t * out.n);
+      last.support = query_(last.n, first.support.contact);
+    }
+    const double highest =
+        std::max(gap(first.support, first.n, corner), gap(last.support, last.n, corner));
+    bound = std::max(bound, distance_bound(highest, cone_depth(std::array{first.n, last.n})));
+    first = last;
+  }
+  return bound;
+}
+
 /// The certificate of certificate.h, in the plane.
 void FlatSampler::certify(const std::vector<int>& corners) {
   const std::size_t count = corners.size();
@@ -98,9 +143,7 @@ void FlatSampler::certify(const std::vector<int>& corners) {
   for (std::size_t k = 0; k < count; ++k) {
     const Side in = side(corners[(k + count - 1) % count], corners[k]);
     const Side out = side(corners[k], corners[(k + 1) % count]);
-    const double highest =
-        std::max(gap(in.support, in.n, corners[k]), gap(out.support, out.n, corners[k]));
-    bounds[k] = distance_bound(highest, cone_depth(std::array{in.n, out.n}));
+    bounds[k] = arc_bound(corners[k], in, out);
     largest = std::max(largest, bounds[k]);
   }
   bounds_ = std::move(bounds);
@@ -166,6 +209,36 @@ Hull FlatSampler::run() {
   }
 }
 
+/// How many samples a round may leave; of a budget so few more that the farthest come first.
+std::size_t FlatSampler::most_samples() const {
+  if (!options_.vertex_budget) return std::size_t(options_.max_vertices);
+  constexpr std::size_t batch_share = 16;
+  const std::size_t count = start_.points.size();
+  return std::min(count + std::max<std::size_t>(count / batch_share, 1),
+                  std::size_t(*options_.vertex_budget));
+}
+
+/// The sides beyond which a sample keeps corners from the tolerance; of a budget the farthest
+/// first.
+std::vector<FlatSampler::Side> FlatSampler::wanted_sides(const std::vector<int>& corners) {
+  std::vector<std::pair<double, Side>> wanted;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const std::size_t next = (k + 1) % corners.size();
+    if (bounds_[k] <= tolerance_ && bounds_[next] <= tolerance_) continue;
+    const Side s = side(corners[k], corners[next]);
+    const dvec3 up = s.support.point - start_.frame_points[std::size_t(corners[k])];
+    const double height = glm::dot(s.n, up);
+    if (height > gap_rounding) wanted.emplace_back(height, s);
+  }
+  if (options_.vertex_budget) {
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+  }
+  std::vector<Side> sides;
+  for (const auto& [height, s] : wanted) sides.push_back(s);
+  return sides;
+}
+
 Hull FlatSampler::refine() {
   const auto& w = start_.span.witnesses;
   const auto witness = [&](std::size_t k) { return start_.points[std::size_t(w[k])]; };
@@ -177,16 +250,14 @@ Hull FlatSampler::refine() {
     if (bound_ <= tolerance_) return make_hull(HullKind::planar, corners);
 
     const std::size_t before = start_.points.size();
-    const bool full = int(before) >= options_.max_vertices;
-    for (std::size_t k = 0; k < corners.size() && !full; ++k) {
-      const std::size_t next = (k + 1) % corners.size();
-      if (bounds_[k] <= tolerance_ && bounds_[next] <= tolerance_) continue;
-      const Side s = side(corners[k], corners[next]);
-      const dvec3 up = s.support.point - start_.frame_points[std::size_t(corners[k])];
-      if (glm::dot(s.n, up) > gap_rounding) add(s.n, s.support);
+    const std::size_t most = most_samples();
+    const bool full = before >= most;
+    for (const Side& s : wanted_sides(corners)) {
+      if (start_.points.size() < most) add(s.n, s.support);
     }
     // Samples that do not change the outline bring nothing more.
     if (full || start_.points.size() == before || outline(view) == corners) {
+      if (tolerance_ == 0) return make_hull(HullKind::planar, corners);
       throw HullNotConverged(full ? vertex_limit_met : tolerance_too_fine,
                              make_hull(HullKind::planar, corners));
     }

@@ -8,6 +8,9 @@
 namespace taut {
 namespace {
 
+/// Faces that are labelled between two looks at the progress.
+constexpr int faces_per_update = 256;
+
 /// Steps of the projection of an edge's middle onto the surface; chords are short against the
 /// curvature, so few are enough, and a miss only makes an edge bridging.
 constexpr int projection_steps = 3;
@@ -231,7 +234,9 @@ HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
   label_vertices(scene, polytope.samples, polytope.vertex_bounds, point_of, mesh, progress);
   GuessedLabels guess(scene, polytope, mesh, point_of);
   for (const auto f : mesh.faces()) {
-    progress.check();
+    if (f.idx() % faces_per_update == 0) {
+      progress.update("mesh", double(f.idx()) / double(mesh.n_faces()));
+    }
     const std::vector<int>& corners = polygons.loops[std::size_t(f.idx())];
     std::optional<FaceLabel> label;
     if (known.label) label = known.label(corners);
@@ -280,6 +285,7 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   hull.resolution = resolution_for(options, scene.model(), scene.diagonal());
   hull.statistics = polytope.statistics;
   hull.statistics.seconds_mesh = time.seconds();
+  options.progress.update("mesh", 1);
   throw_if_failed(hull, polytope.failure, polytope.limit);
   return hull;
 }

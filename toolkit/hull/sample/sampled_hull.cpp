@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "taut/core/stopwatch.h"
+#include "taut/core/tolerances.h"
 #include "taut/hull/sample/facetted_boundary.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_start.h"
@@ -13,6 +14,7 @@ namespace {
 /// Within limits; what follows, which finishes it, has none. @pre start.span.dimension == 3
 SampledPolytope polytope_from(const Scene& scene, const HullOptions& options, double tolerance,
                               SampledStart start, const SupportQuery& query) {
+  if (options.vertex_budget) start = spanning(start, meaningful_width(scene));
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points);
   options.progress.stop.lift_limits();
@@ -39,6 +41,10 @@ Hull sampled_hull(const Scene& scene, const HullOptions& asked) {
   }
   return polytope_hull(scene, options,
                        polytope_from(scene, options, tolerance, std::move(start), query));
+}
+
+double least_tolerance(const Scene& scene) {
+  return scene.frame().length_to_model(support_slack + gap_rounding);
 }
 
 Hull facetted_hull(const Scene& scene, const HullOptions& asked) {

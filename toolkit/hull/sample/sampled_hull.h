@@ -23,8 +23,12 @@ namespace taut {
 /// was met, HullLimitExceeded or LimitMet for limits (HullOptions), Cancelled
 Hull sampled_hull(const Scene& scene, const HullOptions& options = {});
 
-/// The same with the mesh's faces as the boundary (facetted_boundary): the best closed answer where
-/// the exact one is not found.
+/// No mesh of a curved scene can be certified to be nearer to its hull than that, in model units,
+/// since support queries prove no more. Smaller tolerances are never reached.
+double least_tolerance(const Scene& scene);
+
+/// sampled_hull() with the mesh's faces as the boundary (facetted_boundary): the best closed answer
+/// where the exact one is not found.
 /// @pre the hull is solid @throws as sampled_hull()
 Hull facetted_hull(const Scene& scene, const HullOptions& options = {});
 

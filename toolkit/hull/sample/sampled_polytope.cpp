@@ -5,16 +5,18 @@
 #include <numeric>
 #include <span>
 
-#include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
 #include "taut/hull/polytope/certificate.h"
+#include "taut/hull/sample/facet_planes.h"
+#include "taut/hull/sample/farthest_support.h"
 #include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
 namespace {
 
-/// Neighbours of slivers that are asked for a direction, one after the other.
-constexpr std::size_t sliver_limit = 8;
+/// Of a budget of vertices, so much of what there is is inserted at once: nearly as good as one by
+/// one, the farthest first.
+constexpr std::size_t batch_share = 16;
 
 /// Refines a polytope of support points until its distance from the hull is certified.
 class Sampler {
@@ -25,21 +27,12 @@ class Sampler {
         options_(options),
         constraints_(constraints),
         hull_(inflated(scene)),
+        planes_(scene, options, hull_),
         tolerance_(tolerance * scene.frame().scale) {}
 
   SampledPolytope run(std::vector<Sample> samples, const std::vector<dvec3>& points);
 
  private:
-  /// What is known of a facet: its supporting plane.
-  struct Plane {
-    bool known = false;
-    dvec3 n;
-    int facet = -1;  ///< of which n is the normal
-    double h_bound = 0;
-    dvec3 point;  ///< the support point, in model coordinates
-    Contact contact;
-  };
-
   static Box inflated(const Scene& scene) {
     const double scale = scene.frame().scale;
     const dvec3 margin(1e-3 * scale * scene.diagonal());
@@ -49,21 +42,16 @@ class Sampler {
   dvec3 scaled(const dvec3& point) const { return scene_.frame().scale * point; }
 
   void begin(std::vector<Sample> samples, const std::vector<dvec3>& points);
-  /// A facet and its normal.
-  struct Facing {
-    int facet;
-    dvec3 n;
-  };
-  Facing facing(int facet) const;
-  bool has_lost_facet(const Plane& plane) const;
-  bool take_slivers_seriously();
-  void find_planes();
   void bound_vertices();
+  void look_closer();
+  bool insert_farthest();
+  std::size_t most_points() const;
+  double share_done() const;
   bool refine();
   bool repeats_vertex(const dvec3& point, int facet);
   bool insert(const Sample& sample, const dvec3& point, int facet);
   bool bisect_hidden(const dvec3& point, int facet);
-  double gap(const Plane& plane, int vertex) const {
+  double gap(const FacetPlanes::Plane& plane, int vertex) const {
     return plane.h_bound - glm::dot(plane.n, frame_points_[std::size_t(vertex)]) + gap_rounding;
   }
   /// What a gap at a vertex means for the distance.
@@ -78,14 +66,14 @@ class Sampler {
   const HullOptions& options_;
   EdgeConstraints* constraints_;
   PointHull hull_;
+  FacetPlanes planes_;
   std::vector<Sample> samples_;        // per vertex
   std::vector<dvec3> frame_points_;    // per vertex
   std::vector<double> vertex_gaps_;    // per vertex: the largest gap of its facets
   std::vector<double> vertex_depths_;  // per vertex: cone_depth() of its facets' normals
-  bool slivers_count_ = false;         // slivers' own directions do, since nothing else helped
-  std::vector<Plane> planes_;          // per facet
   double tolerance_;                   // in the scene's frame
   double bound_ = 0;
+  FarthestSupport farthest_;         ///< of a budget
   std::optional<double> certified_;  ///< the least of the bounds until now: the polytope only grows
   HullStatistics statistics_;
 };
@@ -99,96 +87,6 @@ void Sampler::begin(std::vector<Sample> samples, const std::vector<dvec3>& point
     all.push_back(scaled(p));
   }
   hull_.add(all, options_.progress);
-}
-
-/// The facet itself; of a sliver, with corners in line but for rounding, the nearest
-/// other facet, first across its longest side. A certificate needs no more than directions about
-/// each vertex, and a sliver's own means nothing.
-Sampler::Facing Sampler::facing(int facet) const {
-  const double rounding = scene_.frame().length_to_frame(8 * vertex_rounding(scene_));
-  std::vector<int> reached = {facet};
-  for (std::size_t k = 0; k < reached.size() && k < sliver_limit && !slivers_count_; ++k) {
-    const PointHull::Facet& own = hull_.facet(reached[k]);
-    std::array<std::pair<double, int>, 3> sides;
-    for (std::size_t side = 0; side < 3; ++side) {
-      const dvec3& a = hull_.points()[std::size_t(own.vertex[side])];
-      const dvec3& b = hull_.points()[std::size_t(own.vertex[(side + 1) % 3])];
-      sides[side] = {-glm::distance(a, b), own.neighbor[side]};
-    }
-    std::stable_sort(sides.begin(), sides.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    const dvec3 normal = own.side.normal();
-    if (glm::length(normal) > -rounding * sides[0].first) return {reached[k], unit(normal)};
-    for (const auto& [length, neighbor] : sides) {
-      if (std::find(reached.begin(), reached.end(), neighbor) == reached.end()) {
-        reached.push_back(neighbor);
-      }
-    }
-  }
-  return {facet, unit(hull_.facet(facet).side.normal())};
-}
-
-/// Lets slivers have their own directions from now on. False if that changes nothing.
-bool Sampler::take_slivers_seriously() {
-  if (slivers_count_) return false;
-  slivers_count_ = true;
-  bool changes = false;
-  for (std::size_t f = 0; f < planes_.size(); ++f) {
-    options_.progress.check_rarely(f);
-    if (!hull_.facets()[f].alive || planes_[f].n == facing(int(f)).n) continue;
-    planes_[f].known = false;
-    changes = true;
-  }
-  return changes;
-}
-
-/// The facet of which the plane has its direction is no more.
-bool Sampler::has_lost_facet(const Plane& plane) const {
-  const PointHull::Facet& facet = hull_.facet(plane.facet);
-  return !facet.alive || unit(facet.side.normal()) != plane.n;
-}
-
-/// Queries the supporting plane of every facet that has none yet, in parallel; each query starts
-/// from the contact of the vertex whose own direction is closest.
-void Sampler::find_planes() {
-  planes_.resize(hull_.facets().size());
-  std::vector<int> wanted;
-  for (std::size_t f = 0; f < planes_.size(); ++f) {
-    options_.progress.check_rarely(f);
-    if (!hull_.facets()[f].alive) continue;
-    if (!planes_[f].known || has_lost_facet(planes_[f])) wanted.push_back(int(f));
-  }
-  constexpr std::size_t grain = 64;
-  std::vector<std::pair<long, long>> counts((wanted.size() + grain - 1) / grain);
-  parallel_for(wanted.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
-    SupportQuery query(scene_, options_.progress.stop);
-    for (std::size_t k = begin; k < end; ++k) {
-      options_.progress.check();
-      const PointHull::Facet& facet = hull_.facet(wanted[k]);
-      Plane& plane = planes_[std::size_t(wanted[k])];
-      plane.known = false;
-      const Facing seen = facing(wanted[k]);
-      plane.n = seen.n;
-      plane.facet = seen.facet;
-      const Sample* nearest = nullptr;
-      for (const int v : facet.vertex) {
-        const Sample& s = samples_[std::size_t(v)];
-        if (nearest == nullptr || glm::dot(s.n, plane.n) > glm::dot(nearest->n, plane.n)) {
-          nearest = &s;
-        }
-      }
-      const Support s = query(plane.n, nearest->contact);
-      plane.h_bound = s.h_bound;
-      plane.contact = s.contact;
-      plane.point = scene_.frame().to_model(s.point);
-      plane.known = true;
-    }
-    counts[begin / grain] = {query.queries(), query.newton_iterations()};
-  });
-  for (const auto& [queries, newton] : counts) {
-    statistics_.support_queries += queries;
-    statistics_.newton_iterations += newton;
-  }
 }
 
 /// Certifies, vertex by vertex, how far the true hull may lie outside (certificate.h).
@@ -228,6 +126,52 @@ void Sampler::bound_vertices() {
   certified_ = std::min(bound_, certified_.value_or(bound_));
 }
 
+/// The distance as well as queries tell it, and where it is largest.
+void Sampler::look_closer() {
+  SupportQuery query(scene_, options_.progress.stop);
+  const auto plane_of = [&](int facet) {
+    const FacetPlanes::Plane& plane = planes_[std::size_t(facet)];
+    return SeenPlane{plane.n, plane.h_bound, scene_.frame().to_frame(plane.point), plane.contact};
+  };
+  farthest_ = farthest_support(query, hull_, frame_points_, plane_of, options_.progress);
+  bound_ = std::min(bound_, farthest_.bound);
+  certified_ = std::min(bound_, *certified_);
+  statistics_.support_queries += query.queries();
+  statistics_.newton_iterations += query.newton_iterations();
+}
+
+/// False if it is not above the polytope.
+bool Sampler::insert_farthest() {
+  if (farthest_.vertex < 0) return false;
+  const auto& facets = hull_.facets();
+  const auto has_vertex = [&](const PointHull::Facet& facet) {
+    return facet.alive && std::find(facet.vertex.begin(), facet.vertex.end(), farthest_.vertex) !=
+                              facet.vertex.end();
+  };
+  const auto first = std::find_if(facets.begin(), facets.end(), has_vertex);
+  const dvec3 point = scene_.frame().to_model(farthest_.plane.point);
+  for (const int f : facets_about(hull_, farthest_.vertex, int(first - facets.begin()))) {
+    if (insert({farthest_.plane.n, farthest_.plane.contact}, point, f)) return true;
+  }
+  return false;
+}
+
+/// Up to which a round inserts.
+std::size_t Sampler::most_points() const {
+  if (!options_.vertex_budget) return std::size_t(options_.max_vertices);
+  const std::size_t count = hull_.points().size();
+  return std::min(count + std::max<std::size_t>(count / batch_share, 1),
+                  std::size_t(*options_.vertex_budget));
+}
+
+/// Vertices grow as the inverse of the distance: the orders of magnitude done tell the rounds.
+double Sampler::share_done() const {
+  if (options_.vertex_budget) {
+    return double(hull_.points().size()) / double(*options_.vertex_budget);
+  }
+  return std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.);
+}
+
 /// Whether the point is a vertex once more, but for rounding: it would make slivers, whose normals
 /// mean nothing.
 bool Sampler::repeats_vertex(const dvec3& point, int facet) {
@@ -247,7 +191,7 @@ bool Sampler::insert(const Sample& sample, const dvec3& point, int facet) {
   if (!hull_.insert(scaled(point), facet)) return false;
   samples_.push_back(sample);
   frame_points_.push_back(scene_.frame().to_frame(point));
-  planes_.resize(hull_.facets().size());
+  planes_.fit();
   for (const int f : hull_.replaced()) planes_[std::size_t(f)].known = false;
   for (const int f : hull_.created()) planes_[std::size_t(f)].known = false;
   return true;
@@ -304,15 +248,16 @@ bool Sampler::refine() {
     options_.progress.check_rarely(++compared);
     return a.gap != b.gap ? a.gap > b.gap : a.facet < b.facet;
   });
-  bool inserted = false;
+  const std::size_t most = most_points();
+  bool inserted = options_.vertex_budget && insert_farthest();
   for (const Candidate& c : candidates) {
     options_.progress.check();
-    if (int(hull_.points().size()) >= options_.max_vertices) break;
+    if (hull_.points().size() >= most) break;
     // A facet that an earlier insertion replaced has lost its plane.
-    const Plane plane = planes_[std::size_t(c.facet)];
+    const FacetPlanes::Plane plane = planes_[std::size_t(c.facet)];
     if (!plane.known || plane.n != c.n) continue;
     // No point is beyond a sliver.
-    const int facet = has_lost_facet(plane) ? c.facet : plane.facet;
+    const int facet = planes_.has_lost_facet(plane) ? c.facet : plane.facet;
     const bool bisected = constraints_ != nullptr && bisect_hidden(plane.point, facet);
     if (bisected || insert({plane.n, plane.contact}, plane.point, facet)) inserted = true;
   }
@@ -339,7 +284,7 @@ SampledPolytope Sampler::result() {
 /// The polytope as it stands somewhere in a round: planes and bounds are not those of all of it,
 /// but the bound of each round before holds.
 SampledPolytope Sampler::unfinished_result() {
-  planes_.resize(hull_.facets().size());
+  planes_.fit();
   for (std::size_t f = 0; f < planes_.size(); ++f) {
     if (!planes_[f].known) planes_[f].h_bound = infinity;
   }
@@ -349,16 +294,18 @@ SampledPolytope Sampler::unfinished_result() {
   return result();
 }
 
-/// Why the tolerance is not reached, none if it is.
+/// Why the tolerance is not reached, none if it is, or there is none but a budget.
 const char* Sampler::refine_to_tolerance() {
+  const auto failure = [&](const char* reason) { return tolerance_ > 0 ? reason : nullptr; };
+  const auto most = std::size_t(options_.vertex_budget.value_or(options_.max_vertices));
   for (;;) {
-    find_planes();
+    planes_.find(samples_, statistics_);
     bound_vertices();
-    // Vertices grow as the inverse of the distance: the orders of magnitude done tell the rounds.
-    options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
+    if (options_.vertex_budget) look_closer();
+    options_.progress.update("sample", share_done());
     if (bound_ <= tolerance_) return nullptr;
-    if (int(hull_.points().size()) >= options_.max_vertices) return vertex_limit_met;
-    if (!refine() && !take_slivers_seriously()) return tolerance_too_fine;
+    if (hull_.points().size() >= most) return failure(vertex_limit_met);
+    if (!refine() && !planes_.take_slivers_seriously()) return failure(tolerance_too_fine);
   }
 }
 

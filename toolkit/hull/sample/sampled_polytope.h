@@ -48,7 +48,8 @@ struct SampledPolytope {
 };
 
 /// Grows the hull of samples by support points, until its distance from the scene's hull is
-/// certified to be within the tolerance (in model units). The samples keep their numbers. Before a
+/// certified to be within the tolerance (in model units), or as far as the budget of vertices goes,
+/// where the tolerance may be 0: none. The samples, no more than that, keep their numbers. Before a
 /// point hides an edge that is to stay, the edge's middle is inserted.
 ///
 /// Where a limit of the progress is met once a distance is certified, the polytope is the one that

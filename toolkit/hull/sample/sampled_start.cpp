@@ -47,6 +47,42 @@ SampledStart sampled_start(const Scene& scene, SupportQuery& query) {
   return start;
 }
 
+SampledStart spanning(const SampledStart& start, double width) {
+  SampledStart few;
+  const auto take = [&](std::size_t k) {
+    few.samples.push_back(start.samples[k]);
+    few.points.push_back(start.points[k]);
+    few.frame_points.push_back(start.frame_points[k]);
+  };
+  const auto rise = [&](std::size_t k) {
+    double highest = -std::numeric_limits<double>::infinity();
+    const dvec3& n = start.samples[k].n;
+    for (const dvec3& x : few.frame_points) highest = std::max(highest, glm::dot(n, x));
+    return glm::dot(n, start.frame_points[k]) - highest;
+  };
+  const auto spans_more = [&](std::size_t k) {
+    std::vector<dvec3> points = few.frame_points;
+    points.push_back(start.frame_points[k]);
+    return affine_span(points, width).dimension == int(few.frame_points.size());
+  };
+  take(std::size_t(start.span.witnesses[0]));
+  while (few.samples.size() < start.span.witnesses.size()) {
+    std::pair<double, std::size_t> best = {0, start.samples.size()};
+    for (std::size_t k = 0; k < start.samples.size(); ++k) {
+      const double own = rise(k);
+      if (own > best.first && spans_more(k)) best = {own, k};
+    }
+    if (best.second == start.samples.size()) break;
+    take(best.second);
+  }
+  if (few.samples.size() < start.span.witnesses.size()) {
+    few = {};
+    for (const int k : start.span.witnesses) take(std::size_t(k));
+  }
+  few.span = affine_span(few.frame_points, width);
+  return few;
+}
+
 double vertex_rounding(const Scene& scene) {
   const dvec3 largest = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
   return rounding_unit * (largest.x + largest.y + largest.z) +

@@ -27,6 +27,10 @@ double meaningful_width(const Scene& scene);
 /// lie in a plane or on a line, those of the directions across it.
 SampledStart sampled_start(const Scene& scene, SupportQuery& query);
 
+/// Four of its samples that span space by more than the width, each the farthest above those before
+/// in its own direction. @pre start.span.dimension == 3
+SampledStart spanning(const SampledStart& start, double width);
+
 /// How far rounding may move a support point out of the hull, in model units: half a unit in the
 /// last place of each stored coordinate, and the evaluation in the frame.
 double vertex_rounding(const Scene& scene);
@@ -36,7 +40,7 @@ inline constexpr double gap_rounding = 16 * rounding_unit;
 
 /// Why a tolerance is not reached.
 inline constexpr const char* vertex_limit_met =
-    "the limit of vertices was met before the tolerance";
+    "the number of vertices allowed was reached before the tolerance";
 inline constexpr const char* tolerance_too_fine =
     "the tolerance is below what double precision can certify here";
 
