@@ -90,6 +90,7 @@ const std::vector<Home> homes = {
     {"libpng", std::regex("(libpng.*/)?png(conf|libconf)?\\.h"), {"toolkit/envelope/"}},
     {"Embree", std::regex("embree.*"), {"toolkit/containment/"}},
     {"pugixml", std::regex("pug(ixml|iconfig)\\..*"), {"toolkit/io/model/"}},
+    {"zlib", std::regex("z(lib|conf)\\.h"), {"toolkit/io/text/"}},
     {"OpenCASCADE", std::regex(".*\\.hxx|opencascade/.*"), {"plugins/occt/"}},
 };
 
@@ -385,6 +386,7 @@ TEST_F(Layers, FindsPlantedThirdPartyAwayFromHome) {
       {"<embree3/rtcore.h>", "toolkit/containment"},
       {"<boost/math/quadrature/gauss.hpp>", "toolkit/verify"},
       {"<pugixml.hpp>", "toolkit/io/model"},
+      {"<zlib.h>", "toolkit/io/text"},
       {"<STEPControl_Reader.hxx>", "plugins/occt"},
   };
   std::vector<std::string> folders = {"plugins/occt", "plugins/irit"};

@@ -291,7 +291,6 @@ TEST(ModelDocument, WarnsOfUnknownKeysAndUnits) {
   EXPECT_EQ(warnings,
             (std::vector<std::string>{
                 "unknown-key f: the key \"by\" of a document is unknown and passed over",
-                "unit f: the unit is \"inch\"; its numbers are taken as they are",
                 "unknown-key f: the key \"colour\" of a part is unknown and passed over"}));
   warnings.clear();
   std::string many = R"({"format": "taut-model", "version": 1, "parts": []})";

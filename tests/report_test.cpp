@@ -64,8 +64,8 @@ TEST(Report, KeysOfTheContractInOrder) {
   const Json json = Json::parse(to_json(full_report()));
   EXPECT_EQ(keys(json), (Keys{"taut", "input", "method", "dimension", "hull", "mesh", "culling",
                               "directions", "queries", "seconds", "peak_bytes", "warnings"}));
-  EXPECT_EQ(keys(json["input"]),
-            (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal", "box"}));
+  EXPECT_EQ(keys(json["input"]), (Keys{"files", "faces", "edges", "vertices", "patches", "diagonal",
+                                       "box", "curves", "points", "unit"}));
   EXPECT_EQ(keys(json["hull"]),
             (Keys{"patches", "scrolls", "facets", "curves", "unresolved", "resolution",
                   "resolution_source", "tolerant", "tolerant_bound", "volume", "area", "centroid",

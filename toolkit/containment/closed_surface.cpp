@@ -24,9 +24,15 @@ const char* name_of(Side side) {
   }
 }
 
-std::string name_of(const Part& part, const Patch& patch, std::size_t number) {
+/// "face 2 ("lid"), side v = 0", with the number of the patch where the face has several.
+std::string name_of(const Part& part, const Patch& patch, std::size_t number, Side side) {
   const std::string& name = part.faces()[std::size_t(patch.face)].name;
-  return "patch " + std::to_string(number) + (name.empty() ? "" : " of " + printable(name));
+  const auto patches = std::count_if(part.patches().begin(), part.patches().end(),
+                                     [&](const Patch& other) { return other.face == patch.face; });
+  std::string text = "face " + std::to_string(patch.face);
+  if (!name.empty()) text += " (\"" + printable(name) + "\")";
+  if (patches > 1) text += ", patch " + std::to_string(number);
+  return text + ", side " + name_of(side);
 }
 
 std::string open_patches(const Part& part) {
@@ -41,8 +47,7 @@ std::string open_patches(const Part& part) {
       if (open++ > 0) continue;
       const bool several =
           border.edge >= 0 && part.edges()[std::size_t(border.edge)].faces.size() > 2;
-      first = name_of(part, patch, k) + " at " + name_of(side) +
-              (several ? ", where more than two meet" : "");
+      first = name_of(part, patch, k, side) + (several ? ", where more than two meet" : "");
     }
   }
   if (open == 0) return {};

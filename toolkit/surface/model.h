@@ -298,6 +298,9 @@ class Model {
 
   const std::vector<Part>& parts() const { return parts_; }
   const std::vector<Instance>& instances() const { return instances_; }
+  /// The name of the unit of its numbers, "mm"; empty where none is known. Nothing depends on it.
+  const std::string& unit() const { return unit_; }
+  void set_unit(std::string unit) { unit_ = std::move(unit); }
 
   int source_count() const;
   /// @pre 0 <= id < source_count()
@@ -324,6 +327,7 @@ class Model {
 
   std::vector<Part> parts_;
   std::vector<Instance> instances_;
+  std::string unit_;
   std::vector<int> first_source_;  // per instance
   int source_count_ = 0;
   int patch_count_ = 0;

@@ -43,6 +43,7 @@ Model placed(Part part, const std::vector<dvec3>& places) {
 std::vector<DataModel> data_models() {
   std::vector<DataModel> all;
   const auto add = [&](const std::string& name, Model model) {
+    model.set_unit("mm");
     all.push_back({name, std::move(model)});
   };
   add("bilinear_saddle", model(part("saddle", bilinear_saddle(), {"z = x y"})));

@@ -5,7 +5,6 @@ namespace taut {
 /// What reader and writer of model documents share.
 inline constexpr const char* document_format = "taut-model";
 inline constexpr int document_version = 1;
-inline constexpr const char* document_unit = "mm";
 
 /// Farthest that a homogeneous coordinate may be from the rounded product of the Euclidean one and
 /// the weight, in doubles. The product of a rounded quotient is off by two at most, but where they

@@ -320,9 +320,19 @@ void check_header(const DocumentNode& root) {
     root.at("version").fail("version " + std::to_string(version) + " is not known, only " +
                             std::to_string(document_version));
   }
-  if (const auto unit = root.find("unit"); unit && unit->string() != document_unit) {
-    root.notes().warning(
-        "unit", "the unit is " + in_quotes(unit->string()) + "; its numbers are taken as they are");
+}
+
+/// Gives the model the document's unit, unless it has one already.
+void take_unit(const DocumentNode& root, Model& model) {
+  const auto node = root.find("unit");
+  if (!node) return;
+  const std::string unit(node->string());
+  if (model.unit().empty()) {
+    model.set_unit(unit);
+  } else if (unit != model.unit()) {
+    root.notes().warning("unit", "the unit is " + in_quotes(unit) +
+                                     ", that of what was read before " + in_quotes(model.unit()) +
+                                     "; its numbers are taken as they are");
   }
 }
 
@@ -363,6 +373,7 @@ void read_document(const std::string& file, std::string_view data, DocumentEncod
   check_header(root);
 
   Model grown = model;
+  take_unit(root, grown);
   const int first = int(grown.parts().size());
   const std::size_t before = grown.instances().size();
   const DocumentNode parts = root.at("parts");

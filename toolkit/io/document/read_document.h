@@ -21,8 +21,8 @@ namespace taut {
 ///   has it, "crease_method" "uniform" or "chaikin", "triangle_rule" "catmark" or "smooth"; the
 ///   first of each where the key is absent. Those of the scheme "bilinear" are polygons, in which
 ///   tags change nothing.
-/// - A model has no unit: the numbers are taken as they stand, with a warning where the unit is
-///   not "mm".
+/// - The unit becomes the model's; numbers are taken as they stand, with a warning where the model
+///   has another unit already.
 /// - Keys that are not known are passed over, with one warning for each kind.
 ///
 /// `file` begins the messages. The model is unchanged if anything is wrong.

@@ -362,7 +362,7 @@ HullDocument read_hull(std::string_view data, const std::string& name, DocumentE
 }
 
 HullDocument read_hull(const std::filesystem::path& path, const Progress& progress) {
-  const std::string kind = extension(path);
+  const std::string kind = input_extension(path);
   if (kind != ".hull.json" && kind != ".hull.cbor") {
     throw IoError(path.string() + ": a hull document is a .hull.json or .hull.cbor");
   }

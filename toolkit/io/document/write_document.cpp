@@ -91,8 +91,10 @@ void ModelWriter::write(const Model& model) {
   out_.text(document_format);
   out_.key("version");
   out_.integer(document_version);
-  out_.key("unit");
-  out_.text(document_unit);
+  if (!model.unit().empty()) {
+    out_.key("unit");
+    out_.text(model.unit());
+  }
   begin_list("parts", model.parts().size());
   for (const Part& part : model.parts()) {
     out_.line();

@@ -2,6 +2,7 @@
 
 #include "taut/io/mesh/mesh_readers.h"
 #include "taut/io/text/formats.h"
+#include "taut/io/text/gunzip.h"
 #include "taut/io/text/text_scanner.h"
 
 namespace taut {
@@ -21,12 +22,13 @@ Reader reader(const std::string& name, const std::string& format) {
 }  // namespace
 
 PolygonMesh read_mesh(const std::filesystem::path& path) {
-  const Reader read = reader(path.string(), extension(path));
+  const Reader read = reader(path.string(), input_extension(path));
   return read(path.string(), read_file(path), {});
 }
 
 PolygonMesh read_mesh(std::string_view data, const std::string& name, const std::string& format) {
-  return reader(name, format)(name, data, {});
+  const Reader read = reader(name, format);
+  return is_gzipped(data) ? read(name, gunzipped(name, data), {}) : read(name, data, {});
 }
 
 }  // namespace taut

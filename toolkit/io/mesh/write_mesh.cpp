@@ -238,6 +238,13 @@ void check_format(const std::string& name, const std::string& format) {
 
 }  // namespace
 
+double float_rounding_bound(const Box& box) {
+  if (box.empty()) return 0;
+  constexpr double unit = std::numeric_limits<float>::epsilon() / 2;
+  const double reach = glm::length(glm::max(glm::abs(box.lower), glm::abs(box.upper)));
+  return std::max(unit * reach, double(std::numeric_limits<float>::denorm_min()));
+}
+
 WrittenMesh write_mesh(const std::filesystem::path& path, const HullMesh& mesh) {
   const std::string format = extension(path);
   check_format(path.string(), format);

@@ -14,6 +14,9 @@ struct WrittenMesh {
   double rounding = 0;
 };
 
+/// How far rounding to float, as STL does it, moves a point of the box at most.
+double float_rounding_bound(const Box& box);
+
 /// Writes a hull mesh by the file name's extension: `.ply` (binary, doubles, with the origin of
 /// every vertex and face and colours), `.obj` (grouped by hull face, with an .mtl beside it),
 /// `.off`, `.stl` (binary, float).

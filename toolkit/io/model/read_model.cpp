@@ -6,6 +6,7 @@
 #include "taut/io/model/read_part.h"
 #include "taut/io/model/read_project.h"
 #include "taut/io/text/formats.h"
+#include "taut/io/text/gunzip.h"
 #include "taut/io/text/text_scanner.h"
 
 namespace taut {
@@ -13,13 +14,18 @@ namespace {
 
 /// @throws IoError
 void require_known(const std::string& name, const std::string& format) {
+  if (const std::string advice = advice_on(format); !advice.empty()) {
+    throw IoError(name + ": " + advice);
+  }
   std::string known;
   for (const Format& f : formats()) {
     if (!f.reads_model) continue;
     if (f.extension == format) return;
     known += (known.empty() ? "" : ", ") + f.extension;
   }
-  throw IoError(name + ": no format of models has the extension " + in_quotes(format) +
+  throw IoError(name + ": " +
+                (format.empty() ? std::string("its name has no extension that tells the format")
+                                : "no format of models has the extension " + in_quotes(format)) +
                 "; known are " + known);
 }
 
@@ -39,9 +45,13 @@ void add(FileContent content, const std::string& name, Model& model, const ReadO
 
 void read_model(const std::filesystem::path& path, Model& model, const ReadOptions& options) {
   const std::string name = path.string();
-  const std::string format = extension(path);
+  const std::string format = input_extension(path);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw IoError(name + ": is a folder; name a file in it");
+  }
   require_known(name, format);
-  std::string data = read_file(path);
+  std::string data = read_file(path, options.progress);
   if (!is_part_format(format)) return read_model(data, name, format, model, options);
   FileContent content = read_content(data, name, format, options);
   std::string().swap(data);
@@ -51,6 +61,9 @@ void read_model(const std::filesystem::path& path, Model& model, const ReadOptio
 void read_model(std::string_view data, const std::string& name, const std::string& format,
                 Model& model, const ReadOptions& options) {
   require_known(name, format);
+  if (is_gzipped(data)) {
+    return read_model(gunzipped(name, data, options.progress), name, format, model, options);
+  }
   if (is_part_format(format)) {
     add(read_content(data, name, format, options), name, model, options);
   } else if (format == ".mlp") {

@@ -15,8 +15,9 @@
 namespace taut {
 
 bool is_part_format(std::string_view format) {
-  constexpr std::array<std::string_view, 6> all = {".bpt", ".obj", ".off", ".ply", ".stl", ".xyz"};
-  return std::find(all.begin(), all.end(), format) != all.end();
+  constexpr std::array<std::string_view, 5> others = {".bpt", ".obj", ".off", ".ply", ".stl"};
+  return is_points_format(format) ||
+         std::find(others.begin(), others.end(), format) != others.end();
 }
 
 FileContent read_content(std::string_view data, const std::string& name, std::string_view format,
@@ -29,7 +30,7 @@ FileContent read_content(std::string_view data, const std::string& name, std::st
   if (format == ".off") content.mesh = read_off(name, data, progress);
   if (format == ".ply") content.mesh = read_ply(name, data, progress);
   if (format == ".stl") content.mesh = read_stl(name, data, progress);
-  if (format == ".xyz") content.mesh.points = read_xyz(name, data, progress);
+  if (is_points_format(format)) content.mesh.points = read_xyz(name, data, progress);
   const Scheme scheme = options.scheme.value_or(Scheme::bilinear);
   if (scheme == Scheme::bilinear || content.mesh.polygons.empty()) return content;
   if (format == ".stl") {

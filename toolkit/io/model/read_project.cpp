@@ -245,7 +245,7 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
   const auto known = files_.find(key);
   if (known != files_.end()) return known->second;
   const std::string name = printable(path.string(), longest_path);
-  const std::string format = extension(path);
+  const std::string format = input_extension(path);
   if (name != path.string()) {
     throw IoError(name + ": the name has control characters or is too long");
   }
@@ -257,7 +257,7 @@ ProjectLoader::File& ProjectLoader::file(const std::filesystem::path& path) {
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
     throw IoError(name + ": is no file");
   }
-  FileContent content = read_content(read_file(path), name, format, options_);
+  FileContent content = read_content(read_file(path, options_.progress), name, format, options_);
   return files_.emplace(key, File{as_part(std::move(content), name, options_), {}, false})
       .first->second;
 }

@@ -1,6 +1,7 @@
 #include "taut/io/model/read_xyz.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -34,6 +35,7 @@ class XyzReader {
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
   std::size_t most_points() const;
   void pass_line_end();
+  bool read_names();
   void read_line();
   double read_number();
   double read_unusual_number();
@@ -82,8 +84,30 @@ void XyzReader::pass_line_end() {
   ++line_;
 }
 
+/// Passes over the names of columns where they stand.
+bool XyzReader::read_names() {
+  constexpr std::string_view axes = "xyz";
+  const char* const begin = at_;
+  for (const char axis : axes) {
+    const char* const end = std::find_if(at_, end_, is_word_end);
+    std::string_view name(at_, static_cast<std::size_t>(end - at_));
+    if (name.size() == 3 && name.front() == '"' && name.back() == '"') name = name.substr(1, 1);
+    if (name.size() != 1 || (name[0] != axis && name[0] != axis - 'a' + 'A')) {
+      at_ = begin;
+      return false;
+    }
+    at_ = end;
+    read_separator();
+  }
+  return true;
+}
+
 /// @pre the line has a word
 void XyzReader::read_line() {
+  if (first_ && read_names()) {
+    first_ = false;
+    return;
+  }
   if (announced_ && points_.size() == *announced_) {
     scanner_.fail(line_, "more follows the last of the " + std::to_string(*announced_) +
                              " points that were announced");
@@ -160,6 +184,11 @@ void XyzReader::check_count() const {
 }
 
 }  // namespace
+
+bool is_points_format(std::string_view format) {
+  constexpr std::array<std::string_view, 4> all = {".csv", ".pts", ".txt", ".xyz"};
+  return std::find(all.begin(), all.end(), format) != all.end();
+}
 
 std::vector<dvec3> read_xyz(const std::string& file, std::string_view data,
                             const Progress& progress) {

@@ -210,9 +210,11 @@ std::vector<std::filesystem::path> project_files(const std::filesystem::path& pa
   return files;
 }
 
-void write_project(const std::filesystem::path& path, const HullMesh& mesh,
-                   const std::vector<Polyline>& curves, const Model& model,
-                   const std::vector<Polyline>& tolerant) {
+std::vector<std::filesystem::path> write_project(const std::filesystem::path& path,
+                                                 const HullMesh& mesh,
+                                                 const std::vector<Polyline>& curves,
+                                                 const Model& model,
+                                                 const std::vector<Polyline>& tolerant) {
   const std::vector<std::filesystem::path> files = project_files(path);
   std::vector<std::unique_ptr<OutputFile>> outputs;
   std::vector<std::size_t> layers;
@@ -242,6 +244,10 @@ void write_project(const std::filesystem::path& path, const HullMesh& mesh,
     for (std::size_t i = 0; i < published; ++i) outputs[i]->withdraw();
     throw;
   }
+  std::vector<std::filesystem::path> written;
+  for (const std::size_t i : layers) written.push_back(files[i]);
+  written.push_back(path);
+  return written;
 }
 
 }  // namespace taut

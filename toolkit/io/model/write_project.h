@@ -29,10 +29,12 @@ std::vector<std::filesystem::path> project_files(const std::filesystem::path& pa
 /// tolerant faces. A hull without curves has no layer of them, one without tolerant faces none of
 /// those about them.
 ///
-/// The files appear all, or none does.
+/// The files appear all, or none does; returns them, the project last.
 /// @throws IoError if one of them cannot be written
-void write_project(const std::filesystem::path& path, const HullMesh& mesh,
-                   const std::vector<Polyline>& curves, const Model& model,
-                   const std::vector<Polyline>& tolerant = {});
+std::vector<std::filesystem::path> write_project(const std::filesystem::path& path,
+                                                 const HullMesh& mesh,
+                                                 const std::vector<Polyline>& curves,
+                                                 const Model& model,
+                                                 const std::vector<Polyline>& tolerant = {});
 
 }  // namespace taut

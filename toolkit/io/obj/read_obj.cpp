@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -305,8 +306,10 @@ FileContent read_obj(const std::string& name, std::string_view data, const ReadO
   TextScanner scanner(name, data);
   ObjFile file = parse_obj(scanner, options.progress);
   if (file.elements.empty() && file.polygons.empty() && file.points.empty()) {
-    throw InvalidInput(name + ": holds no geometry" +
-                       (file.vertices.empty() ? "" : ", only vertices that nothing uses"));
+    if (file.vertices.empty()) throw InvalidInput(name + ": holds no geometry");
+    // Nothing says what the vertices are for: they are points.
+    file.points.resize(file.vertices.size());
+    std::iota(file.points.begin(), file.points.end(), 0);
   }
   Builder builder(scanner, file, data.size());
   for (const ObjElement& element : file.elements) {

@@ -14,10 +14,20 @@ ReportJson to_json(const Report::Input& input) {
                      {"edges", input.edges},     {"vertices", input.vertices},
                      {"patches", input.patches}, {"diagonal", input.diagonal}};
   if (!input.box.empty()) json["box"] = {to_json(input.box.lower), to_json(input.box.upper)};
+  json["curves"] = input.curves;
+  json["points"] = input.points;
+  json["unit"] = input.unit.empty() ? ReportJson() : ReportJson(input.unit);
   return json;
 }
 
-ReportJson to_json(const Report::ExactHull& hull) {
+/// The area, and that of both sides where it is that of one.
+void add_area(ReportJson& json, double area, int dimension) {
+  constexpr int planar = 2;
+  json["area"] = area;
+  if (dimension == planar) json["area_of_both_sides"] = 2 * area;
+}
+
+ReportJson to_json(const Report::ExactHull& hull, int dimension) {
   ReportJson json = ReportJson::object();
   if (hull.counts) {
     json["patches"] = hull.counts->patches;
@@ -37,27 +47,30 @@ ReportJson to_json(const Report::ExactHull& hull) {
   if (hull.measures) {
     const dmat3& inertia = hull.measures->inertia;  // symmetric: columns are rows
     json["volume"] = hull.measures->volume;
-    json["area"] = hull.measures->area;
+    add_area(json, hull.measures->area, dimension);
     json["centroid"] = to_json(hull.measures->centroid);
     json["inertia"] = {to_json(inertia[0]), to_json(inertia[1]), to_json(inertia[2])};
   }
   if (hull.mean_width) json["mean_width"] = *hull.mean_width;
   if (hull.measures_accuracy) json["measures_accuracy"] = *hull.measures_accuracy;
   if (hull.gap_bound) json["gap_bound"] = *hull.gap_bound;
+  if (hull.dropped > 0) json["dropped"] = hull.dropped;
   return json;
 }
 
-ReportJson to_json(const Report::Mesh& mesh) {
-  ReportJson files = ReportJson::array();
-  for (const auto& f : mesh.files) files.push_back({{"file", f.file}, {"rounding", f.rounding}});
-  return {{"vertices", mesh.vertices},
-          {"edges", mesh.edges},
-          {"faces", mesh.faces},
-          {"volume", mesh.measures.volume},
-          {"area", mesh.measures.area},
-          {"tolerance", mesh.tolerance},
-          {"distance_bound", mesh.distance_bound},
-          {"files", files}};
+ReportJson to_json(const Report::Mesh& mesh, int dimension) {
+  ReportJson json = {{"vertices", mesh.vertices},
+                     {"edges", mesh.edges},
+                     {"faces", mesh.faces},
+                     {"volume", mesh.measures.volume}};
+  add_area(json, mesh.measures.area, dimension);
+  json["tolerance"] = mesh.tolerance;
+  json["distance_bound"] = mesh.distance_bound;
+  json["files"] = ReportJson::array();
+  for (const auto& f : mesh.files) {
+    json["files"].push_back({{"file", f.file}, {"rounding", f.rounding}});
+  }
+  return json;
 }
 
 ReportJson to_json(const Report::Queries& queries) {
@@ -80,9 +93,12 @@ ReportJson to_json(const std::vector<Warning>& warnings) {
 }  // namespace
 
 std::string to_json(const Report& report) {
-  ReportJson json = {{"taut", TAUT_VERSION},         {"input", to_json(report.input)},
-                     {"method", report.method},      {"dimension", report.dimension},
-                     {"hull", to_json(report.hull)}, {"mesh", to_json(report.mesh)}};
+  ReportJson json = {{"taut", TAUT_VERSION},
+                     {"input", to_json(report.input)},
+                     {"method", report.method},
+                     {"dimension", report.dimension},
+                     {"hull", to_json(report.hull, report.dimension)},
+                     {"mesh", to_json(report.mesh, report.dimension)}};
   if (report.subdivision) {
     json["subdivision"] = {{"irregular_faces", report.subdivision->irregular_faces},
                            {"refined_faces", report.subdivision->refined_faces},

@@ -20,10 +20,14 @@ struct Report {
   struct Input {
     std::vector<std::string> files;
     int faces = 0, edges = 0, vertices = 0, patches = 0;
+    /// Of the edges, those of no face; of the vertices, those that were given as points.
+    int curves = 0, points = 0;
+    std::string unit;  ///< of lengths, "mm"; empty: none is known
     double diagonal = 0;
     Box box;
   } input;
   std::string method;
+  /// Below 3, areas are those of one side.
   int dimension = 3;
   /// The true hull, as far as the method knows it: `sampled` bounds the gap only.
   struct ExactHull {
@@ -43,11 +47,13 @@ struct Report {
     /// Estimated relative accuracy of volume, area and mean width (BoundaryMeasures).
     std::optional<double> measures_accuracy;
     std::optional<double> gap_bound;
+    /// Hull::points_left_out.
+    long dropped = 0;
   } hull;
   struct Mesh {
     long vertices = 0, edges = 0, faces = 0;
     Measures measures;
-    double tolerance = 0;
+    double tolerance = 0;  ///< 0: none, but a budget of vertices
     double distance_bound = 0;
     /// What was written; `rounding` as WrittenMesh has it, to be added to distance_bound.
     struct File {

@@ -25,4 +25,11 @@ const std::vector<Format>& formats();
 /// words in theirs: ".taut.json", ".taut.cbor", ".hull.json", ".hull.cbor".
 std::string extension(const std::filesystem::path& path);
 
+/// The extension of a file to read, which may be compressed: ".ply" of "a.ply.gz".
+std::string input_extension(const std::filesystem::path& path);
+
+/// How to come by a model in a format that is not read here, though others do: a sentence; empty
+/// where nothing is known of the extension.
+std::string advice_on(const std::string& extension);
+
 }  // namespace taut

@@ -64,7 +64,11 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (!file_) {
     const int error = errno;
     temporary_.clear();
-    fail("cannot be written", reason(error));
+    std::error_code ignored;
+    const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+    const bool refuses = error == ENOENT && std::filesystem::is_directory(folder, ignored);
+    fail("cannot be written",
+         refuses ? "the folder " + folder.string() + " takes no new files" : reason(error));
   }
   unpublished().files.push_back(&temporary_);
 }

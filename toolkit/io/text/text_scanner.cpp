@@ -10,6 +10,8 @@
 #include <memory>
 #include <utility>
 
+#include "taut/io/text/gunzip.h"
+
 namespace taut {
 namespace {
 
@@ -60,10 +62,11 @@ bool underflows(std::string_view number) {
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& path) {
+std::string read_file(const std::filesystem::path& path, const Progress& progress) {
   const std::string name = path.string();
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw IoError(name + ": is a directory");
+  if (std::filesystem::is_directory(path, error))
+    throw IoError(name + ": is a folder; name a file in it");
   if (std::filesystem::is_character_file(path, error)) throw IoError(name + ": is a device");
   const std::unique_ptr<std::FILE, Close> file(std::fopen(name.c_str(), "rb"));
   if (!file) throw IoError(name + ": cannot be opened: " + std::strerror(errno));
@@ -86,7 +89,7 @@ std::string read_file(const std::filesystem::path& path) {
   }
   if (std::ferror(file.get()) != 0) throw IoError(name + ": cannot be read");
   data.resize(used);
-  return data;
+  return is_gzipped(data) ? gunzipped(name, data, progress) : data;
 }
 
 std::string in_quotes(std::string_view word) {

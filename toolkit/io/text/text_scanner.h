@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "taut/core/error.h"
+#include "taut/core/progress.h"
 
 namespace taut {
 
@@ -14,9 +15,10 @@ namespace taut {
 /// line and byte numbers as well as vertex indices stay small.
 inline constexpr std::size_t max_file_bytes = std::size_t{1} << 31;
 
-/// The whole file.
-/// @throws IoError if it cannot be read, LimitExceeded above max_file_bytes
-std::string read_file(const std::filesystem::path& path);
+/// The whole file, without its compression if it is gzipped.
+/// @throws IoError if it cannot be read or is damaged, LimitExceeded above max_file_bytes;
+/// Cancelled, LimitMet
+std::string read_file(const std::filesystem::path& path, const Progress& progress = {});
 
 /// A word of a text file and the line that it begins on.
 struct Word {
