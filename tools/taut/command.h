@@ -35,5 +35,7 @@ Command add_support(CLI::App& parent);
 Command add_contains(CLI::App& parent);
 Command add_verify(CLI::App& parent);
 Command add_plugins(CLI::App& parent);
+/// `taut help COMMAND`, of the parent's commands.
+Command add_help(CLI::App& parent);
 
 }  // namespace taut::tool

@@ -12,6 +12,7 @@
 #include "taut/core/progress.h"
 #include "taut/core/stopwatch.h"
 #include "taut/io/report/report.h"
+#include "text.h"
 
 namespace taut::tool {
 
@@ -62,6 +63,8 @@ class Console {
   const std::vector<Warning>& warnings() const { return warnings_; }
   /// Shows a line on stderr with -v.
   void note(std::string_view text);
+  /// Shows one of several failures, of which the last is thrown.
+  void error(std::string_view text) { message("taut: " + one_line(text)); }
   /// Writes results to stdout. @throws IoError
   void print(std::string_view text);
   /// Takes the progress bar away.

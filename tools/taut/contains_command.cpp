@@ -168,8 +168,10 @@ Command add_contains(CLI::App& parent) {
   const auto options = std::make_shared<ContainsOptions>();
   add_inputs(*command.app, options->inputs);
   command.app
-      ->add_option("--points", options->points,
-                   "One point a line: three numbers; '#' begins a comment; - is standard\ninput")
+      ->add_option(
+          "--points", options->points,
+          "One point a line: three numbers, apart by blanks, commas or semicolons;\n'#' begins a "
+          "comment; - is standard input")
       ->required()
       ->type_name("FILE");
   command.app

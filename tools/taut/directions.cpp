@@ -70,14 +70,29 @@ class LineReader {
   long line_ = 0;
 };
 
-std::vector<std::string_view> words(std::string_view line) {
-  constexpr std::string_view space = " \t\r\v\f";
+/// The columns of a line up to a comment. They stand apart by blanks, or by one comma or semicolon
+/// each, the same way within a line, as in files of points.
+std::vector<std::string_view> columns(std::string_view line, const std::string& place) {
+  constexpr std::string_view blanks = " \t\r\v\f";
   line = line.substr(0, line.find('#'));
+  const auto skip_blanks = [&] {
+    line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  };
   std::vector<std::string_view> found;
-  for (std::size_t begin = line.find_first_not_of(space); begin != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(space, begin), line.size());
-    found.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(space, end);
+  std::string separators;  // the kinds of them that were met
+  for (skip_blanks(); !line.empty(); skip_blanks()) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r\v\f,;"), line.size());
+    found.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+    skip_blanks();
+    if (line.empty()) break;
+    const bool by_blanks = line.front() != ',' && line.front() != ';';
+    const char separator = by_blanks ? ' ' : line.front();
+    if (!by_blanks) line.remove_prefix(1);
+    if (separators.find(separator) == std::string::npos) separators += separator;
+  }
+  if (separators.size() > 1) {
+    throw IoError(place + "columns stand apart in more than one way; decimal commas are not read");
   }
   return found;
 }
@@ -86,8 +101,8 @@ std::vector<std::string_view> words(std::string_view line) {
 dvec3 parse_vector(const std::vector<std::string_view>& fields, const std::string& place,
                    const std::string& what) {
   if (fields.size() != 3) {
-    throw IoError(place + "a " + what + " has three numbers, here are " +
-                  number(long(fields.size())) + " words");
+    throw IoError(place + "a " + what + " has three numbers, found " +
+                  counted(long(fields.size()), "word", "words"));
   }
   dvec3 vector(0.0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -108,7 +123,7 @@ void read_vectors(const std::string& path, const Stop& stop, const std::string& 
   LineReader reader(path, stop);
   std::string line;
   while (reader.next(line)) {
-    const auto fields = words(line);
+    const auto fields = columns(line, reader.place());
     if (!fields.empty()) take(parse_vector(fields, reader.place(), what), reader.place());
   }
 }

@@ -88,6 +88,9 @@ Report::Input total(const std::vector<Contents>& files) {
     total.edges += file.summary.edges;
     total.vertices += file.summary.vertices;
     total.patches += file.summary.patches;
+    total.curves += file.summary.curves;
+    total.points += file.summary.points;
+    if (total.unit.empty()) total.unit = file.summary.unit;
     total.box.include(file.summary.box);
   }
   total.diagonal = diagonal(total.box);
@@ -135,6 +138,7 @@ Json json_of(const Contents& file) {
   }
   json["trimmed"] = file.trimmed;
   json["rational"] = file.rational > 0;
+  json["unit"] = counts["unit"];
   json["diagonal"] = counts["diagonal"];
   json["box"] = counts["box"];
   if (file.resolution) {
@@ -169,7 +173,8 @@ std::string sizes_text(const Report::Input& input) {
          (input.box.empty() ? ""
                             : "  box       " + point_text(input.box.lower) + "  to  " +
                                   point_text(input.box.upper) + "\n" +  //
-                                  "  diagonal  " + number(input.diagonal, 9) + "\n");
+                                  "  diagonal  " + number(input.diagonal, 9) + "\n") +
+         (input.unit.empty() ? "" : "  unit      " + one_line(input.unit) + "\n");
 }
 
 std::string text_of(const Contents& file, bool names) {
@@ -218,6 +223,7 @@ class Collection {
  public:
   void add(const Model& model) {
     const int first = int(all_.parts().size());
+    if (unit_.empty()) unit_ = model.unit();
     // Parts are connected already, by the angle they were read with.
     for (const Part& part : model.parts()) all_.add_part(part, 0);
     for (const Instance& instance : model.instances()) {
@@ -225,6 +231,7 @@ class Collection {
     }
   }
   Model take() {
+    all_.set_unit(unit_);
     all_.clear_instances();
     for (const Instance& instance : instances_) all_.add_instance(instance.part, instance.pose);
     return std::move(all_);
@@ -233,25 +240,48 @@ class Collection {
  private:
   Model all_;
   std::vector<Instance> instances_;
+  std::string unit_;  ///< the first that is known
 };
-
-void check_output(const std::string& output, const std::vector<std::string>& inputs) {
-  const std::string kind = extension(output);
-  if (kind != ".taut.json" && kind != ".taut.cbor") {
-    throw UsageError(output + ": a model is written as .taut.json or .taut.cbor only");
-  }
-  check_outputs({}, "", output, inputs);
-}
 
 struct InfoArguments {
   InputArguments inputs;
   std::string output;  ///< the model document that all inputs are written to, or empty
   std::optional<double> resolution;
+
+  std::string output_format() const {
+    return output == "-" ? inputs.output_extension() : extension(output);
+  }
 };
+
+void check_output(const InfoArguments& arguments, bool json) {
+  const std::string& output = arguments.output;
+  const std::string format = arguments.output_format();
+  if (output == "-" && format.empty()) {
+    throw UsageError("standard output needs its format, such as --to taut.json");
+  }
+  if (format != ".taut.json" && format != ".taut.cbor") {
+    throw UsageError((output == "-" ? format : output) +
+                     ": a model is written as .taut.json or .taut.cbor only");
+  }
+  if (output == "-" && json) throw UsageError("only one thing can be written to standard output");
+  check_outputs({}, "", output, arguments.inputs.files);
+}
+
+/// "-" is standard output.
+void write_document(const InfoArguments& arguments, const Model& model, Console& console) {
+  if (arguments.output == "-") {
+    console.print(to_document(model, arguments.output_format() == ".taut.json"
+                                         ? DocumentEncoding::json
+                                         : DocumentEncoding::cbor));
+    return;
+  }
+  write_model(arguments.output, model);
+  console.note("wrote " + arguments.output);
+}
 
 ExitCode run(const InfoArguments& arguments, Console& console) {
   const auto& [inputs, output, resolution] = arguments;
-  if (!output.empty()) check_output(output, inputs.files);
+  if (!output.empty()) check_output(arguments, console.options().json);
   std::vector<Contents> files;
   Collection collection;
   double seconds_read = 0;
@@ -266,8 +296,8 @@ ExitCode run(const InfoArguments& arguments, Console& console) {
     if (!output.empty()) collection.add(input.model());
   }
   if (!output.empty()) {
-    write_model(output, collection.take());
-    console.note("wrote " + output);
+    write_document(arguments, collection.take(), console);
+    if (output == "-") return ExitCode::done;
   }
   if (console.options().json) {
     Json list = Json::array();
@@ -299,9 +329,12 @@ Command add_info(CLI::App& parent) {
   add_inputs(*command.app, arguments->inputs);
   add_resolution(*command.app, arguments->resolution);
   command.app
-      ->add_option("-o,--output", arguments->output,
-                   "Model document that all inputs are written to: .taut.json, .taut.cbor")
+      ->add_option(
+          "-o,--output", arguments->output,
+          "Model document that all inputs are written to: .taut.json,\n.taut.cbor; - is standard "
+          "output, see --to")
       ->option_text("FILE");
+  add_output_format(*command.app, arguments->inputs);
   command.run = [arguments](Console& console) { return run(*arguments, console); };
   return command;
 }

@@ -22,17 +22,26 @@ std::optional<Scheme> scheme_of(const std::string& name) {
 /// @throws UsageError, IoError
 void read_from_standard_input(const InputArguments& arguments, Model& model,
                               const ReadOptions& options) {
-  if (arguments.format.empty()) {
-    throw UsageError("standard input needs --format, such as --format ply");
-  }
-  read_model(read_standard_input(options.progress.stop), standard_input, arguments.extension(),
-             model, options);
+  const std::string format = arguments.input_extension();
+  if (format.empty()) throw UsageError("standard input needs its format, such as --from ply");
+  read_model(read_standard_input(options.progress.stop), standard_input, format, model, options);
+}
+
+/// A format as an extension: ".ply" for "ply"; an empty one stays so.
+std::string with_dot(const std::string& format) {
+  return format.empty() || format.starts_with(".") ? format : "." + format;
 }
 
 }  // namespace
 
-std::string InputArguments::extension() const {
-  return format.empty() || format.starts_with(".") ? format : "." + format;
+std::string InputArguments::extension() const { return with_dot(format); }
+
+std::string InputArguments::input_extension() const {
+  return from.empty() ? extension() : with_dot(from);
+}
+
+std::string InputArguments::output_extension() const {
+  return to.empty() ? extension() : with_dot(to);
 }
 
 Input::Input(const InputArguments& arguments, Console& console)
@@ -75,6 +84,13 @@ Report::Input Input::summary() {
   summary.edges = model().edge_count();
   summary.vertices = model().vertex_count();
   summary.patches = model().patch_count();
+  for (const Instance& instance : model().instances()) {
+    const Part& part = model().parts()[std::size_t(instance.part)];
+    summary.curves += int(std::count_if(part.edges().begin(), part.edges().end(),
+                                        [](const Edge& edge) { return edge.faces.empty(); }));
+    summary.points += part.point_count();
+  }
+  summary.unit = model().unit();
   if (model().polyhedral()) {
     summary.box = model().control_box();
   } else if (trimmed_face_count(model()) == 0) {
@@ -106,10 +122,12 @@ void add_inputs(CLI::App& command, InputArguments& arguments) {
       ->required()
       ->option_text("FILE...");
   command
-      .add_option("--format", arguments.format,
-                  "Format of what is read from standard input or written to\nstandard output: ply, "
-                  "obj, taut.json, ...")
+      .add_option(
+          "--format", arguments.format,
+          "Format of what is read from standard input and written to\nstandard output: ply, "
+          "obj, taut.json, ...")
       ->type_name("FORMAT");
+  command.add_option("--from", arguments.from, "That of standard input alone")->type_name("FORMAT");
   command
       .add_option(
           "--scheme", arguments.scheme,
@@ -117,12 +135,17 @@ void add_inputs(CLI::App& command, InputArguments& arguments) {
           "a subdivision surface. Default: bilinear, but of .obj\nfiles with the tags of a "
           "cage loop where all are triangles, else\ncatmark")
       ->check(CLI::IsMember({"bilinear", "catmark", "loop"}).description(""))
-      ->type_name("SCHEME");
+      ->type_name("bilinear|catmark|loop");
   add_positive(
       command, "--cage-accuracy", arguments.cage_accuracy,
       "What may be left of the exact surface of a control cage near\nextraordinary vertices, as "
       "a fraction of the diagonal; default 1e-9")
       ->type_name("R");
+}
+
+void add_output_format(CLI::App& command, InputArguments& arguments) {
+  command.add_option("--to", arguments.to, "Format of what is written to standard output")
+      ->type_name("FORMAT");
 }
 
 Json to_json(const Box& box) {
@@ -136,6 +159,9 @@ Json to_json(const Report::Input& input) {
           {"edges", input.edges},
           {"vertices", input.vertices},
           {"patches", input.patches},
+          {"curves", input.curves},
+          {"points", input.points},
+          {"unit", input.unit.empty() ? Json() : Json(input.unit)},
           {"diagonal", input.box.empty() ? Json() : Json(input.diagonal)},
           {"box", input.box.empty() ? Json() : to_json(input.box)}};
 }

@@ -17,11 +17,16 @@ using Json = nlohmann::ordered_json;
 struct InputArguments {
   std::vector<std::string> files;  ///< "-" is standard input
   std::string format;              ///< of standard input and output; may begin with a dot
+  std::string from;                ///< of standard input, before `format`
+  std::string to;                  ///< of standard output, before `format`
   std::string scheme;              ///< empty: by the files
   std::optional<double> cage_accuracy;
 
-  /// The format as an extension, with its dot; empty if it is not given.
+  /// The format of both as an extension, with its dot; empty if it is not given.
   std::string extension() const;
+  /// Those of standard input and output.
+  std::string input_extension() const;
+  std::string output_extension() const;
 };
 
 /// Input files read as one model, and its scene where that is asked for.
@@ -61,6 +66,9 @@ int trimmed_face_count(const Model& model);
 
 /// Adds the positional arguments INPUT... and the options on how to read them.
 void add_inputs(CLI::App& command, InputArguments& arguments);
+
+/// Adds the option --to, of commands that write to standard output.
+void add_output_format(CLI::App& command, InputArguments& arguments);
 
 Json to_json(const Box& box);
 Json to_json(const Report::Input& input);

@@ -101,12 +101,12 @@ class CommandLine {
         "  taut hull teapot.bpt -o hull.ply            the convex hull as a mesh\n"
         "  taut info teapot.bpt                        what a file holds\n"
         "  taut verify hull.ply teapot.bpt             is this mesh its hull?\n"
-        "  taut hull --help                            more on a command");
+        "  taut hull --help                            more on a command; also: taut help hull");
     app_.set_help_flag("-h,--help", "Print this help and exit");
     app_.set_version_flag("--version", "taut " TAUT_VERSION);
     app_.require_subcommand(1);
     commands_ = {add_hull(app_),     add_info(app_),   add_support(app_), add_contains(app_),
-                 add_envelope(app_), add_verify(app_), add_plugins(app_)};
+                 add_envelope(app_), add_verify(app_), add_plugins(app_), add_help(app_)};
     // Last, so that help shows them last.
     for (const Command& command : commands_) add_common_options(*command.app, *command.common);
   }

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 void check_extension(const std::string& file, const std::string& stdout_format) {
   if (file == "-" && stdout_format.empty()) {
-    throw UsageError("standard output needs --format, such as --format ply");
+    throw UsageError("standard output needs its format, such as --to ply");
   }
   const std::string wanted = file == "-" ? stdout_format : extension(file);
   std::vector<std::string> known;
@@ -38,28 +38,43 @@ void check_extension(const std::string& file, const std::string& stdout_format) 
                    "; known are " + joined(known, " "));
 }
 
-void check_place(const std::string& file) {
+/// Why the file cannot be written; empty if nothing shows that.
+std::string fault_of_place(const std::string& file) {
+  const auto fault = [&](const std::string& reason) {
+    return file + ": cannot be written: " + reason;
+  };
   const fs::path path(file);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code error;
-  if (!fs::exists(folder, error)) {
-    throw IoError(file + ": cannot be written: there is no folder " + folder.string());
-  }
-  if (!fs::is_directory(folder, error)) {
-    throw IoError(file + ": cannot be written: " + folder.string() + " is no folder");
-  }
-  if (fs::is_directory(path, error)) {
-    throw IoError(file + ": cannot be written: it is a folder");
-  }
+  if (!fs::exists(folder, error)) return fault("there is no folder " + folder.string());
+  if (!fs::is_directory(folder, error)) return fault(folder.string() + " is no folder");
+  if (fs::is_directory(path, error)) return fault("it is a folder");
   const bool there = fs::exists(path, error);
-  if (there && access(file.c_str(), W_OK) != 0) {
-    throw IoError(file + ": cannot be written: " + system_reason());
-  }
+  if (there && access(file.c_str(), W_OK) != 0) return fault(system_reason());
   // A file is written beside its place first, a pipe or device in its place.
   const bool beside = !there || fs::is_regular_file(path, error);
   if (beside && access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw IoError(file + ": cannot be written: " + folder.string() + ": " + system_reason());
+    return fault(folder.string() + ": " + system_reason());
   }
+  return {};
+}
+
+/// The files that an output is written as.
+std::vector<std::string> files_of(const std::string& output) {
+  if (output == "-") return {};
+  if (extension(output) != ".mlp") return {output};
+  std::vector<std::string> files;
+  for (const fs::path& layer : project_files(output)) files.push_back(layer.string());
+  return files;
+}
+
+/// The first fault of its files.
+std::string fault_of_output(const std::string& output) {
+  for (const std::string& file : files_of(output)) {
+    std::string fault = fault_of_place(file);
+    if (!fault.empty()) return fault;
+  }
+  return {};
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -70,28 +85,9 @@ bool same_file(const std::string& a, const std::string& b) {
   return !first.empty() && first == second;
 }
 
-void write_whole(std::FILE* file, const std::string& path, std::string_view text) {
-  const bool written =
-      std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
-  if (!written) throw IoError(path + ": cannot be written: " + system_reason());
-}
-
-}  // namespace
-
-void check_outputs(const std::vector<std::string>& hulls, const std::string& stdout_format,
-                   const std::string& report, const std::vector<std::string>& inputs) {
-  for (const std::string& file : hulls) check_extension(file, stdout_format);
-  std::vector<std::string> outputs;
-  for (const std::string& file : hulls) {
-    if (file == "-") continue;
-    if (extension(file) == ".mlp") {
-      for (const fs::path& layer : project_files(file)) outputs.push_back(layer.string());
-    } else {
-      outputs.push_back(file);
-    }
-  }
-  if (!report.empty() && report != "-") outputs.push_back(report);
-  for (const std::string& file : outputs) check_place(file);
+/// @throws UsageError if a file is named twice or is also an input
+void check_distinct(const std::vector<std::string>& outputs,
+                    const std::vector<std::string>& inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (same_file(outputs[i], outputs[k])) {
@@ -102,6 +98,39 @@ void check_outputs(const std::vector<std::string>& hulls, const std::string& std
       if (same_file(outputs[i], input)) throw UsageError(outputs[i] + ": is an input");
     }
   }
+}
+
+void write_whole(std::FILE* file, const std::string& path, std::string_view text) {
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  if (!written) throw IoError(path + ": cannot be written: " + system_reason());
+}
+
+}  // namespace
+
+OutputPlaces check_outputs(const std::vector<std::string>& hulls, const std::string& stdout_format,
+                           const std::string& report, const std::vector<std::string>& inputs) {
+  for (const std::string& file : hulls) check_extension(file, stdout_format);
+  std::vector<std::string> outputs;
+  for (const std::string& file : hulls) {
+    for (std::string& own : files_of(file)) outputs.push_back(std::move(own));
+  }
+  if (!report.empty() && report != "-") outputs.push_back(report);
+  check_distinct(outputs, inputs);
+
+  OutputPlaces places;
+  std::string first_fault;
+  bool any = report == "-";
+  const auto check = [&](const std::string& output) {
+    std::string fault = fault_of_output(output);
+    if (fault.empty()) any = true;
+    if (first_fault.empty()) first_fault = fault;
+    return fault;
+  };
+  for (const std::string& file : hulls) places.hulls.push_back(check(file));
+  if (!report.empty() && report != "-") places.report = check(report);
+  if (!any && !first_fault.empty()) throw IoError(first_fault);
+  return places;
 }
 
 void write_text(const std::string& path, std::string_view text) {

@@ -137,8 +137,9 @@ Command add_support(CLI::App& parent) {
   add_inputs(*command.app, options->inputs);
   command.app
       ->add_option("--directions", options->directions,
-                   "One direction a line: three numbers, need not be unit; '#' begins\na comment; "
-                   "- is standard input")
+                   "One direction a line: three numbers, apart by blanks, commas or\nsemicolons, "
+                   "need not be "
+                   "unit; '#' begins a comment; - is standard\ninput")
       ->required()
       ->type_name("FILE");
   command.run = [options](Console& console) { return run(*options, console); };

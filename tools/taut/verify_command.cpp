@@ -12,6 +12,7 @@
 #include "standard_input.h"
 #include "taut/io/document/read_hull.h"
 #include "taut/io/mesh/read_mesh.h"
+#include "taut/io/mesh/write_mesh.h"
 #include "taut/io/text/formats.h"
 #include "taut/verify/verify.h"
 #include "taut/verify/verify_hull.h"
@@ -66,9 +67,9 @@ std::vector<Check> checks(const Verification& found, double relative, double dia
       {"convex", "convex", "not convex", found.convex, "largest_violation",
        fraction(found.largest_violation)},
       {"no_zero_area", "no face of zero area", "a face has zero area", found.no_zero_area},
-      {"contains_model", "contains the model", "the model reaches outside",
+      {"contains_model", "contains the model", "the model reaches out of the mesh",
        model_outside <= relative, "model_outside", model_outside},
-      {"inside_hull", "inside the model's hull", "it reaches outside the model's hull",
+      {"inside_hull", "inside the model's hull", "the mesh reaches out of the model's hull",
        mesh_outside <= relative, "mesh_outside", mesh_outside},
   };
 }
@@ -97,9 +98,9 @@ std::vector<Check> checks(const HullVerification& found, double relative) {
              found.tangency),
       length("flat", "rulings and facets are flat", "rulings or facets are not flat", "flatness",
              found.flatness),
-      length("contains_model", "contains the model", "the model reaches outside", "model_outside",
-             found.model_outside),
-      length("inside_hull", "inside the model's hull", "it reaches outside the model's hull",
+      length("contains_model", "contains the model", "the model reaches out of the hull",
+             "model_outside", found.model_outside),
+      length("inside_hull", "inside the model's hull", "the hull reaches out of the model's",
              "hull_outside", found.hull_outside),
       length("patches_support", "patches on the hull", "patches are not on the hull",
              "patch_outside", found.patch_outside),
@@ -134,7 +135,7 @@ std::vector<Check> checks(const ContainedSamples& found, double relative, double
                              "vertices_outside", hull_outside}};
   if (found.model_points) {
     all.push_back({"model_points_in_mesh", "points of the model inside",
-                   "points of the model lie outside", model_outside <= relative,
+                   "points of the model lie outside the mesh", model_outside <= relative,
                    "model_points_outside", model_outside});
   }
   return all;
@@ -148,6 +149,8 @@ struct Verdict {
   double relative = 0;
   int directions = 0;
   bool is_hull = false;
+  /// What the file's format may add to lengths, which is allowed on top.
+  double format_rounding = 0;
 };
 
 /// What stands before the number that a check measured.
@@ -156,7 +159,7 @@ std::string measure_name(const Check& check) {
   if (key == "largest_violation") return "largest violation ";
   if (key == "euler") return "V - E + F = ";
   if (key == "uncovered") return "directions missed: ";
-  return key.ends_with("outside") && key != "patch_outside" ? "outside by " : "off by ";
+  return check.passed ? "to within " : "off by ";
 }
 
 std::string text_of(const Verdict& verdict) {
@@ -176,6 +179,10 @@ std::string text_of(const Verdict& verdict) {
   if (!all_made) text += "(?: cannot be told without finite numbers and the model's own sources)\n";
   text += "(lengths are fractions of the diagonal, measured in " +
           counted(verdict.directions, "direction", "directions") + ")\n";
+  if (verdict.format_rounding > 0) {
+    text += "(the file holds floats: their rounding, " + number(verdict.format_rounding, 3) +
+            ", is allowed on top)\n";
+  }
   text += padded("hull within " + number(verdict.relative, 3), 28);
   return text + (verdict.is_hull ? "yes" : "no") + "\n";
 }
@@ -199,39 +206,58 @@ Json json_of(const Verdict& verdict, const std::string& hull) {
   }
   json["faults"] = verdict.faults;
   json["directions"] = verdict.directions;
+  json["format_rounding"] = verdict.format_rounding;
   return json;
 }
 
 std::string faults_of(const Verdict& verdict) {
   std::vector<std::string> faults;
   for (const Check& check : verdict.checks) {
-    if (check.made && !check.passed && *check.fault != 0) faults.emplace_back(check.fault);
+    if (!check.made || check.passed || *check.fault == 0) continue;
+    std::string fault = check.fault;
+    if (check.measure_key != nullptr && !check.counted) {
+      fault += " by " + number(check.measure, 3) + " diagonals";
+    }
+    faults.push_back(std::move(fault));
   }
   // One line is no place for all of them.
   if (!verdict.faults.empty()) faults.push_back(verdict.faults.front());
-  return joined(faults);
+  return joined(faults, "; ");
 }
 
 /// The hull to check, of a mesh or exact.
 struct HullFile {
   std::optional<HullDocument> exact;
   PolygonMesh mesh;
+  /// What the format's rounding may have moved the mesh's vertices by, in model units.
+  double rounding = 0;
 };
+
+/// A mesh with what its format does to it.
+HullFile mesh_file(PolygonMesh mesh, const std::string& format) {
+  HullFile file{{}, std::move(mesh)};
+  if (format != ".stl") return file;
+  Box box;
+  for (const dvec3& p : file.mesh.points) box.include(p);
+  file.rounding = float_rounding_bound(box);
+  return file;
+}
 
 HullFile read_hull_file(const VerifyArguments& arguments, Console& console) {
   const bool given = arguments.hull == "-";
-  const std::string format = given ? arguments.inputs.extension() : extension(arguments.hull);
+  const std::string format =
+      given ? arguments.inputs.input_extension() : input_extension(arguments.hull);
   const bool json = format == ".hull.json";
   const bool exact = json || format == ".hull.cbor";
   if (!given && exact) return {read_hull(arguments.hull, console.progress()), {}};
-  if (!given) return {{}, read_mesh(arguments.hull)};
+  if (!given) return mesh_file(read_mesh(arguments.hull), format);
   const std::vector<std::string>& files = arguments.inputs.files;
   if (std::find(files.begin(), files.end(), "-") != files.end()) {
     throw UsageError("standard input cannot be both the hull and the model");
   }
-  if (format.empty()) throw UsageError("standard input needs --format, such as --format ply");
+  if (format.empty()) throw UsageError("standard input needs its format, such as --from ply");
   const std::string data = read_standard_input(console.progress().stop);
-  if (!exact) return {{}, read_mesh(data, standard_input, format)};
+  if (!exact) return mesh_file(read_mesh(data, standard_input, format), format);
   return {
       taut::read_hull(data, standard_input, json ? DocumentEncoding::json : DocumentEncoding::cbor,
                       console.progress()),
@@ -248,15 +274,14 @@ Verdict check(const HullFile& hull, Input& input, double relative, const VerifyO
     }
   };
   if (!hull.exact) {
+    const double rounding = diagonal > 0 ? hull.rounding / diagonal : 0;
+    const double allowed = relative + rounding;
     const Verification found = verify(hull.mesh, input.scene(), options);
-    Verdict verdict{checks(found, relative, diagonal),
-                    {},
-                    relative,
-                    found.directions,
-                    found.is_hull(relative * diagonal)};
+    Verdict verdict{checks(found, allowed, diagonal),  {},      relative, found.directions,
+                    found.is_hull(allowed * diagonal), rounding};
     const ContainedSamples samples =
         contained_samples(hull.mesh, input.scene(), accuracy, options.threads, options.progress);
-    add(verdict, checks(samples, relative, diagonal));
+    add(verdict, checks(samples, allowed, diagonal));
     return verdict;
   }
   const HullVerification found = verify(*hull.exact, input.scene(), options);
@@ -298,7 +323,7 @@ ExitCode run(const VerifyArguments& arguments, Console& console) {
     console.print(text_of(verdict));
   }
   if (verdict.is_hull) return ExitCode::done;
-  throw CheckFailed(arguments.hull + ": is no convex hull of the model within " +
+  throw CheckFailed(arguments.hull + ": is not the convex hull of the model within " +
                     number(relative, 3) + " of its diagonal: " + faults_of(verdict));
 }
 
@@ -316,7 +341,7 @@ Command add_verify(CLI::App& parent) {
   command.app
       ->add_option(
           "HULL", arguments->hull,
-          "Mesh or exact hull (.hull.json .hull.cbor) to check; - is standard\ninput, see --format")
+          "Mesh or exact hull (.hull.json .hull.cbor) to check; - is standard\ninput, see --from")
       ->required()
       ->option_text("FILE");
   add_inputs(*command.app, arguments->inputs);
