@@ -92,9 +92,11 @@ Report::ExactHull::Tolerant tolerant_faces(const HullBoundary& boundary) {
 /// Adds the measures of a boundary. @throws LimitMet
 void add_measures(Input& input, const HullBoundary& boundary, Console& console,
                   Report::ExactHull& exact) {
-  console.progress().update("measure", 0);
+  const Progress progress = console.progress();
+  progress.update("measure", 0);
   const BoundaryMeasures measures =
-      measure(input.scene(), ContactGeometry(input.scene(), console.progress().stop), boundary);
+      measure(input.scene(), ContactGeometry(input.scene(), progress.stop), boundary, progress);
+  progress.update("measure", 1);
   exact.measures = measures;
   exact.mean_width = measures.mean_width;
   exact.measures_accuracy = measures.bounds.largest();

@@ -32,7 +32,7 @@ constexpr int few_nodes = 6;
 /// The integrals over a whole boundary, in the scene's frame.
 class Summation {
  public:
-  Summation(const ContactGeometry& geometry, const HullBoundary& boundary)
+  Summation(const ContactGeometry& geometry, const HullBoundary& boundary, const Progress& progress)
       : geometry_(geometry),
         system_(geometry),
         boundary_(boundary),
@@ -40,7 +40,9 @@ class Summation {
         creases_(geometry, boundary, origin_),
         regions_(geometry, boundary),
         in_scroll_(pieces_of_scrolls(boundary)) {
+    const auto steps = double(boundary.arcs.size() + regions_.all().size());
     for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
+      progress.update("measure", double(a) / steps);
       for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) {
         const long double before = sums_.value[ruled];
         const double depth = place_depth(boundary, boundary.arcs[a].pieces[p].tolerant);
@@ -49,7 +51,9 @@ class Summation {
       }
       add_creases(boundary.arcs[a], in_scroll_[a], sums_);
     }
+    std::size_t done = boundary.arcs.size();
     for (const GreenRegion& region : regions_.all()) {
+      progress.update("measure", double(done++) / steps);
       for (const std::vector<TrimStretch>& loop : region.region->loops) {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc < 0) add_border(region, stretch);
@@ -413,8 +417,8 @@ MeasuredLengths lengths_of(const Scene& scene, const SumValues& sum, double laye
 }  // namespace
 
 BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
-                         const HullBoundary& boundary) {
-  const Summation summation(geometry, boundary);
+                         const HullBoundary& boundary, const Progress& progress) {
+  const Summation summation(geometry, boundary, progress);
   const auto& sum = summation.sums().value;
   const auto& error = summation.sums().error;
   BoundaryMeasures result = measures_of(scene.frame(), summation.origin(), sum);

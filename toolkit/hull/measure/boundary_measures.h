@@ -1,6 +1,7 @@
 #pragma once
 
 #include "taut/bounds/contact_geometry.h"
+#include "taut/core/progress.h"
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/result/measures.h"
 
@@ -49,7 +50,8 @@ struct BoundaryMeasures : Measures {
 /// neighbouring rulings and each side of it on a patch.
 ///
 /// Volume, centroid and inertia of a boundary without volume (a flat hull) are as in Measures.
+/// @throws Cancelled, LimitMet
 BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
-                         const HullBoundary& boundary);
+                         const HullBoundary& boundary, const Progress& progress = {});
 
 }  // namespace taut

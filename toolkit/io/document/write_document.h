@@ -20,8 +20,7 @@ namespace taut {
 /// - Control cages are written as such, not as patches; polygons as a bilinear cage, with all
 ///   points of their part. Border edges are not written.
 /// - The unit is the model's, left out where none is known; names that are no UTF-8 have what is
-/// none replaced; zeros lose
-///   their signs.
+///   none replaced; zeros lose their signs.
 /// @throws InvalidInput if a trim loop's Euclidean coordinate overflows
 std::string to_document(const Model& model, DocumentEncoding encoding);
 
