@@ -12,6 +12,7 @@ namespace taut {
 
 struct ScenePart;
 
+/// How deep a Gauss map goes.
 struct GaussMapOptions {
   /// Levels of the patches' quadtrees below their roots, at most, and of the sphere's. 0 .. 8
   int levels = 3;

@@ -12,6 +12,7 @@ namespace taut {
 
 struct SceneContent;  // in scene_content.h, for the bounds layer
 
+/// How a scene is built.
 struct SceneOptions {
   int threads = 0;
   Progress progress;

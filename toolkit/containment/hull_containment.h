@@ -10,6 +10,7 @@
 
 namespace taut {
 
+/// How points are located in hulls.
 struct HullContainmentOptions {
   /// How near the mesh is to the hull that decides the points far from the boundary, as a fraction
   /// of the diagonal. A finer one leaves fewer points to the exact search and takes longer to make.

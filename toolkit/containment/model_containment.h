@@ -10,6 +10,7 @@
 
 namespace taut {
 
+/// How points are located in closed models.
 struct ModelContainmentOptions {
   /// How near the tessellation is to the surface that decides the points far from it, as a fraction
   /// of the diagonal. A finer one leaves fewer points to exact tests.

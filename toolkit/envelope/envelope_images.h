@@ -9,6 +9,7 @@
 
 namespace taut {
 
+/// How envelope images are drawn.
 struct EnvelopeOptions {
   /// Width and height of each image, in pixels. 8 .. 16384, or as many as the driver draws.
   int size = 1024;

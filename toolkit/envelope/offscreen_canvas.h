@@ -35,6 +35,7 @@ class OffscreenCanvas {
   /// What is drawn at a pixel where nothing is.
   static constexpr std::uint32_t nothing = 0xffffffffU;
 
+  /// What is drawn at a pixel.
   struct Pixel {
     std::uint32_t element = nothing;
     std::uint32_t triangle = nothing;

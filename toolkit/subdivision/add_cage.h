@@ -10,6 +10,7 @@ namespace taut {
 /// See CageOptions.
 inline constexpr double default_cage_accuracy = 1e-9;
 
+/// How a control cage becomes patches.
 struct CageOptions {
   /// What may be left of the exact limit surface near extraordinary vertices: a bound of the change
   /// of the support function, as a fraction of the diagonal of the cage's box.

@@ -63,12 +63,15 @@ void validate_points(const std::vector<dvec4>& points, const std::string& name);
 struct CurveJet {
   dvec3 c, ct, ctt, cttt;
 };
+/// A point of a patch and its derivatives: to the first.
 struct PatchJet1 {
   dvec3 S, Su, Sv;
 };
+/// To the second.
 struct PatchJet2 : PatchJet1 {
   dvec3 Suu, Suv, Svv;
 };
+/// To the third.
 struct PatchJet3 : PatchJet2 {
   dvec3 Suuu, Suuv, Suvv, Svvv;
 };

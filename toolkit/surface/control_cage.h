@@ -25,6 +25,7 @@ struct CageCrease {
   double sharpness = 0;
 };
 
+/// A vertex with its sharpness, likewise.
 struct CageCorner {
   int vertex = 0;
   double sharpness = 0;

@@ -6,6 +6,7 @@
 
 namespace taut {
 
+/// How hulls are checked.
 struct VerifyOptions {
   /// Random directions, besides those of all facets and vertices.
   int random_directions = 10'000;

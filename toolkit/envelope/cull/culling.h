@@ -9,6 +9,7 @@
 
 namespace taut {
 
+/// How finely a scene is culled.
 struct CullingOptions {
   /// Finest level of the patches' quadtrees. Levels that the Gauss map does not hold are computed
   /// on the way. 0 .. 20
@@ -52,6 +53,7 @@ struct CullingLevel {
   double decided_share = 0;  ///< of the same area, off, on or ruled
 };
 
+/// What of a scene can touch supporting planes, and what is proven not to.
 struct Culling {
   /// Points of the model on its hull, with their directions: those of some uniformly spread
   /// directions first (curves and points are among them), then those of the cells' axes and the

@@ -21,6 +21,7 @@ namespace taut {
 /// replaced, hence the invariant holds without any tolerance.
 class PointHull {
  public:
+  /// A triangle of the boundary.
   struct Facet {
     std::array<int, 3> vertex;
     /// neighbor[k] lies across the edge from vertex[k] to vertex[(k + 1) % 3].

@@ -28,6 +28,7 @@ struct HullDocument {
     /// Euclidean points with their weights, along v within along u.
     std::vector<dvec4> points;
   };
+  /// A face, edge or vertex of the model that the hull touches.
   struct Source {
     int id = -1;  ///< Model::source
     SourceKind kind = SourceKind::face;
@@ -43,6 +44,7 @@ struct HullDocument {
     std::vector<double> uv;
     dvec3 p = dvec3(0.0);
   };
+  /// A segment that touches the model with both ends.
   struct Ruling {
     dvec3 n = dvec3(0.0);
     Contact a, b;
@@ -70,6 +72,7 @@ struct HullDocument {
     /// the left in the (u, v) plane.
     std::vector<std::vector<dvec2>> loops;
   };
+  /// A patch, scroll or facet; what is of one kind alone says so.
   struct Face {
     FaceKind kind = FaceKind::facet;
     int source = -1;  ///< that it lies on, -1 if none
@@ -102,6 +105,7 @@ struct HullDocument {
     /// facet: points along the outline, the first one not again.
     std::vector<dvec3> boundary;
   };
+  /// What separates two faces.
   struct Curve {
     HullCurveKind kind = HullCurveKind::ruling;
     /// To the left and to the right, seen from outside; -1 where a face is missing.

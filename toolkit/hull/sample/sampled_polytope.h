@@ -15,6 +15,7 @@ namespace taut {
 /// Edges of a polytope that are to stay, like chords of curves, whole or bisected.
 class EdgeConstraints {
  public:
+  /// A point that bisects an edge.
   struct Middle {
     Sample sample;
     dvec3 point;  ///< in model coordinates

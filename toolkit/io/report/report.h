@@ -10,6 +10,7 @@
 
 namespace taut {
 
+/// What a run warned of: a code fit for scripts, and a sentence.
 struct Warning {
   std::string code;
   std::string text;
@@ -17,6 +18,7 @@ struct Warning {
 
 /// Everything that a run of `taut hull` tells (contract: Report). Lengths in model units.
 struct Report {
+  /// The model as it was read.
   struct Input {
     std::vector<std::string> files;
     int faces = 0, edges = 0, vertices = 0, patches = 0;
@@ -31,6 +33,7 @@ struct Report {
   int dimension = 3;
   /// The true hull, as far as the method knows it: `sampled` bounds the gap only.
   struct ExactHull {
+    /// Faces by kind, curves between them, and spots that were not resolved.
     struct Counts {
       int patches = 0, scrolls = 0, facets = 0, curves = 0, unresolved = 0;
     };
@@ -50,6 +53,7 @@ struct Report {
     /// Hull::points_left_out.
     long dropped = 0;
   } hull;
+  /// The mesh that was found, and the files that hold it.
   struct Mesh {
     long vertices = 0, edges = 0, faces = 0;
     Measures measures;
@@ -82,9 +86,11 @@ struct Report {
     double deviation_bound = 0;
   };
   std::optional<Subdivision> subdivision;
+  /// Support queries, and their steps.
   struct Queries {
     long support = 0, newton_iterations = 0;
   } queries;
+  /// Of each phase and of all.
   struct Seconds {
     double read = 0, build = 0, sample = 0, cull = 0, trace = 0, stitch = 0;
     double mesh = 0, measure = 0, write = 0, total = 0;

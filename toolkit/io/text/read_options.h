@@ -15,6 +15,7 @@ enum class Scheme {
   loop,      ///< the control cage of a Loop surface
 };
 
+/// How files are read.
 struct ReadOptions {
   /// Borders whose tangent planes differ by less are smooth joins; radians.
   double smooth_angle = smooth_join_angle;
