@@ -60,6 +60,8 @@ void validate_points(const std::vector<dvec4>& points, const std::string& name);
 /// Error of a point: at most (4 degree_u + 4 degree_v + 8) rounding units of the largest control
 /// point's coordinate when weights are equal (Bernstein sums of positive weights).
 /// @{
+
+/// A point of a curve and its derivatives: to the third.
 struct CurveJet {
   dvec3 c, ct, ctt, cttt;
 };

@@ -15,6 +15,25 @@ namespace {
 constexpr int max_threads = 4096;
 constexpr double most_memory = 0x1p62;  ///< bytes
 
+/// `Value`: an integer or an optional one.
+template <class Value>
+CLI::Option* add_integer_to(CLI::App& command, const std::string& name, Value& value, int lowest,
+                            int highest, const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&value, name, lowest, highest](const std::string& text) {
+            const auto parsed = parse_integer(text);
+            if (!parsed || *parsed < lowest || *parsed > highest) {
+              throw CLI::ValidationError(name, text + " is no number from " + number(long(lowest)) +
+                                                   " to " + number(long(highest)));
+            }
+            value = *parsed;
+          },
+          description)
+      ->type_name("N");
+}
+
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
@@ -94,19 +113,12 @@ CLI::Option* add_resolution(CLI::App& command, std::optional<double>& value) {
 
 CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
                          int highest, const std::string& description) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [&value, name, lowest, highest](const std::string& text) {
-            const auto parsed = parse_integer(text);
-            if (!parsed || *parsed < lowest || *parsed > highest) {
-              throw CLI::ValidationError(name, text + " is no number from " + number(long(lowest)) +
-                                                   " to " + number(long(highest)));
-            }
-            value = *parsed;
-          },
-          description)
-      ->type_name("N");
+  return add_integer_to(command, name, value, lowest, highest, description);
+}
+
+CLI::Option* add_integer(CLI::App& command, const std::string& name, std::optional<int>& value,
+                         int lowest, int highest, const std::string& description) {
+  return add_integer_to(command, name, value, lowest, highest, description);
 }
 
 Progress Console::progress() {

@@ -44,6 +44,10 @@ CLI::Option* add_resolution(CLI::App& command, std::optional<double>& value);
 CLI::Option* add_integer(CLI::App& command, const std::string& name, int& value, int lowest,
                          int highest, const std::string& description);
 
+/// The same of one that has no value unless it is given.
+CLI::Option* add_integer(CLI::App& command, const std::string& name, std::optional<int>& value,
+                         int lowest, int highest, const std::string& description);
+
 /// One run of a command: its common options, what it says, and whether it should stop.
 class Console {
  public:

@@ -26,6 +26,8 @@ namespace taut::tool {
 namespace {
 
 constexpr double default_relative = 1e-4;
+/// Of a budget.
+constexpr int fewest_vertices = 4;
 constexpr int limit_of_vertices = std::numeric_limits<int>::max();
 
 /// What can be told from the command line alone.
@@ -296,13 +298,10 @@ Command add_hull(CLI::App& parent) {
       ->type_name("T")
       ->excludes(relative);
   add_resolution(app, arguments->resolution);
-  app.add_option_function<int>(
-         "--max-vertices", [arguments](int most) { arguments->max_vertices = most; },
-         "A budget: at most so many vertices, 4 or more, and the best mesh for\nthem; with "
-         "--relative or --tolerance no more than that takes, and exit\ncode 5 where that is not "
-         "reached")
-      ->check(CLI::Range(4, limit_of_vertices).description(""))
-      ->type_name("N");
+  add_integer(app, "--max-vertices", arguments->max_vertices, fewest_vertices, limit_of_vertices,
+              "A budget: at most so many vertices, 4 or more, and the best mesh for\nthem; with "
+              "--relative or --tolerance no more than that takes, and exit\ncode 5 where that is "
+              "not reached");
   add_positive(app, "--max-seconds", arguments->max_seconds,
                "Seconds of the whole run after which the best hull found until then\nis written, "
                "with exit code 6; nothing is written before there is one")
