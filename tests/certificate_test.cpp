@@ -85,6 +85,23 @@ TEST(ConeDepth, OneDirection) {
   }
 }
 
+TEST(DeepestAxis, AttainsTheDepth) {
+  EXPECT_EQ(deepest_axis({}).axis, dvec3(0.0));
+  Random random(17);
+  for (int k = 0; k < 200; ++k) {
+    const dvec3 about = random_direction(random);
+    const double width = log_uniform(random, 1e-6, 3);
+    std::vector<dvec3> directions;
+    for (int i = pick(random, 1, 8); i > 0; --i) {
+      directions.push_back(unit(about + width * random_direction(random)));
+    }
+    const ConeDepth found = deepest_axis(directions);
+    EXPECT_EQ(found.depth, cone_depth(directions));
+    EXPECT_NEAR(glm::length(found.axis), 1, 1e-15);
+    for (const dvec3& n : directions) EXPECT_GE(glm::dot(found.axis, n), found.depth);
+  }
+}
+
 TEST(ConeDepth, NoDirectionConstrainsNothing) { EXPECT_EQ(cone_depth({}), 1); }
 
 TEST(ConeDepth, TwoDirections) {

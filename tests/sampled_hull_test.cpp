@@ -385,6 +385,23 @@ TEST(SampledHull, OutlineOfACircleConverges) {
   }
 }
 
+/// Facets of thin bodies are nearly opposite about their rims.
+TEST(SampledHull, ThinBodiesAreAsNearAsAsked) {
+  for (const double thin : {1e-9, 1e-7, 1e-5, 1e-3}) {
+    SCOPED_TRACE(thin);
+    for (const Shape& shape :
+         {ellipsoid(1, 1, thin), ellipsoid(1, 10 * thin, 10 * thin), solid_cylinder(1, thin),
+          box(1, 0.75, thin), filleted_box(1, 0.75, thin, 0.3 * thin)}) {
+      const Scene scene = make_scene(mapped(shape, skew_rotation()));
+      const Hull hull = sampled_hull(scene, {.tolerance = 1e-4, .threads = 1, .progress = {}});
+      EXPECT_EQ(hull.kind, HullKind::solid);
+      EXPECT_LE(hull.distance_bound, 1e-4);
+      EXPECT_LE(gaps(scene, polygons(hull.mesh), 1000).highest, hull.distance_bound);
+      EXPECT_LE(hull.mesh.n_vertices(), 1000U);
+    }
+  }
+}
+
 TEST(SampledHull, RefusesTolerancesThatAreNone) {
   const Scene scene = make_scene(sphere());
   for (const double tolerance : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/contact/rulings_between.h"
 #include "taut/hull/mesh/even_division.h"
@@ -114,7 +115,8 @@ class BoundarySampler {
 };
 
 void BoundarySampler::add(const dvec3& n, const Contact& contact, TouchedFaces touched) {
-  const Contact c = geometry_.canonical(contact);
+  // Rulings between those of the boundary may go a little past a border, where nothing is.
+  const Contact c = geometry_.canonical(clamped(contact));
   if (!is_finite(n) || !is_finite(geometry_.point(c))) return;
   if (c.kind != SourceKind::face) {
     for (const TouchedFace& f : faces_.touched(c)) touch(touched, f);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "taut/bounds/contact_forms.h"
 #include "taut/hull/contact/rulings_between.h"
 
 namespace taut {
@@ -61,7 +62,7 @@ std::optional<EdgeConstraints::Middle> ConstrainedEdges::middle(int a, int b) co
   const std::optional<ArcPlace> at = middle_of(chord);
   if (!at) return std::nullopt;
   const Ruling& r = at->ruling;
-  const Contact c = geometry_.canonical(r.contact[i]);
+  const Contact c = geometry_.canonical(clamped(r.contact[i]));
   return Middle{{r.n, c}, geometry_.scene().frame().to_model(geometry_.point(c))};
 }
 

@@ -25,6 +25,15 @@ namespace taut {
 /// a bound; narrow cones are answered by their mean.
 double cone_depth(std::span<const dvec3> directions);
 
+/// A depth, and the unit vector m over which all directions are at least so high; zero if there are
+/// none.
+struct ConeDepth {
+  double depth = 1;
+  dvec3 axis = dvec3(0.0);
+};
+/// cone_depth() with the vector that attains it.
+ConeDepth deepest_axis(std::span<const dvec3> directions);
+
 /// What a gap at a vertex whose cone is so deep bounds the distance by; infinite where the normals
 /// prove nothing.
 inline double distance_bound(double gap, double depth) {

@@ -9,6 +9,7 @@
 #include "taut/hull/polytope/certificate.h"
 #include "taut/hull/sample/facet_planes.h"
 #include "taut/hull/sample/farthest_support.h"
+#include "taut/hull/sample/narrow_cones.h"
 #include "taut/hull/sample/sampled_start.h"
 
 namespace taut {
@@ -28,6 +29,7 @@ class Sampler {
         constraints_(constraints),
         hull_(inflated(scene)),
         planes_(scene, options, hull_),
+        narrow_(scene.content(), hull_, options.progress.stop),
         tolerance_(tolerance * scene.frame().scale) {}
 
   SampledPolytope run(std::vector<Sample> samples, const std::vector<dvec3>& points);
@@ -47,12 +49,17 @@ class Sampler {
   bool insert_farthest();
   std::size_t most_points() const;
   double share_done() const;
+  void bound_narrow(int vertex, int facet, const std::vector<dvec3>& normals);
   bool refine();
+  bool refine_narrow();
   bool repeats_vertex(const dvec3& point, int facet);
   bool insert(const Sample& sample, const dvec3& point, int facet);
   bool bisect_hidden(const dvec3& point, int facet);
+  double gap(const dvec3& n, double h_bound, int vertex) const {
+    return h_bound - glm::dot(n, frame_points_[std::size_t(vertex)]) + gap_rounding;
+  }
   double gap(const FacetPlanes::Plane& plane, int vertex) const {
-    return plane.h_bound - glm::dot(plane.n, frame_points_[std::size_t(vertex)]) + gap_rounding;
+    return gap(plane.n, plane.h_bound, vertex);
   }
   /// What a gap at a vertex means for the distance.
   double distance_bound(double gap, int vertex) const {
@@ -67,10 +74,13 @@ class Sampler {
   EdgeConstraints* constraints_;
   PointHull hull_;
   FacetPlanes planes_;
+  NarrowCones narrow_;
+  /// Of the vertices whose cones are narrow.
+  std::vector<std::pair<int, NarrowCones::Certificate>> narrow_vertices_;
   std::vector<Sample> samples_;        // per vertex
   std::vector<dvec3> frame_points_;    // per vertex
   std::vector<double> vertex_gaps_;    // per vertex: the largest gap of its facets
-  std::vector<double> vertex_depths_;  // per vertex: cone_depth() of its facets' normals
+  std::vector<double> vertex_depths_;  // per vertex: of the cones of its directions
   double tolerance_;                   // in the scene's frame
   double bound_ = 0;
   FarthestSupport farthest_;         ///< of a budget
@@ -101,24 +111,33 @@ void Sampler::bound_vertices() {
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<dvec3> normals(std::size_t(first.back()));
+  std::vector<dvec3> facet_normals(planes_.size());
+  std::vector<int> facet_at(count, -1);
   std::vector<int> next(first.begin(), first.end() - 1);
   vertex_gaps_.assign(count, 0);
   vertex_depths_.assign(count, 1);
   for (std::size_t f = 0; f < planes_.size(); ++f) {
     options_.progress.check_rarely(f);
     if (!hull_.facets()[f].alive) continue;
+    facet_normals[f] = planes_[f].n;
     for (const int v : hull_.facets()[f].vertex) {
+      facet_at[std::size_t(v)] = int(f);
       normals[std::size_t(next[std::size_t(v)]++)] = planes_[f].n;
       double& largest = vertex_gaps_[std::size_t(v)];
       largest = std::max(largest, gap(planes_[f], v));
     }
   }
   bound_ = 0;
+  narrow_vertices_.clear();
   for (std::size_t v = 0; v < count; ++v) {
     options_.progress.check_rarely(v);
     const std::span<const dvec3> own(normals.data() + first[v], normals.data() + first[v + 1]);
     if (own.empty()) continue;  // no vertex of the boundary any more
     vertex_depths_[v] = cone_depth(own);
+    const bool is_narrow = vertex_depths_[v] < narrow_depth;
+    if (is_narrow && distance_bound(vertex_gaps_[v], int(v)) > tolerance_) {
+      bound_narrow(int(v), facet_at[v], facet_normals);
+    }
     bound_ = std::max(bound_, distance_bound(vertex_gaps_[v], int(v)));
   }
   // Where nothing is certified, everything lies within the diagonal all the same.
@@ -172,6 +191,18 @@ double Sampler::share_done() const {
   return std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.);
 }
 
+/// By more directions than those of its facets.
+void Sampler::bound_narrow(int vertex, int facet, const std::vector<dvec3>& normals) {
+  const auto v = std::size_t(vertex);
+  NarrowCones::Certificate known = narrow_.certify(vertex, facet, normals, samples_[v].contact);
+  if (!(known.depth > vertex_depths_[v])) return;
+  vertex_depths_[v] = known.depth;
+  for (const NarrowCones::Asked& asked : known.asked) {
+    vertex_gaps_[v] = std::max(vertex_gaps_[v], gap(asked.n, asked.support.h_bound, vertex));
+  }
+  narrow_vertices_.emplace_back(vertex, std::move(known));
+}
+
 /// Whether the point is a vertex once more, but for rounding: it would make slivers, whose normals
 /// mean nothing.
 bool Sampler::repeats_vertex(const dvec3& point, int facet) {
@@ -221,6 +252,28 @@ bool Sampler::bisect_hidden(const dvec3& point, int facet) {
   return false;
 }
 
+/// Inserts the support points of directions in narrow cones that keep a vertex from its tolerance.
+/// False if none could be inserted.
+bool Sampler::refine_narrow() {
+  bool inserted = false;
+  for (const auto& [v, known] : narrow_vertices_) {
+    for (const NarrowCones::Asked& asked : known.asked) {
+      options_.progress.check();
+      if (hull_.points().size() >= most_points()) return inserted;
+      if (!(distance_bound(gap(asked.n, asked.support.h_bound, v), v) > tolerance_)) continue;
+      const dvec3 point = scene_.frame().to_model(asked.support.point);
+      // Earlier ones may have replaced facets.
+      const auto facet = std::find_if(known.facets.begin(), known.facets.end(), [&](int f) {
+        return hull_.facet(f).alive && !hull_.visible(scaled(point), f).empty();
+      });
+      if (facet == known.facets.end()) continue;
+      const bool bisected = constraints_ != nullptr && bisect_hidden(point, *facet);
+      if (bisected || insert({asked.n, asked.support.contact}, point, *facet)) inserted = true;
+    }
+  }
+  return inserted;
+}
+
 /// Inserts the support points of all facets that keep a vertex from its tolerance, the largest
 /// gap first. False if none could be inserted.
 bool Sampler::refine() {
@@ -250,6 +303,7 @@ bool Sampler::refine() {
   });
   const std::size_t most = most_points();
   bool inserted = options_.vertex_budget && insert_farthest();
+  inserted = refine_narrow() || inserted;
   for (const Candidate& c : candidates) {
     options_.progress.check();
     if (hull_.points().size() >= most) break;
@@ -277,6 +331,8 @@ SampledPolytope Sampler::result() {
     bounds.push_back(std::min(bound, scene_.diagonal()));
   }
   const double bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
+  statistics_.support_queries += narrow_.query().queries();
+  statistics_.newton_iterations += narrow_.query().newton_iterations();
   return {std::move(hull_), std::move(samples_), std::move(gaps), std::move(bounds), bound,
           nullptr,          std::nullopt,        statistics_};
 }
