@@ -389,7 +389,7 @@ TEST(PreciseHull, RejectsWrongTolerances) {
   EXPECT_THROW(precise_hull(scene, {.relative = 0, .progress = {}}), InvalidInput);
 }
 
-TEST(PreciseHull, FlatScenesHaveNoBoundary) {
+TEST(PreciseHull, OnlyPlanarOnesOfFlatScenesHaveABoundary) {
   const Shape flat = {{}, {circle({0, 0, 0}, {1, 0, 0}, {0, 2, 0})}, {}};
   const Shape line = {{}, {segment({0, 0, 0}, {1, 2, 3})}, {}};
   const Shape point = {{}, {}, {{1, 2, 3}}};
@@ -398,7 +398,8 @@ TEST(PreciseHull, FlatScenesHaveNoBoundary) {
   };
   const Hull planar = hull_of(flat);
   EXPECT_EQ(planar.kind, HullKind::planar);
-  EXPECT_EQ(planar.boundary, nullptr);
+  ASSERT_NE(planar.boundary, nullptr);
+  EXPECT_EQ(planar.boundary->dimension, 2);
   EXPECT_EQ(hull_of(line).kind, HullKind::segment);
   EXPECT_EQ(hull_of(line).boundary, nullptr);
   EXPECT_EQ(hull_of(point).kind, HullKind::point);

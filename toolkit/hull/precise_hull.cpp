@@ -10,9 +10,11 @@
 #include "taut/core/error.h"
 #include "taut/hull/exact_boundary.h"
 #include "taut/hull/mesh/boundary_mesh.h"
+#include "taut/hull/planar/flat_boundary.h"
 #include "taut/hull/sample/polytope_mesh.h"
 #include "taut/hull/sample/sampled_hull.h"
 #include "taut/hull/sample/sampled_start.h"
+#include "taut/hull/stitch/ruled_faces.h"
 
 namespace taut {
 namespace {
@@ -188,6 +190,32 @@ Hull best_of(const HullLimitExceeded& met, const std::optional<Hull>& fallback) 
                                                                                        : *fallback;
 }
 
+/// The hull of a scene that spans less than space, with the boundary of a planar one where that is
+/// known.
+Hull flat_hull(const Scene& scene, const HullOptions& options, const SampledStart& start,
+               SupportQuery& query, const Resolution& resolution) {
+  const auto with_boundary = [&](Hull hull) {
+    if (hull.kind != HullKind::planar) return hull;
+    const double rho = scene.frame().length_to_frame(resolution.rho);
+    const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
+    std::optional<HullBoundary> boundary =
+        flat_boundary(geometry, query, {start.span.normal, start.middle, start.half_width}, rho);
+    if (!boundary) return hull;
+    label_ruled_faces(geometry, *boundary);
+    for (const auto f : hull.mesh.faces()) {
+      hull.mesh.data(f).kind = FaceKind::facet;
+      hull.mesh.data(f).source = boundary->faces[std::size_t(f.idx())].source;
+    }
+    hull.boundary = std::make_shared<const HullBoundary>(*std::move(boundary));
+    return hull;
+  };
+  try {
+    return with_boundary(sampled_hull(scene, options));
+  } catch (const HullNotConverged& failure) {
+    throw HullNotConverged(failure.what(), with_boundary(*failure.best));
+  }
+}
+
 }  // namespace
 
 Hull precise_hull(const Scene& scene, const HullOptions& asked) {
@@ -196,7 +224,9 @@ Hull precise_hull(const Scene& scene, const HullOptions& asked) {
   tolerance_for(options, scene.diagonal());
   const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
   SupportQuery query(scene, options.progress.stop);
-  if (sampled_start(scene, query).span.dimension < 3) return sampled_hull(scene, options);
+  const double rho = scene.frame().length_to_frame(resolution.rho);
+  const SampledStart start = sampled_start(scene, query, rho);
+  if (start.span.dimension < 3) return flat_hull(scene, options, start, query, resolution);
   warn_if_capped(resolution, options.progress);
 
   HullStatistics statistics;

@@ -10,8 +10,9 @@ namespace taut {
 /// developable scrolls and flat facets in Hull::boundary, and a mesh of it.
 ///
 /// The mesh is one as of sampled_hull(), with the same certificate, but its vertices lie on the
-/// boundary's curves too, and its faces are labelled by the boundary's faces. A scene that is flat
-/// has no boundary: its hull is that of sampled_hull().
+/// boundary's curves too, and its faces are labelled by the boundary's faces. The hull of a scene
+/// that is flat to within its resolution is that of sampled_hull(); that of a plane has its
+/// boundary (flat_boundary) where edges and vertices make its outline.
 ///
 /// The boundary is closed always, and faces that are below supporting planes say by how much
 /// (HullFace::tolerant). Where none is found that is exact to within the model's resolution, one

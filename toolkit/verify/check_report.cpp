@@ -7,11 +7,17 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "taut/core/tolerances.h"
+
 namespace taut {
 namespace {
 
 /// Lengths in the report are those of the document but for how they were computed.
 constexpr double length_accuracy = 1e-12;
+
+/// Of a volume as the sum of prisms over the faces, in units of area times diagonal: a few
+/// roundings of each height, beside those of coordinates.
+constexpr double volume_rounding = 8 * rounding_unit;
 
 using Json = nlohmann::json;
 
@@ -39,19 +45,21 @@ class ReportCheck {
  public:
   ReportCheck(const Json& report, HullFaults& faults) : report_(report), faults_(faults) {}
 
-  /// What the report says, if it does, is the value but for a share of it.
-  void compare(const std::string& key, const Json* object, double value, double accuracy) {
+  /// What the report says, if it does, is the value but for a share of it, and for so much.
+  void compare(const std::string& key, const Json* object, double value, double accuracy,
+               double error = 0) {
     const Json* said = find(object, key);
     if (said == nullptr) return;
     const std::optional<double> given = number(said);
-    if (given && std::abs(*given - value) <= accuracy * std::abs(value)) return;
+    const double share = value != 0 ? accuracy * std::abs(value) : 0;
+    if (given && std::abs(*given - value) <= share + error) return;
     faults_.add("report", "report: " + key + " is " + (given ? text(*given) : "no number") +
                               ", not " + text(value));
   }
   void compare_counts(const HullDocument& hull);
   void compare_bounds(const HullDocument& hull);
   void compare_measures(const HullDocument& hull, const DocumentMeasures& measures,
-                        double accuracy);
+                        double rounding);
 
  private:
   /// All digits: what differs may do so in the last ones.
@@ -92,12 +100,13 @@ void ReportCheck::compare_bounds(const HullDocument& hull) {
 }
 
 void ReportCheck::compare_measures(const HullDocument& hull, const DocumentMeasures& measures,
-                                   double accuracy) {
+                                   double rounding) {
+  const double accuracy = measure_accuracy + rounding;
   const Json* exact = find(&report_, "hull");
   // Two facets or scrolls within their bounds enclose volumes that differ by what is between them,
   // and strips between their outlines.
-  compare("volume", exact, measures.volume,
-          accuracy + measures.volume_error + measures.volume_bound / std::abs(measures.volume));
+  compare("volume", exact, measures.volume, accuracy + measures.volume_error,
+          measures.volume_bound + (volume_rounding + rounding) * measures.area * hull.diagonal);
   // Where stand-ins or rounded patches meet, normals jump, which integrals of curvature miss:
   // either width is within twice the deviation of that of the surface itself. Places within their
   // bounds move either width by twice the largest, and normals that are not theirs by as much
@@ -138,7 +147,7 @@ void check_report(const HullDocument& hull, const std::optional<DocumentMeasures
     ReportCheck check(report, faults);
     check.compare_counts(hull);
     check.compare_bounds(hull);
-    if (measures) check.compare_measures(hull, *measures, measure_accuracy + rounding);
+    if (measures) check.compare_measures(hull, *measures, rounding);
   } catch (const Json::parse_error& error) {
     faults.add("report", std::string("report: ") + error.what());
   }

@@ -1,12 +1,74 @@
 #include "taut/verify/check_support.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/parallel.h"
+#include "taut/core/tolerances.h"
 #include "taut/verify/hull_faults.h"
 
 namespace taut {
+namespace {
+
+/// Places on a side from which its farthest point is sought, and halvings of what is between them.
+constexpr int side_places = 32;
+constexpr int side_halvings = 40;
+
+/// How far a side reaches in a direction, from its places: to its farthest point by bisection of
+/// the slope beside the farthest place.
+double side_reach(const DocumentGeometry& geometry, const HullDocument::Side& side,
+                  const dvec3& n) {
+  const auto jet_at = [&](double share) {
+    const double t = Interval{side.from[0], side.to[0]}.at(share);
+    const std::vector<SourcePlace> places = geometry.places(side.source, dvec2(t, 0));
+    return places.empty() ? SourceJet{} : geometry.jet(side.source, places.front());
+  };
+  const double sense = side.to[0] > side.from[0] ? 1 : -1;
+  double best = -infinity;
+  int at = 0;
+  for (int i = 0; i <= side_places; ++i) {
+    const double h = glm::dot(jet_at(double(i) / side_places).x, n);
+    if (h > best) {
+      best = h;
+      at = i;
+    }
+  }
+  double low = double(std::max(at - 1, 0)) / side_places;
+  double high = double(std::min(at + 1, side_places)) / side_places;
+  for (int i = 0; i < side_halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    const SourceJet jet = jet_at(middle);
+    best = std::max(best, glm::dot(jet.x, n));
+    (sense * glm::dot(jet.dx[0], n) > 0 ? low : high) = middle;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int count,
+                                         double bound) {
+  std::vector<SupportClaim> claims;
+  if (geometry.hull().faces.empty()) return claims;
+  const HullDocument::Face& face = geometry.hull().faces.front();
+  const std::array<dvec3, 2> frame = tangent_frame(unit(face.normal));
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count;
+    SupportClaim claim{std::cos(angle) * frame[0] + std::sin(angle) * frame[1], -infinity, bound};
+    for (const HullDocument::Contact& c : face.contacts) {
+      claim.h = std::max(claim.h, glm::dot(geometry.local(c.p), claim.n));
+    }
+    for (const HullDocument::Side& side : face.sides) {
+      if (side.from.size() != 1 || side.to.size() != 1) continue;
+      claim.h = std::max(claim.h, side_reach(geometry, side, claim.n));
+    }
+    claims.push_back(claim);
+  }
+  return claims;
+}
 
 std::vector<SupportClaim> listed_claims(const DocumentGeometry& geometry) {
   std::vector<SupportClaim> claims;

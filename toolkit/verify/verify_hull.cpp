@@ -33,6 +33,9 @@ constexpr double deepest_bound = 4;
 /// below a tenth of this even of polyhedra, whose support functions have kinks.
 constexpr double mean_width_spread = 1;
 
+/// Directions in which the outline of a planar hull is compared with the model.
+constexpr int outline_directions = 720;
+
 /// All numbers of a document, to find one that is none.
 class FiniteNumbers {
  public:
@@ -357,9 +360,15 @@ void HullVerifier::check_even_directions(const Coverage& coverage,
   if (const auto stated = stated_mean_width(hull_)) raise(result_.mean_width_error, miss(*stated));
 }
 
-/// A hull of lower dimension reaches as far as its points, which a polyhedral one lists.
+/// A hull of lower dimension reaches as far as its points, which a polyhedral one lists; another
+/// planar one as far as its outline.
 void HullVerifier::check_points() {
-  if (!scene_.model().polyhedral()) return;
+  if (!scene_.model().polyhedral()) {
+    if (hull_.dimension == 2) {
+      check_support(outline_claims(geometry_, outline_directions, resolution_));
+    }
+    return;
+  }
   std::vector<dvec3> points;
   for (const HullDocument::Curve& curve : hull_.curves) {
     points.insert(points.end(), curve.points.begin(), curve.points.end());

@@ -87,8 +87,9 @@ struct HullVerification {
 /// kinds say and lie on their faces, and its rulings and facets support the model, also in between.
 /// Of dimension 3 moreover, if the sources are the model's: whether points of patches support, and
 /// others of their sources do not; that the integrals of n and of mean curvature are those of a
-/// closed surface about the model, and volume and area those of the report. A hull of lower
-/// dimension is checked for its sources and points alone, and counts as closed.
+/// closed surface about the model, and volume and area those of the report. A planar hull is
+/// checked for how far its outline reaches; one of lower dimension for its sources and points
+/// alone, and counts as closed.
 HullVerification verify(const HullDocument& hull, const Scene& scene,
                         const VerifyOptions& options = {});
 

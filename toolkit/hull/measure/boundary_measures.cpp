@@ -10,6 +10,7 @@
 #include "taut/hull/measure/boundary_integrals.h"
 #include "taut/hull/measure/crease_origins.h"
 #include "taut/hull/measure/facet_integrals.h"
+#include "taut/hull/measure/flat_measures.h"
 #include "taut/hull/measure/green_regions.h"
 #include "taut/hull/measure/interior_point.h"
 #include "taut/hull/measure/measure_bounds.h"
@@ -418,6 +419,7 @@ MeasuredLengths lengths_of(const Scene& scene, const SumValues& sum, double laye
 
 BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
                          const HullBoundary& boundary, const Progress& progress) {
+  if (boundary.dimension == 2) return flat_measures(geometry, boundary);
   const Summation summation(geometry, boundary, progress);
   const auto& sum = summation.sums().value;
   const auto& error = summation.sums().error;

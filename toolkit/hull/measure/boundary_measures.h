@@ -49,7 +49,8 @@ struct BoundaryMeasures : Measures {
 /// five rulings, and soon as small with more. Time is 30 to 60 microseconds for each pair of
 /// neighbouring rulings and each side of it on a patch.
 ///
-/// Volume, centroid and inertia of a boundary without volume (a flat hull) are as in Measures.
+/// Volume, centroid and inertia of a boundary without volume are as in Measures; planar hulls are
+/// measured as in flat_measures.h.
 /// @throws Cancelled, LimitMet
 BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
                          const HullBoundary& boundary, const Progress& progress = {});

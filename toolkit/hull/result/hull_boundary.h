@@ -161,6 +161,8 @@ struct Unresolved {
 struct HullBoundary {
   /// The scene's frame, that of scene_frame() also where there is no scene.
   SceneFrame frame;
+  /// Of the hull: 3, or 2 where its faces are the two sides of a planar one.
+  int dimension = 3;
   std::vector<SeparatingArc> arcs;
   std::vector<HullFace> faces;
   std::vector<HullCurve> curves;

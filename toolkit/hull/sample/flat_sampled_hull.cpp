@@ -68,7 +68,7 @@ class FlatSampler {
 
 int FlatSampler::add(const dvec3& n, const Support& s) {
   start_.samples.push_back({n, s.contact});
-  start_.points.push_back(scene_.frame().to_model(s.point));
+  start_.points.push_back(flat_point(scene_, start_, s.point));
   start_.frame_points.push_back(scene_.frame().to_frame(start_.points.back()));
   return int(start_.points.size()) - 1;
 }
@@ -240,6 +240,10 @@ std::vector<FlatSampler::Side> FlatSampler::wanted_sides(const std::vector<int>&
 }
 
 Hull FlatSampler::refine() {
+  // What the mesh is off by across its plane is no more of the tolerance than half of it.
+  const double across = start_.half_width > 0 ? across_bound(0) : 0;
+  const bool is_within = across <= 0.5 * tolerance_;
+  tolerance_ = is_within ? tolerance_ - across : 0.5 * tolerance_;
   const auto& w = start_.span.witnesses;
   const auto witness = [&](std::size_t k) { return start_.points[std::size_t(w[k])]; };
   const PlaneView view(witness(0), witness(1), witness(2));
@@ -247,7 +251,10 @@ Hull FlatSampler::refine() {
     const std::vector<int> corners = outline(view);
     certify(corners);
     options_.progress.update("sample", std::clamp(std::log(bound_) / std::log(tolerance_), 0., 1.));
-    if (bound_ <= tolerance_) return make_hull(HullKind::planar, corners);
+    if (bound_ <= tolerance_ && is_within) return make_hull(HullKind::planar, corners);
+    if (bound_ <= tolerance_) {
+      throw HullNotConverged(flat_within_more, make_hull(HullKind::planar, corners));
+    }
 
     const std::size_t before = start_.points.size();
     const std::size_t most = most_samples();

@@ -28,10 +28,11 @@ SampledPolytope polytope_from(const Scene& scene, const HullOptions& options, do
 Hull sampled_hull(const Scene& scene, const HullOptions& asked) {
   const HullOptions options = within_limits(asked);
   const double tolerance = tolerance_for(options, scene.diagonal());
-  warn_if_capped(resolution_for(options, scene.model(), scene.diagonal()), options.progress);
+  const Resolution resolution = resolution_for(options, scene.model(), scene.diagonal());
+  warn_if_capped(resolution, options.progress);
   const Stopwatch start_time;
   SupportQuery query(scene, options.progress.stop);
-  SampledStart start = sampled_start(scene, query);
+  SampledStart start = sampled_start(scene, query, scene.frame().length_to_frame(resolution.rho));
   if (start.span.dimension < 3) {
     Hull hull = flat_sampled_hull(scene, options, tolerance, std::move(start), query);
     hull.statistics.seconds_sample = start_time.seconds();

@@ -14,9 +14,10 @@ namespace taut {
 /// most the tolerance, rounding apart. Same bits for any number of threads. Safe to call
 /// concurrently.
 ///
-/// A scene thinner than flat_width and its like (tolerances.h) in some direction is planar, a
-/// segment or a point; its corners are support points too, and a planar outline is convex as seen
-/// along the axis that foreshortens it least.
+/// A scene that reaches no farther than its resolution, or than flat_width and its like
+/// (tolerances.h), across a plane or a line is planar, a segment or a point; its corners are
+/// support points too, moved into one plane, and a planar outline is convex as seen along the axis
+/// that foreshortens it least.
 ///
 /// @throws InvalidInput if the tolerance or the resolution is not valid, HullNotConverged if it is
 /// below what double precision can certify for this scene (about 1e-12 of its size) or max_vertices

@@ -1,9 +1,14 @@
 #include "taut/hull/sample/sampled_start.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
 
 #include "taut/core/tolerances.h"
+#include "taut/hull/polytope/outline.h"
 
 namespace taut {
 namespace {
@@ -24,7 +29,75 @@ void add(const Scene& scene, SupportQuery& query, const std::vector<dvec3>& dire
   }
 }
 
+/// The unit normal of the points' outline, as a vector area, seen along another.
+dvec3 outline_normal(const std::vector<dvec3>& points, const AffineSpan& span) {
+  const auto witness = [&](std::size_t k) { return points[std::size_t(span.witnesses[k])]; };
+  const std::vector<int> outline =
+      convex_outline(points, PlaneView(witness(0), witness(1), witness(2)));
+  dvec3 area(0.0);
+  const auto at = [&](std::size_t k) {
+    return points[std::size_t(outline[k % outline.size()])] - points[std::size_t(outline[0])];
+  };
+  for (std::size_t k = 1; k < outline.size(); ++k) area += glm::cross(at(k), at(k + 1));
+  return unit(area);
+}
+
+/// The span of less than space, across which the scene reaches no farther than the width; none if
+/// there is no such.
+std::optional<AffineSpan> thin_span(SupportQuery& query, double width, const SampledStart& start) {
+  AffineSpan span = affine_span(start.frame_points, 2 * width);
+  if (span.dimension != 1 && span.dimension != 2) return std::nullopt;
+  if (span.dimension == 2) span.normal = outline_normal(start.frame_points, span);
+  const std::vector<dvec3> across = directions_across(span);
+  // Neighbours among eight directions are an eighth of a turn apart.
+  const double share = span.dimension == 1 ? std::cos(std::numbers::pi / 8) : 1;
+  for (std::size_t k = 0; k + 1 < across.size(); k += 2) {
+    if (query(across[k]).h_bound + query(across[k + 1]).h_bound > share * width) {
+      return std::nullopt;
+    }
+  }
+  return span;
+}
+
+/// How far the scene reaches across its plane.
+void measure_width(SupportQuery& query, SampledStart& start) {
+  const double upper = query(start.span.normal).h_bound;
+  const double lower = -query(-start.span.normal).h_bound;
+  start.middle = 0.5 * (upper + lower);
+  start.half_width = 0.5 * (upper - lower);
+}
+
+/// Moves the samples into the middle of what a plane's scene reaches. Those that are no farther
+/// from others than it reaches would make sides that mean nothing.
+void flatten(const Scene& scene, SampledStart& start) {
+  SampledStart flat;
+  for (std::size_t k = 0; k < start.points.size(); ++k) {
+    const dvec3 point = flat_point(scene, start, start.frame_points[k]);
+    const dvec3 frame_point = scene.frame().to_frame(point);
+    const bool near_another = std::any_of(
+        flat.frame_points.begin(), flat.frame_points.end(),
+        [&](const dvec3& other) { return glm::distance(other, frame_point) <= start.half_width; });
+    if (near_another) continue;
+    flat.samples.push_back(start.samples[k]);
+    flat.points.push_back(point);
+    flat.frame_points.push_back(frame_point);
+  }
+  const dvec3 n = start.span.normal;
+  flat.span = affine_span(flat.frame_points, start.half_width);
+  const bool turned = glm::dot(flat.span.normal, n) < 0;
+  flat.span.normal = turned ? -n : n;
+  flat.middle = turned ? -start.middle : start.middle;
+  flat.half_width = start.half_width;
+  start = std::move(flat);
+}
+
 }  // namespace
+
+dvec3 flat_point(const Scene& scene, const SampledStart& start, const dvec3& x) {
+  if (start.half_width == 0) return scene.frame().to_model(x);
+  const dvec3& n = start.span.normal;
+  return scene.frame().to_model(x + (start.middle - glm::dot(x, n)) * n);
+}
 
 double meaningful_width(const Scene& scene) {
   const dvec3 reach = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
@@ -33,7 +106,7 @@ double meaningful_width(const Scene& scene) {
   return std::max(flat_width, std::min(noise * scene.frame().scale, flat_width_limit));
 }
 
-SampledStart sampled_start(const Scene& scene, SupportQuery& query) {
+SampledStart sampled_start(const Scene& scene, SupportQuery& query, double thin) {
   const double width = meaningful_width(scene);
   SampledStart start;
   add(scene, query, directions_across({}), width, start);
@@ -43,6 +116,17 @@ SampledStart sampled_start(const Scene& scene, SupportQuery& query) {
     add(scene, query, directions_across(start.span), width, start);
     start.span = affine_span(start.frame_points, width);
     if (start.span.dimension == dimension) break;
+  }
+  std::optional<AffineSpan> thinner;
+  if (start.span.dimension >= 2 && thin > width) thinner = thin_span(query, thin, start);
+  const bool is_thinner = thinner && thinner->dimension < start.span.dimension;
+  if (is_thinner) start.span = *thinner;
+  if (start.span.dimension != 2) return start;
+  measure_width(query, start);
+  if (is_thinner) {
+    flatten(scene, start);
+  } else {
+    start.half_width = 0;
   }
   return start;
 }

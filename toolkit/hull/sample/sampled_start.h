@@ -16,16 +16,26 @@ struct SampledStart {
   std::vector<Sample> samples;
   std::vector<dvec3> points;        ///< per sample, in model coordinates
   std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
-  /// What the scene spans, by the samples; what is thinner than tolerances.h tells is flat.
+  /// What the scene spans, by the samples; what is thinner than tolerances.h tells, or than asked,
+  /// is flat.
   AffineSpan span;
+  /// Of a span of a plane: the middle between the heights x . span.normal that the scene reaches in
+  /// the scene's frame, and half of how far these are apart if that is more than rounding.
+  double middle = 0;
+  double half_width = 0;
 };
 
 /// Below which distances in the scene's frame mean nothing (tolerances.h).
 double meaningful_width(const Scene& scene);
 
 /// The support points of 26 directions: axes, and diagonals of faces and of space; and while they
-/// lie in a plane or on a line, those of the directions across it.
-SampledStart sampled_start(const Scene& scene, SupportQuery& query);
+/// lie in a plane or on a line, those of the directions across it. What reaches no farther across a
+/// plane or a line than `width`, in the scene's frame, is flat too: samples of a plane are then the
+/// model's points' feet on its middle.
+SampledStart sampled_start(const Scene& scene, SupportQuery& query, double width = 0);
+
+/// The place in model coordinates of a point of the scene, in its frame, as the samples have it.
+dvec3 flat_point(const Scene& scene, const SampledStart& start, const dvec3& x);
 
 /// Four of its samples that span space by more than the width, each the farthest above those before
 /// in its own direction. @pre start.span.dimension == 3
@@ -43,6 +53,8 @@ inline constexpr const char* vertex_limit_met =
     "the number of vertices allowed was reached before the tolerance";
 inline constexpr const char* tolerance_too_fine =
     "the tolerance is below what double precision can certify here";
+inline constexpr const char* flat_within_more =
+    "the model is flat within its resolution, which is more than the tolerance (--resolution)";
 
 /// The hull of a scene that spans less than space. `tolerance` in model units.
 /// @pre start.span.dimension < 3 @throws HullNotConverged, Cancelled as sampled_hull()

@@ -99,7 +99,7 @@ HullDocument DocumentMaker::make() {
   collect_sources();
   HullDocument document;
   document.diagonal = scene_.diagonal();
-  document.dimension = 3;
+  document.dimension = boundary_.dimension;
   document.sources = sources_.make();
   for (std::size_t i = 0; i < boundary_.faces.size(); ++i) {
     document.faces.push_back(make_face(int(i)));

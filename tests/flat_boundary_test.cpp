@@ -1,0 +1,129 @@
+#include "taut/hull/planar/flat_boundary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "models.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/measure/boundary_measures.h"
+#include "taut/hull/precise_hull.h"
+#include "taut/hull/sample/sampled_hull.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+struct KnownFlat {
+  double area = 0;
+  double perimeter = 0;
+  int curves = 0;
+};
+
+/// The hull with its boundary, the measures of which are known.
+Hull expect_flat(const Shape& shape, const KnownFlat& known, double relative = 1e-11) {
+  const Scene scene = make_scene(shape);
+  Hull hull = precise_hull(scene, {.relative = 1e-3, .threads = 1, .progress = {}});
+  EXPECT_EQ(hull.kind, HullKind::planar);
+  EXPECT_LE(hull.distance_bound, 1e-3 * scene.diagonal());
+  if (!hull.boundary) {
+    ADD_FAILURE() << "no boundary";
+    return hull;
+  }
+  EXPECT_EQ(hull.boundary->dimension, 2);
+  EXPECT_EQ(hull.boundary->faces.size(), 2U);
+  EXPECT_EQ(int(hull.boundary->curves.size()), known.curves);
+  const BoundaryMeasures m = measure(scene, ContactGeometry(scene), *hull.boundary);
+  EXPECT_EQ(m.volume, 0);
+  EXPECT_NEAR(m.area, known.area, relative * known.area);
+  EXPECT_NEAR(m.mean_width, known.perimeter / 4, relative * known.perimeter);
+  EXPECT_LE(m.accuracy, relative);
+  return hull;
+}
+
+Shape ring(double r, const dvec3& center) {
+  return {{}, {circle(center, {r, 0, 0}, {0, r, 0})}, {}};
+}
+
+Shape quad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
+  return of_patch({1, 1, {dvec4(a, 1), dvec4(b, 1), dvec4(c, 1), dvec4(d, 1)}});
+}
+
+/// A belt about two circles.
+TEST(FlatBoundary, CirclesAndSegments) {
+  expect_flat(ring(2, {1, 2, 3}), {4 * pi, 4 * pi, 1});
+  expect_flat(mapped(disc(2, 1), skew_rotation()), {4 * pi, 4 * pi, 1});
+  const double R = 2, r = 1, d = 5;
+  const double beta = std::asin((R - r) / d);
+  const double tangent = std::sqrt(d * d - (R - r) * (R - r));
+  const KnownFlat belt = {(R + r) * tangent + R * R * (pi / 2 + beta) + r * r * (pi / 2 - beta),
+                          2 * tangent + R * (pi + 2 * beta) + r * (pi - 2 * beta), 4};
+  const Shape circles = ring(R, {0, 0, 0}) + ring(r, {d, 0, 0});
+  expect_flat(circles, belt);
+  expect_flat(mapped(circles, skew_rotation(), {40, -30, 7}), belt);
+}
+
+TEST(FlatBoundary, FlatPatches) {
+  const Shape square = quad({0, 0, 0}, {0, 3, 0}, {4, 0, 0}, {4, 3, 0});
+  const Hull hull = expect_flat(mapped(square, skew_rotation()), {12, 14, 4});
+  // It lies on its face, and all that is on it is exact.
+  for (const HullFace& face : hull.boundary->faces) {
+    EXPECT_EQ(face.source, 0);
+    EXPECT_EQ(face.tolerant, 0);
+  }
+  expect_flat(square + shifted(square, {4, 0, 0}), {24, 22, 4});
+}
+
+/// The width of a plate is below the resolution: its corners are in pairs that are one in the
+/// plane.
+TEST(FlatBoundary, ThinPlates) {
+  const Shape plate = mapped(box(4, 3, 2e-8), skew_rotation());
+  expect_flat(plate, {12, 14, 4}, 1e-8);
+}
+
+/// Corners that are off a plane, and off a line, by less than the resolution.
+TEST(FlatBoundary, WithinTheResolution) {
+  const double off = 2e-8;
+  const Shape warped = quad({0, 0, off}, {0, 3, -off}, {4, 0, -off}, {4, 3, off}) +
+                       quad({4, 0, -off}, {4, 3, off}, {8, off, off}, {8, 3, 0});
+  const Hull hull = expect_flat(mapped(warped, skew_rotation()), {24, 22, 4}, 1e-7);
+  for (const HullFace& face : hull.boundary->faces) {
+    EXPECT_GT(face.tolerant, 0);
+    EXPECT_LE(hull.boundary->frame.length_to_model(face.tolerant), hull.resolution.rho);
+  }
+  // A finer one tells them.
+  const Scene scene = make_scene(warped);
+  EXPECT_EQ(sampled_hull(scene, {.resolution = 1e-10, .threads = 1, .progress = {}}).kind,
+            HullKind::solid);
+}
+
+TEST(FlatBoundary, ToleranceBelowTheResolutionIsNotConverged) {
+  const double off = 2e-8;
+  const Scene scene = make_scene(quad({0, 0, off}, {0, 3, -off}, {4, 0, -off}, {4, 3, off}));
+  try {
+    precise_hull(scene, {.tolerance = 1e-9, .threads = 1, .progress = {}});
+    FAIL() << "it is as flat as that";
+  } catch (const HullNotConverged& failure) {
+    EXPECT_EQ(failure.best->kind, HullKind::planar);
+    EXPECT_GT(failure.best->distance_bound, 1e-9);
+    EXPECT_LT(failure.best->distance_bound, 1e-6);
+  }
+}
+
+/// A patch that folds over beyond its border has no edge there.
+TEST(FlatBoundary, FoldsHaveNone) {
+  BezierPatch patch{2, 2, {}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) patch.points.emplace_back(i, j, 0, 1);
+  }
+  patch.at(1, 1).x = 8;
+  const Scene scene = make_scene(of_patch(patch));
+  const Hull hull = precise_hull(scene, {.relative = 1e-3, .threads = 1, .progress = {}});
+  EXPECT_EQ(hull.kind, HullKind::planar);
+  EXPECT_EQ(hull.boundary, nullptr);
+}
+
+}  // namespace
+}  // namespace taut

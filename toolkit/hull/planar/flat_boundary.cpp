@@ -1,0 +1,338 @@
+#include "taut/hull/planar/flat_boundary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "taut/core/integers.h"
+#include "taut/core/tolerances.h"
+#include "taut/hull/planar/planar_arcs.h"
+#include "taut/hull/planar/planar_hull.h"
+
+namespace taut {
+namespace {
+
+/// Places on edges no farther from an end are there: Newton's method leaves them so near to it.
+constexpr double end_distance = 1e-9;
+
+/// Segments of a stretch of an edge within a piece, and tangents of it that are checked.
+constexpr int stretch_points = 8;
+
+/// A side of the outline and the corner in which it begins.
+struct FlatSide {
+  Contact corner;
+  dvec2 x = dvec2(0);
+  EdgeStretch along;           ///< none where it is straight
+  std::vector<dvec2> polygon;  ///< its control points
+
+  bool is_curved() const { return along.piece >= 0; }
+};
+
+double distance_to_segment(const dvec2& x, const dvec2& a, const dvec2& b) {
+  const dvec2 d = b - a;
+  const double square = glm::dot(d, d);
+  const double t = square > 0 ? std::clamp(glm::dot(x - a, d) / square, 0.0, 1.0) : 0;
+  return glm::distance(x, a + t * d);
+}
+
+/// Makes the boundary.
+class FlatBoundary {
+ public:
+  FlatBoundary(const ContactGeometry& geometry, SupportQuery& query, const FlatExtent& extent,
+               double rho)
+      : geometry_(geometry),
+        query_(query),
+        extent_(extent),
+        frame_(tangent_frame(extent.n)),
+        rho_(rho),
+        width_(std::min(cover_share * rho, across(rho, 2 * extent.half_width))) {}
+
+  std::optional<HullBoundary> make();
+
+ private:
+  /// Of a length, what is left in a plane where it reaches so far across it.
+  static double across(double length, double height) {
+    return std::sqrt(std::max(length * length - height * height, 0.0));
+  }
+  dvec2 in_plane(const dvec3& x) const { return {glm::dot(x, frame_[0]), glm::dot(x, frame_[1])}; }
+  dvec3 in_space(const dvec2& d) const { return d.x * frame_[0] + d.y * frame_[1]; }
+  std::size_t next(std::size_t k) const { return (k + 1) % sides_.size(); }
+
+  void collect();
+  Contact on_piece(int curve, double t) const;
+  void set_polygon(FlatSide& side) const;
+  void take(const PlanarHull& hull);
+  void simplify();
+  std::size_t straight_end(std::size_t from, std::size_t limit) const;
+  void close_dents();
+  bool is_dent(const FlatSide& before, const FlatSide& across, const FlatSide& after) const;
+  bool supports();
+  bool supports(const dvec2& outward, double height, const Contact& hint);
+
+  HullFace facet(bool upper) const;
+  void add_curves(HullBoundary& boundary) const;
+  std::vector<dvec3> points_along(std::size_t k) const;
+  int source_of(const FlatSide& side) const;
+
+  const ContactGeometry& geometry_;
+  SupportQuery& query_;
+  FlatExtent extent_;
+  std::array<dvec3, 2> frame_;
+  double rho_;
+  double width_;  ///< what may be left out
+  std::vector<Contact> corners_;
+  std::vector<Contact> pieces_;
+  std::vector<FlatSide> sides_;
+};
+
+/// The model's vertices, and pieces of edges that are not straight.
+void FlatBoundary::collect() {
+  const Model& model = geometry_.scene().model();
+  for (const int i : geometry_.scene().distinct_instances()) {
+    const Part& part = model.parts()[to_size(model.instances()[to_size(i)].part)];
+    const int vertices = int(part.vertices().size()) - part.seam_vertex_count();
+    for (int k = 0; k < vertices; ++k) {
+      const Contact vertex{i, SourceKind::vertex, k, 0, 0};
+      if (!geometry_.is_repeated(vertex)) corners_.push_back(vertex);
+    }
+    for (int k = 0; k < int(part.pieces().size()); ++k) {
+      const Contact piece{i, SourceKind::edge, k, 0, 0};
+      const bool is_edge = part.pieces()[to_size(k)].edge >= 0;
+      if (!is_edge || geometry_.is_repeated(piece) || geometry_.is_straight(piece)) continue;
+      pieces_.push_back(piece);
+    }
+  }
+}
+
+/// At an end that is no farther, or inside.
+Contact FlatBoundary::on_piece(int curve, double t) const {
+  Contact c = pieces_[to_size(curve)];
+  c.u = t;
+  const double end = std::round(t);
+  if (std::abs(t - end) * glm::length(geometry_.jet(c).dx[0]) <= end_distance) c.u = end;
+  return c;
+}
+
+void FlatBoundary::set_polygon(FlatSide& side) const {
+  std::vector<dvec3> curve;
+  for (const dvec4& p : geometry_.curve(side.along.at(0)).points) {
+    curve.emplace_back(in_plane(dvec3(p)), p.w);
+  }
+  side.polygon = part_polygon(curve, side.along.from, side.along.to);
+}
+
+void FlatBoundary::take(const PlanarHull& hull) {
+  for (const OutlineSide& side : hull.sides) {
+    FlatSide own;
+    own.corner = geometry_.canonical(side.point >= 0 ? corners_[to_size(side.point)]
+                                                     : on_piece(side.curve, side.t));
+    own.x = in_plane(geometry_.point(own.corner));
+    if (side.along >= 0) {
+      const Contact& piece = pieces_[to_size(side.along)];
+      own.along = {piece.instance, piece.element, on_piece(side.along, side.from).u,
+                   on_piece(side.along, side.to).u};
+      set_polygon(own);
+    }
+    sides_.push_back(std::move(own));
+  }
+}
+
+/// The last corner, before the limit, to which a segment runs beside all sides from the first on.
+std::size_t FlatBoundary::straight_end(std::size_t from, std::size_t limit) const {
+  const auto side = [&](std::size_t k) -> const FlatSide& { return sides_[k % sides_.size()]; };
+  const auto is_beside = [&](std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) {
+      const auto near = [&](const dvec2& x) {
+        return distance_to_segment(x, side(from).x, side(to).x) <= width_;
+      };
+      if (!near(side(k).x)) return false;
+      if (!std::all_of(side(k).polygon.begin(), side(k).polygon.end(), near)) return false;
+    }
+    return true;
+  };
+  std::size_t to = from;
+  while (to < limit && is_beside(to + 1)) ++to;
+  return to;
+}
+
+/// Beginning in a corner that stays: the farthest from another.
+void FlatBoundary::simplify() {
+  const auto farther = [&](const FlatSide& a, const FlatSide& b) {
+    return glm::distance(a.x, sides_[0].x) < glm::distance(b.x, sides_[0].x);
+  };
+  std::rotate(sides_.begin(), std::max_element(sides_.begin(), sides_.end(), farther),
+              sides_.end());
+  std::vector<FlatSide> left;
+  for (std::size_t from = 0; from < sides_.size();) {
+    left.push_back(sides_[from]);
+    const std::size_t to = straight_end(from, sides_.size());
+    if (to > from) {
+      left.back().along = {};
+      left.back().polygon.clear();
+    }
+    from = std::max(to, from + 1);
+  }
+  sides_ = std::move(left);
+}
+
+/// The straight side leads from one piece of an edge over a dent at its end to the next one.
+bool FlatBoundary::is_dent(const FlatSide& before, const FlatSide& across,
+                           const FlatSide& after) const {
+  if (!before.is_curved() || across.is_curved() || !after.is_curved()) return false;
+  const double end = before.along.to > before.along.from ? 1 : 0;
+  const double begin = after.along.to > after.along.from ? 0 : 1;
+  const dvec2 a = in_plane(geometry_.point(before.along.at(end)));
+  const dvec2 b = in_plane(geometry_.point(after.along.at(begin)));
+  const auto near = [&](const dvec2& x) {
+    return distance_to_segment(x, across.x, after.x) <= width_;
+  };
+  return glm::distance(a, b) <= geometry_.tie() && near(a) && near(b);
+}
+
+/// Pieces of edges are followed to where they join.
+void FlatBoundary::close_dents() {
+  for (std::size_t k = 0; k < sides_.size() && sides_.size() > 2;) {
+    const std::size_t before = (k + sides_.size() - 1) % sides_.size();
+    const std::size_t after = next(k);
+    if (!is_dent(sides_[before], sides_[k], sides_[after])) {
+      ++k;
+      continue;
+    }
+    EdgeStretch& in = sides_[before].along;
+    EdgeStretch& out = sides_[after].along;
+    in.to = in.to > in.from ? 1 : 0;
+    out.from = out.to > out.from ? 0 : 1;
+    set_polygon(sides_[before]);
+    set_polygon(sides_[after]);
+    sides_[after].corner = geometry_.canonical(out.at(out.from));
+    sides_[after].x = in_plane(geometry_.point(sides_[after].corner));
+    sides_.erase(sides_.begin() + std::ptrdiff_t(k));
+  }
+}
+
+bool FlatBoundary::supports(const dvec2& outward, double height, const Contact& hint) {
+  return query_(unit(in_space(outward)), hint).h_bound <= height + rho_ + geometry_.tie();
+}
+
+/// Nothing is beyond a side by more than the resolution.
+bool FlatBoundary::supports() {
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const FlatSide& side = sides_[k];
+    const dvec2& to = sides_[next(k)].x;
+    if (!side.is_curved()) {
+      const dvec2 outward_from = outward(side.x, to);
+      if (!supports(outward_from, glm::dot(side.x, outward_from), side.corner)) return false;
+      continue;
+    }
+    const double sense = side.along.to > side.along.from ? 1 : -1;
+    for (int i = 0; i <= stretch_points; ++i) {
+      const double t = Interval{side.along.from, side.along.to}.at(double(i) / stretch_points);
+      const ContactJet jet = geometry_.jet(side.along.at(t));
+      const dvec2 x = in_plane(jet.x);
+      const dvec2 along = sense * in_plane(jet.dx[0]);
+      if (!(glm::length(along) > 0)) continue;
+      const dvec2 n = outward(dvec2(0), along);
+      if (!supports(n, glm::dot(x, n), side.along.at(t))) return false;
+    }
+  }
+  return true;
+}
+
+/// The side that is seen from along n, or the other one.
+HullFace FlatBoundary::facet(bool upper) const {
+  HullFace face;
+  face.kind = FaceKind::facet;
+  face.n = upper ? extent_.n : -extent_.n;
+  face.offset = (upper ? extent_.middle : -extent_.middle) + extent_.half_width;
+  face.tolerant = 2 * extent_.half_width;
+  const std::size_t count = sides_.size();
+  const bool is_curved = std::any_of(sides_.begin(), sides_.end(),
+                                     [](const FlatSide& side) { return side.is_curved(); });
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = upper ? i : (count - i) % count;
+    face.contacts.push_back(sides_[k].corner);
+    face.points.push_back(geometry_.point(sides_[k].corner));
+    if (!is_curved) continue;
+    EdgeStretch along = sides_[upper ? k : (k + count - 1) % count].along;
+    if (!upper) std::swap(along.from, along.to);
+    face.sides.push_back(along);
+  }
+  return face;
+}
+
+int FlatBoundary::source_of(const FlatSide& side) const {
+  if (!side.is_curved()) return -1;
+  const Contact c = side.along.at(0);
+  const int edge = geometry_.piece(c).edge;
+  return geometry_.scene().model().source_id({SourceKind::edge, c.instance, edge});
+}
+
+std::vector<dvec3> FlatBoundary::points_along(std::size_t k) const {
+  const FlatSide& side = sides_[k];
+  std::vector<dvec3> points = {geometry_.point(side.corner)};
+  for (int i = 1; side.is_curved() && i < stretch_points; ++i) {
+    const double t = Interval{side.along.from, side.along.to}.at(double(i) / stretch_points);
+    points.push_back(geometry_.point(side.along.at(t)));
+  }
+  points.push_back(geometry_.point(sides_[next(k)].corner));
+  return points;
+}
+
+/// Consecutive stretches of one edge are one curve.
+void FlatBoundary::add_curves(HullBoundary& boundary) const {
+  const std::size_t count = sides_.size();
+  const auto goes_on = [&](std::size_t k) {
+    const int source = source_of(sides_[k % count]);
+    return source >= 0 && source == source_of(sides_[(k + count - 1) % count]);
+  };
+  std::size_t first = 0;
+  while (first < count && goes_on(first)) ++first;
+  const bool closed = first == count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = (first + i) % count;
+    if (i == 0 || !goes_on(k)) {
+      HullCurve& curve = boundary.curves.emplace_back();
+      curve.source = source_of(sides_[k]);
+      curve.kind = curve.source >= 0 ? HullCurveKind::edge : HullCurveKind::ruling;
+      curve.faces = {0, 1};
+      curve.closed = closed;
+    }
+    std::vector<dvec3>& points = boundary.curves.back().points;
+    const std::vector<dvec3> own = points_along(k);
+    points.insert(points.end(), own.begin() + (points.empty() ? 0 : 1), own.end());
+  }
+}
+
+std::optional<HullBoundary> FlatBoundary::make() {
+  collect();
+  std::vector<dvec2> points;
+  for (const Contact& c : corners_) points.push_back(in_plane(geometry_.point(c)));
+  std::vector<std::vector<dvec3>> curves;
+  for (const Contact& c : pieces_) {
+    std::vector<dvec3>& curve = curves.emplace_back();
+    for (const dvec4& p : geometry_.curve(c).points) curve.emplace_back(in_plane(dvec3(p)), p.w);
+  }
+  take(planar_hull(points, curves));
+  if (sides_.empty()) return std::nullopt;
+  simplify();
+  close_dents();
+  const bool has_area =
+      sides_.size() > 2 || sides_.front().is_curved() || sides_.back().is_curved();
+  if (!has_area || !supports()) return std::nullopt;
+  HullBoundary boundary;
+  boundary.frame = geometry_.scene().frame();
+  boundary.dimension = 2;
+  boundary.faces = {facet(true), facet(false)};
+  add_curves(boundary);
+  boundary.gap = extent_.half_width > 0 ? rho_ : 0;
+  return boundary;
+}
+
+}  // namespace
+
+std::optional<HullBoundary> flat_boundary(const ContactGeometry& geometry, SupportQuery& query,
+                                          const FlatExtent& extent, double rho) {
+  return FlatBoundary(geometry, query, extent, rho).make();
+}
+
+}  // namespace taut

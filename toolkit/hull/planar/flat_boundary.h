@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include "taut/bounds/contact_geometry.h"
+#include "taut/bounds/support_query.h"
+#include "taut/hull/result/hull_boundary.h"
+
+namespace taut {
+
+/// What a flat scene reaches across its plane, as heights x . n in the scene's frame.
+struct FlatExtent {
+  dvec3 n = dvec3(0.0);  ///< unit
+  double middle = 0;
+  double half_width = 0;  ///< 0: nothing but rounding
+};
+
+/// The exact boundary of a planar hull: its two sides, facets whose outlines are stretches of the
+/// model's edges and segments, and the curves between them.
+///
+/// What keeps the outline from being simpler by no more than `rho`, in the scene's frame, what the
+/// scene reaches across its plane included, is left out: corners and bent edges that are as near to
+/// a straight side, and dents between pieces of an edge. Corners are contacts where they are, and
+/// the facets are tolerant by the scene's width.
+///
+/// None where the outline is not one of edges and vertices, to within rho: that of faces that fold
+/// over beyond their borders.
+/// @pre the scene reaches no farther than rho across the plane
+std::optional<HullBoundary> flat_boundary(const ContactGeometry& geometry, SupportQuery& query,
+                                          const FlatExtent& extent, double rho);
+
+}  // namespace taut
