@@ -141,16 +141,27 @@ TEST(SampledHull, BoundsCountBothSidesOfAPlane) {
   EXPECT_LE(other, hull.distance_bound);
 }
 
+TEST(SampledHull, FlatWithinItsResolution) {
+  for (const double thickness : {1e-9, 1e-8}) {
+    const Scene scene = make_scene(mapped(ellipsoid(1, 2, thickness), skew_rotation()));
+    const Hull hull = sampled_hull(scene, {.tolerance = 1e-4, .threads = 1, .progress = {}});
+    EXPECT_EQ(hull.kind, HullKind::planar);
+    EXPECT_LE(hull.distance_bound, 1e-4);
+    const PolygonMesh mesh = polygons(hull.mesh);
+    EXPECT_LE(gaps(scene, mesh, 1000).highest, hull.distance_bound);
+    EXPECT_NEAR(measure(mesh).area, 4 * pi, 8 * pi * 1e-4);
+    EXPECT_NEAR(measure(mesh).volume, 0, 1e-15);
+  }
+}
+
 TEST(SampledHull, NearlyFlat) {
-  for (const double thickness : {1e-3, 1e-6, 1e-9}) {
-    // Thinner than the distance within which borders are joined, both sides have one rim.
-    const double joined = thickness < join_distance ? 2 * thickness : 0;
+  for (const double thickness : {1e-3, 1e-5, 1e-6}) {
     for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
       const std::string name = "thickness " + std::to_string(std::log10(thickness));
       expect_sampled(make_scene(mapped(ellipsoid(1, 2, thickness), turn)), 1e-2,
-                     {8 * pi / 3 * thickness, -1, joined}, name);
-      expect_sampled(make_scene(mapped(box(1, 2, thickness), turn)), 1e-3,
-                     {2 * thickness, -1, joined}, name);
+                     {8 * pi / 3 * thickness, -1, 0}, name);
+      expect_sampled(make_scene(mapped(box(1, 2, thickness), turn)), 1e-3, {2 * thickness, -1, 0},
+                     name);
     }
   }
 }
@@ -393,7 +404,8 @@ TEST(SampledHull, ThinBodiesAreAsNearAsAsked) {
          {ellipsoid(1, 1, thin), ellipsoid(1, 10 * thin, 10 * thin), solid_cylinder(1, thin),
           box(1, 0.75, thin), filleted_box(1, 0.75, thin, 0.3 * thin)}) {
       const Scene scene = make_scene(mapped(shape, skew_rotation()));
-      const Hull hull = sampled_hull(scene, {.tolerance = 1e-4, .threads = 1, .progress = {}});
+      const Hull hull =
+          sampled_hull(scene, {.tolerance = 1e-4, .resolution = 0., .threads = 1, .progress = {}});
       EXPECT_EQ(hull.kind, HullKind::solid);
       EXPECT_LE(hull.distance_bound, 1e-4);
       EXPECT_LE(gaps(scene, polygons(hull.mesh), 1000).highest, hull.distance_bound);
