@@ -94,6 +94,7 @@ void HullContainment::Content::make_mesh() {
   const SampledStart first = sampled_start(scene, query);
   if (first.span.dimension < 3) {
     start = support_polytope(scene, first.samples);
+    start.across = directions_across(first.span);
     return;
   }
   const double start_tolerance = std::max(tolerance, start_relative * scene.diagonal());
