@@ -150,6 +150,27 @@ TEST(HullContainment, FlatHullsHaveNoInside) {
   EXPECT_NEAR(HullContainment(tiny).distance({1, 2, 5}).value, 2, 1e-12);
 }
 
+/// The foot of a point above a plane of curves is inside of what they bound.
+TEST(HullContainment, PointsAbovePlanarCurves) {
+  const dmat3 turn = skew_rotation();
+  const Shape circles = {
+      {}, {circle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), circle({4, 0, 0}, {1, 0, 0}, {0, 1, 0})}, {}};
+  for (const bool turned : {false, true}) {
+    const Scene scene = make_scene(turned ? mapped(circles, turn) : circles);
+    const HullContainment hull(scene);
+    const auto distance = [&](const dvec3& x) { return hull.distance(turned ? turn * x : x); };
+    for (const double height : {0.0, 1e-6, 0.3, 2.0, -5.0}) {
+      for (const dvec3& foot : {dvec3(0.3, 0.2, 0), dvec3(2, 0.7, 0), dvec3(4.5, -0.4, 0)}) {
+        const SignedDistance d = distance(foot + dvec3(0, 0, height));
+        EXPECT_NEAR(d.value, std::abs(height), 1e-12);
+        EXPECT_EQ(d.location(hull.on_tolerance()), height == 0 ? Location::on : Location::outside);
+      }
+      EXPECT_NEAR(distance({2, 1.5, height}).value, std::hypot(0.5, height), 1e-12);
+      EXPECT_NEAR(distance({6, 0, height}).value, std::hypot(1, height), 1e-12);
+    }
+  }
+}
+
 TEST(HullContainment, PointsThatAreNoneAreRefused) {
   const Scene scene = make_scene(sphere());
   const HullContainment containment(scene);
