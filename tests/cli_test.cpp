@@ -202,12 +202,19 @@ TEST_F(Cli, MeanWidthOfAGridThatIsRounded) {
   EXPECT_NEAR(report["hull"]["mean_width"].get<double>(), 19.442105919462399, 1e-13);
 }
 
-TEST_F(Cli, FlatCurvesHaveNoExactHullYet) {
-  const std::string arc = plant("arc.obj",
-                                "v 0 0 0\nv 1 2 0\nv 2 0 0\ncstype bezier\ndeg 2\n"
-                                "curv 0 1 1 2 3\nparm u 0 1\nend\n");
-  EXPECT_EQ(run("hull " + arc + " -o a.ply -q").exit_code, 0);
-  expect_failure("hull " + arc + " -o b.hull.json", 3, "b.hull.json: ");
+TEST_F(Cli, ExactHullsOfFlatCurves) {
+  const auto curve = [&](const char* name, const char* middle) {
+    return plant(name, std::string("v 0 0 0\nv ") + middle +
+                           "\nv 2 0 0\ncstype bezier\ndeg 2\n"
+                           "curv 0 1 1 2 3\nparm u 0 1\nend\n");
+  };
+  const std::string arc = curve("arc.obj", "1 2 0");
+  EXPECT_EQ(run("hull " + arc + " -o a.ply -o a.hull.json -q").exit_code, 0);
+  EXPECT_EQ(run("verify a.hull.json " + arc).exit_code, 0);
+  // A segment has no document yet; its mesh is written.
+  const std::string line = curve("line.obj", "1 0 0");
+  expect_failure("hull " + line + " -o b.ply -o b.hull.json", 3, "b.hull.json: ");
+  EXPECT_TRUE(fs::exists(path("b.ply")));
 }
 
 TEST_F(Cli, QuietHullSaysNothing) {

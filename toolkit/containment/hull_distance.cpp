@@ -377,14 +377,15 @@ DistanceRange HullDistance::operator()(const dvec3& x, const DistanceGoal& goal,
   if (start == dvec3(0.0)) start = {0, 0, 1};
   for (const dvec3& across : start_.across) ask(across, {});
   project(near, start);
-  const bool solid = start_.across.empty();
+  const bool is_flat = !start_.across.empty();
+  const bool solid = !is_flat && start_.hull.dimension() == 3;
   for (int turn = 0; turn < turn_limit && solid && !done(); ++turn) {
     expand();
     if (done() || !(range_.lower > 0)) break;
     project(facet_samples_, best_n_);
   }
   if (goal.tolerance < 0) polish();
-  if (!solid) range_.value = std::max(range_.value, 0.0);
+  if (is_flat) range_.value = std::max(range_.value, 0.0);
   return range_;
 }
 
