@@ -77,6 +77,50 @@ TEST(ArcPieces, ContactsThatComeBackToACornerStayThere) {
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.5);
 }
 
+/// Unless they are higher beside it.
+TEST(ArcPieces, ContactsThatComeBackFromAboveACornerHaveLeftIt) {
+  for (const double high : {0.5e-8, 2e-8}) {
+    std::vector<ArcPiece> pieces = {{{ruling_at(0), ruling_at(0, 1e-4), ruling_at(0)}}};
+    for (Ruling& r : pieces[0].rulings) {
+      for (Contact& c : r.contact) c = {0, SourceKind::face, 0, 1, 1};
+    }
+    pieces[0].rulings[1].point[0].z = high;
+    tell_corners(pieces, 1e-7, 1e-3, 1e-8);
+    EXPECT_EQ(pieces[0].rulings[1].point[0].z, high > 1e-8 ? high : 0) << high;
+  }
+}
+
+/// Next to the end of an edge that leaves its tangent slowly all is as high as its vertex: contacts
+/// there are the vertex's, and what goes on along the edge begins at its end.
+TEST(ArcPieces, ContactsNextToAVertexThatIsAsHighAreItsOwn) {
+  Shape shape;
+  shape.curves.push_back({3,
+                          {0, 0, 0, 0, 1, 1, 1, 1},
+                          {{0, 0, 0, 1}, {1. / 3, 0, 0, 1}, {2. / 3, 0, 0, 1}, {1, 0, -1, 1}}});
+  shape.curves.push_back(segment({0, 1, 0}, {1, 1, -1}));
+  const Scene scene = make_scene(shape);
+  const ContactGeometry geometry(scene);
+  const auto ruling = [&](double u) {
+    Ruling r;
+    r.n = {0, 0, 1};
+    r.contact = {Contact{0, SourceKind::edge, 0, u, 0}, Contact{0, SourceKind::edge, 1, 0, 0}};
+    for (const std::size_t i : {0u, 1u}) r.point[i] = geometry.point(r.contact[i]);
+    return r;
+  };
+  std::vector<ArcPiece> pieces = {{{ruling(0), ruling(2e-6), ruling(1e-6)}},
+                                  {{ruling(1e-6), ruling(0.5)}}};
+  tell_vertices(geometry, pieces, 1e-4);
+  for (const Ruling& r : pieces.front().rulings) {
+    EXPECT_EQ(r.contact[0].kind, SourceKind::vertex);
+    EXPECT_EQ(r.point[0], geometry.point(ruling(0).contact[0]));
+  }
+  EXPECT_EQ(pieces.back().rulings.front().point[0], pieces.front().rulings.back().point[0]);
+  // What ends beside the vertex, and nothing goes on from there, has left it.
+  std::vector<ArcPiece> ends = {{{ruling(0), ruling(1e-6)}}};
+  tell_vertices(geometry, ends, 1e-4);
+  EXPECT_EQ(ends[0].rulings[1].contact[0].kind, SourceKind::edge);
+}
+
 /// Of an edge, to within what may be nothing.
 TEST(ArcPieces, ContactsThatComeBackToAPlaceOfAnEdgeStayThere) {
   const auto piece = [](double back) {

@@ -20,7 +20,7 @@ constexpr double shortest_step = 1e-15;
 /// Width of contacts, relative to their length, below which they are in line.
 constexpr double line_width = 1e-6;
 /// How far parameters may leave [0, 1] by rounding.
-constexpr double parameter_slack = 1e-9;
+constexpr double border_slack = 1e-9;
 /// Slope in the scene's frame of a contact that is told exactly: of one that Newton's method has
 /// left outside of its element, and that is moved onto its border, it is more.
 constexpr double most_slope = 1e-12;
@@ -278,7 +278,7 @@ Move move_over(const ContactGeometry& geometry, CommonSupport& s) {
   Move move = Move::none;
   for (Contact& c : s.contact) {
     const Contact own = clamped(c);
-    if (glm::distance(parameters(c), parameters(own)) <= parameter_slack) continue;
+    if (glm::distance(parameters(c), parameters(own)) <= border_slack) continue;
     const std::optional<Contact> there = climbed(geometry, own, s.n);
     if (!there || same_element(*there, own)) return Move::lost;
     c = geometry.first(*there);
