@@ -461,6 +461,24 @@ TEST(CageHull, OfABoxWithSharpUprights) {
   EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6);
 }
 
+/// A sharp edge of three divisions a side, or all of those of the top: flat middles of the sides
+/// reach the edge's straight part, beyond which strips between scrolls get narrower than directions
+/// tell apart on their way to the flat sides' planes.
+TEST(CageHull, OfBoxesWithFlatSidesUpToSharpEdges) {
+  for (const bool all : {false, true}) {
+    ControlCage cage = box_cage({3});
+    make_sharp(cage, [&](const dvec3& x) { return x.z == 1 && (all || x.x == 1); });
+    const std::string name = all ? "lid" : "edge";
+    const Model model = cage_model(cage);
+    const Hull hull = whole_hull(model, name);
+    ASSERT_TRUE(hull.boundary);
+    expect_verified(model, hull, name);
+    EXPECT_EQ(hull.boundary->count(FaceKind::patch), all ? 12 : 24) << name;
+    EXPECT_EQ(hull.boundary->count(FaceKind::scroll), all ? 8 : 13) << name;
+    EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6) << name;
+  }
+}
+
 /// The curve of an apex and the sides around runs through the flat middles of the sides; of four
 /// apexes, ends there, where two of them are in one plane with a middle.
 TEST(CageHull, OfBoxesWithApexes) {

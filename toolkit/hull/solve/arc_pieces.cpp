@@ -374,8 +374,7 @@ void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent, do
   }
 }
 
-void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces,
-                   double extent) {
+void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& pieces, double extent) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     std::vector<Ruling>& rulings = pieces[k].rulings;
     Ruling* before = k > 0 ? &pieces[k - 1].rulings.back() : nullptr;
@@ -389,7 +388,8 @@ void tell_vertices(const ContactGeometry& geometry, std::vector<ArcPiece>& piece
       const dvec3 x = geometry.point(vertex);
       // What it meets beside is there, or goes on along the edge.
       const auto meets = [&](const Ruling& own, const Ruling* beside) {
-        const double far = beside && same_element(beside->contact[i], end) ? extent : geometry.tie();
+        const double far =
+            beside && same_element(beside->contact[i], end) ? extent : geometry.tie();
         return glm::distance(own.point[i], x) <= far;
       };
       const bool stays = meets(rulings.front(), before) && meets(rulings.back(), after) &&

@@ -28,8 +28,8 @@ void drop_beside_ends(std::vector<Ruling>& rulings, double extent);
 void drop_turns(std::vector<Ruling>& rulings, double extent);
 
 /// Contacts that leave a place of a patch, or one between the ends of an edge, and come back to it,
-/// no farther than `extent` from it and no higher there than `depth`, stay there. Places on edges up
-/// to `place` from each other are one.
+/// no farther than `extent` from it and no higher there than `depth`, stay there. Places on edges
+/// up to `place` from each other are one.
 void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent, double depth);
 
 /// A contact that runs along an edge and is told now as one of the edge and now as one of a patch
