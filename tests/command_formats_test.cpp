@@ -45,6 +45,10 @@ TEST_F(Formats, GzippedFilesByTheirInnerName) {
   EXPECT_EQ(
       run("verify " + gzipped("h.ply") + " a.csv.gz " + teapot_ + " --relative 1e-2").exit_code, 0);
   EXPECT_EQ(run("info - --from csv < a.csv.gz").exit_code, 0);
+  // What is in it is read as it is.
+  plant("deep", "1,2,3\n");
+  for (int k = 0; k < 3; ++k) fs::rename(path(gzipped("deep")), path("deep"));
+  expect_failure("info - --from csv < deep", 3, "1:");
   expect_failure("hull a.csv.gz -o b.ply.gz", 2, "b.ply.gz");
   const std::string whole = content(path("a.csv.gz"));
   expect_failure("info " + plant("cut.csv.gz", whole.substr(0, whole.size() - 9)), 3,

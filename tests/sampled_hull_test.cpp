@@ -154,6 +154,29 @@ TEST(SampledHull, FlatWithinItsResolution) {
   }
 }
 
+/// What is thinner than the resolution is flat, and farther off than the tolerance asks for: said,
+/// be it a sheet, one of few vertices, or a needle.
+TEST(SampledHull, ThinBodiesFartherOffThanTheTolerance) {
+  const auto expect_said = [](const dvec3& axes, HullKind kind, const HullOptions& options) {
+    const Scene scene = make_scene(mapped(ellipsoid(axes.x, axes.y, axes.z), skew_rotation()));
+    try {
+      const double bound = sampled_hull(scene, options).distance_bound;
+      FAIL() << "within " << bound << " axes " << axes.x << " " << axes.y;
+    } catch (const HullNotConverged& failure) {
+      EXPECT_EQ(failure.best->kind, kind);
+      EXPECT_GT(failure.best->distance_bound, options.tolerance);
+    }
+  };
+  HullOptions options;
+  options.tolerance = 1e-3;
+  options.resolution = 0.02;
+  options.threads = 1;
+  expect_said({1, 2, 0.01}, HullKind::planar, options);
+  expect_said({2, 0.01, 0.01}, HullKind::segment, options);
+  options.vertex_budget = 50;
+  expect_said({1, 2, 0.01}, HullKind::planar, options);
+}
+
 TEST(SampledHull, NearlyFlat) {
   for (const double thickness : {1e-3, 1e-5, 1e-6}) {
     for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {

@@ -196,12 +196,18 @@ Hull flat_hull(const Scene& scene, const HullOptions& options, const SampledStar
                SupportQuery& query, const Resolution& resolution) {
   const auto with_boundary = [&](Hull hull) {
     if (hull.kind != HullKind::planar) return hull;
-    const double rho = scene.frame().length_to_frame(resolution.rho);
-    const ContactGeometry geometry(scene, options.progress.stop, same_elements_of(scene, options));
-    std::optional<HullBoundary> boundary =
-        flat_boundary(geometry, query, {start.span.normal, start.middle, start.half_width}, rho);
+    std::optional<HullBoundary> boundary;
+    try {
+      const double rho = scene.frame().length_to_frame(resolution.rho);
+      const ContactGeometry geometry(scene, options.progress.stop,
+                                     same_elements_of(scene, options));
+      boundary =
+          flat_boundary(geometry, query, {start.span.normal, start.middle, start.half_width}, rho);
+      if (boundary) label_ruled_faces(geometry, *boundary);
+    } catch (const LimitMet& met) {
+      throw HullLimitExceeded(met.what(), std::move(hull));
+    }
     if (!boundary) return hull;
-    label_ruled_faces(geometry, *boundary);
     for (const auto f : hull.mesh.faces()) {
       hull.mesh.data(f).kind = FaceKind::facet;
       hull.mesh.data(f).source = boundary->faces[std::size_t(f.idx())].source;

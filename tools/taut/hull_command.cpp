@@ -94,7 +94,7 @@ Hull hull_of_images(const Scene& scene, int size, const HullOptions& options) {
 
 /// The hull of points and polygons; where that has more vertices than the budget, the best of as
 /// many, all faces of which are facets.
-Outcome polyhedral(Input& input, const HullOptions& options) {
+Outcome polyhedral(Input& input, const HullOptions& options, Console& console) {
   const auto whole = std::make_shared<const Hull>(polyhedral_hull(input.model(), options));
   if (long(whole->mesh.n_vertices()) <= options.vertex_budget.value_or(limit_of_vertices)) {
     return {whole, {}, {}};
@@ -106,6 +106,14 @@ Outcome polyhedral(Input& input, const HullOptions& options) {
   } catch (const HullNotConverged& failure) {
     hull = *failure.best;
     outcome.failure = failure.what();
+  } catch (const HullLimitExceeded& met) {
+    console.lift_limits();
+    hull = *met.best;
+    outcome.failure = met.what();
+    outcome.met_limit = true;
+  } catch (const LimitMet& met) {
+    console.lift_limits();
+    return {whole, {}, met.what(), true};
   }
   for (const auto f : hull.mesh.faces()) hull.mesh.data(f).kind = FaceKind::facet;
   outcome.hull = std::make_shared<const Hull>(std::move(hull));
@@ -116,7 +124,9 @@ Outcome compute(Input& input, const HullArguments& arguments, const HullOptions&
                 Console& console) {
   const std::string& method = arguments.method;
   try {
-    if (method != "envelope" && input.model().polyhedral()) return polyhedral(input, options);
+    if (method != "envelope" && input.model().polyhedral()) {
+      return polyhedral(input, options, console);
+    }
     Hull hull = method == "envelope"  ? hull_of_images(input.scene(), arguments.size, options)
                 : method == "precise" ? precise_hull(input.scene(), options)
                                       : sampled_hull(input.scene(), options);
@@ -134,9 +144,11 @@ void check_reachable(double wanted, Input& input) {
   if (wanted == 0 || input.model().polyhedral() || trimmed_face_count(input.model()) > 0) return;
   const double least = least_tolerance(input.scene());
   if (wanted >= least) return;
+  // Rounded to three digits it is no less.
+  const double above = 1.006 * least;
   throw UsageError("the tolerance " + number(wanted, 3) +
                    " is below what double precision can prove of this model; the least is " +
-                   number(least, 3) + ", --relative " + number(least / input.diagonal(), 3));
+                   number(above, 3) + ", --relative " + number(above / input.diagonal(), 3));
 }
 
 /// What is asked of the toolkit; `wanted`: the tolerance in model units, 0: none.
@@ -215,7 +227,7 @@ ExitCode run_within_limits(const HullArguments& arguments, const OutputPlaces& p
   check_reachable(wanted, input);
   Outcome outcome =
       compute(input, arguments, options_for(arguments, wanted, input, console), console);
-  if (outcome.failure && !outcome.met_limit && arguments.max_vertices) {
+  if (outcome.failure && !outcome.met_limit && arguments.max_vertices && wanted > 0) {
     outcome.failure = "the tolerance " + number(wanted, 3) + " was not reached with " +
                       number(long(*arguments.max_vertices)) + " vertices";
   }

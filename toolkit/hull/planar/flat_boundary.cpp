@@ -79,7 +79,8 @@ class FlatBoundary {
   FlatExtent extent_;
   std::array<dvec3, 2> frame_;
   double rho_;
-  double width_;  ///< what may be left out
+  double width_;         ///< what may be left out
+  double left_out_ = 0;  ///< by how much what was may reach beyond the outline
   std::vector<Contact> corners_;
   std::vector<Contact> pieces_;
   std::vector<FlatSide> sides_;
@@ -166,6 +167,7 @@ void FlatBoundary::simplify() {
   for (std::size_t from = 0; from < sides_.size();) {
     left.push_back(sides_[from]);
     const std::size_t to = straight_end(from, sides_.size());
+    if (to > from + 1 || (to > from && left.back().is_curved())) left_out_ = rho_;
     if (to > from) {
       left.back().along = {};
       left.back().polygon.clear();
@@ -207,11 +209,14 @@ void FlatBoundary::close_dents() {
     sides_[after].corner = geometry_.canonical(out.at(out.from));
     sides_[after].x = in_plane(geometry_.point(sides_[after].corner));
     sides_.erase(sides_.begin() + std::ptrdiff_t(k));
+    left_out_ = rho_;
   }
 }
 
 bool FlatBoundary::supports(const dvec2& outward, double height, const Contact& hint) {
-  return query_(unit(in_space(outward)), hint).h_bound <= height + rho_ + geometry_.tie();
+  const double rise = query_(unit(in_space(outward)), hint).h_bound - height;
+  if (rise > geometry_.tie()) left_out_ = rho_;
+  return rise <= rho_ + geometry_.tie();
 }
 
 /// Nothing is beyond a side by more than the resolution.
@@ -324,7 +329,7 @@ std::optional<HullBoundary> FlatBoundary::make() {
   boundary.dimension = 2;
   boundary.faces = {facet(true), facet(false)};
   add_curves(boundary);
-  boundary.gap = extent_.half_width > 0 ? rho_ : 0;
+  boundary.gap = extent_.half_width > 0 ? rho_ : left_out_;
   return boundary;
 }
 

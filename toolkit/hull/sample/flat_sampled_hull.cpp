@@ -31,6 +31,7 @@ class FlatSampler {
   Hull run();
 
  private:
+  Hull checked(Hull hull) const;
   struct Side {
     dvec3 n;
     Support support;
@@ -104,6 +105,8 @@ void FlatSampler::keep_triangle() {
   constexpr std::size_t corners = 3;
   const SampledStart all = std::exchange(start_, {});
   start_.span = all.span;
+  start_.middle = all.middle;
+  start_.half_width = all.half_width;
   for (std::size_t k = 0; k < corners; ++k) {
     const auto own = std::size_t(all.span.witnesses[k]);
     start_.samples.push_back(all.samples[own]);
@@ -197,9 +200,19 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
   return hull;
 }
 
+/// What is thin within the resolution may be farther off than the tolerance.
+Hull FlatSampler::checked(Hull hull) const {
+  const bool is_off = scene_.frame().length_to_frame(hull.distance_bound) > tolerance_;
+  const bool is_thin = hull.distance_bound > vertex_rounding(scene_);
+  if (tolerance_ > 0 && is_off && is_thin) {
+    throw HullNotConverged(flat_within_more, std::move(hull));
+  }
+  return hull;
+}
+
 Hull FlatSampler::run() {
-  if (start_.span.dimension == 0) return make_hull(HullKind::point, {0});
-  if (start_.span.dimension == 1) return make_hull(HullKind::segment, line_ends());
+  if (start_.span.dimension == 0) return checked(make_hull(HullKind::point, {0}));
+  if (start_.span.dimension == 1) return checked(make_hull(HullKind::segment, line_ends()));
   try {
     return refine();
   } catch (const LimitMet& met) {
@@ -240,9 +253,9 @@ std::vector<FlatSampler::Side> FlatSampler::wanted_sides(const std::vector<int>&
 }
 
 Hull FlatSampler::refine() {
-  // What the mesh is off by across its plane is no more of the tolerance than half of it.
+  // What the mesh is off by across its plane is part of the tolerance.
   const double across = start_.half_width > 0 ? across_bound(0) : 0;
-  const bool is_within = across <= 0.5 * tolerance_;
+  const bool is_within = across < tolerance_ || across == 0;
   tolerance_ = is_within ? tolerance_ - across : 0.5 * tolerance_;
   const auto& w = start_.span.witnesses;
   const auto witness = [&](std::size_t k) { return start_.points[std::size_t(w[k])]; };

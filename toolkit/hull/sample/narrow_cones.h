@@ -32,8 +32,7 @@ class NarrowCones {
       : hull_(hull), query_(scene, std::move(stop)) {}
 
   /// Of a vertex of this alive facet. `normals`: the directions that were asked for already, per
-  /// facet place, of those that are alive; where they are not the facets' own, these are asked for.
-  /// `hint`: the vertex's contact.
+  /// facet place, of those that are alive. `hint`: the vertex's contact.
   Certificate certify(int vertex, int facet, const std::vector<dvec3>& normals,
                       const Contact& hint);
 
@@ -51,8 +50,7 @@ class NarrowCones {
 
   const PointHull& hull_;
   SupportQuery query_;
-  std::map<std::pair<int, int>, Asked>
-      asked_;  ///< by the edge's ends, the vertex twice, or -1 and the facet
+  std::map<std::pair<int, int>, Asked> asked_;  ///< by the edge's ends, or the vertex twice
 };
 
 /// Cones that are less deep are cut.

@@ -256,10 +256,11 @@ bool Sampler::bisect_hidden(const dvec3& point, int facet) {
 /// False if none could be inserted.
 bool Sampler::refine_narrow() {
   bool inserted = false;
+  const std::size_t most = most_points();
   for (const auto& [v, known] : narrow_vertices_) {
     for (const NarrowCones::Asked& asked : known.asked) {
       options_.progress.check();
-      if (hull_.points().size() >= most_points()) return inserted;
+      if (hull_.points().size() >= most) return inserted;
       if (!(distance_bound(gap(asked.n, asked.support.h_bound, v), v) > tolerance_)) continue;
       const dvec3 point = scene_.frame().to_model(asked.support.point);
       // Earlier ones may have replaced facets.

@@ -54,7 +54,7 @@ inline constexpr const char* vertex_limit_met =
 inline constexpr const char* tolerance_too_fine =
     "the tolerance is below what double precision can certify here";
 inline constexpr const char* flat_within_more =
-    "the model is flat within its resolution, which is more than the tolerance (--resolution)";
+    "the model is flat within its resolution, which is more than the tolerance: a finer one tells";
 
 /// The hull of a scene that spans less than space. `tolerance` in model units.
 /// @pre start.span.dimension < 3 @throws HullNotConverged, Cancelled as sampled_hull()

@@ -64,11 +64,12 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
   return goes_on ? std::optional(s) : std::nullopt;
 }
 
-/// No farther from the line through a along `way`.
-bool is_near_line(const std::vector<dvec4>& points, const dvec3& a, const dvec3& way,
-                  double distance) {
+/// No farther from the segment between its ends.
+bool is_near_own_segment(const std::vector<dvec4>& points, double distance) {
+  const dvec3 a = euclidean(points.front());
+  const dvec3 b = euclidean(points.back());
   return std::all_of(points.begin(), points.end(), [&](const dvec4& p) {
-    return glm::length(glm::cross(euclidean(p) - a, way)) <= distance;
+    return distance_to_segment(euclidean(p), a, b) <= distance;
   });
 }
 
@@ -164,7 +165,11 @@ std::vector<EdgeStretch> pieces_between(const ContactGeometry& geometry, const C
       const bool forwards = begin < end;
       if (!forwards) std::swap(begin, end);
       if (end <= distance || begin >= length - distance) continue;
-      if (!is_near_line(points, a, way, distance) || geometry.is_repeated(piece)) continue;
+      const auto off = [&](const dvec4& p) {
+        return glm::length(glm::cross(euclidean(p) - a, way));
+      };
+      if (std::max(off(points.front()), off(points.back())) > distance) continue;
+      if (!is_near_own_segment(points, distance) || geometry.is_repeated(piece)) continue;
       EdgeStretch s{i, k, forwards ? 0.0 : 1.0, forwards ? 1.0 : 0.0};
       // Of a piece that goes on beyond a place, what is between.
       if (begin < -distance) s.from = parameter_on(geometry, s, from).value_or(s.to);

@@ -148,7 +148,9 @@ class GraphSolver {
     if (facet && !fits_node(facet)) facet = with_curved_sides(node, true);
     if (node.ends.size() <= 2) return fits_node(facet) ? facet : std::nullopt;
     // Without curved sides its corners are where arcs leave.
-    return fits_node(facet) && facet->has_curved_side() ? facet : of_corners(node);
+    const bool fits = fits_node(facet);
+    if (fits && facet->has_curved_side()) return facet;
+    return of_corners(node, fits ? std::move(facet) : std::nullopt);
   }
 
   void add(const MapGraph::Node& node, std::optional<FacetNode> facet) {
@@ -311,8 +313,9 @@ class GraphSolver {
     }
   }
 
-  /// Contacts between arcs that follow each other are its corners.
-  std::optional<FacetNode> of_corners(const MapGraph::Node& node) {
+  /// Contacts between arcs that follow each other are its corners. `other`: what it is where these
+  /// lie in no plane.
+  FacetNode of_corners(const MapGraph::Node& node, std::optional<FacetNode> other) {
     const NodeCorners corners = corners_of(known_, node, map_);
     TouchingPlane plane = plane_of(node, corners);
     if (plane.in_line) {
@@ -321,6 +324,7 @@ class GraphSolver {
     }
     if (has_merged(plane, corners)) plane = with_corners_apart(plane, corners);
     if (plane.off() > map_.resolution) {
+      if (other) return *std::move(other);
       fail(plane.n, "the contacts of a facet lie in no plane");
     }
     FacetNode facet;

@@ -61,8 +61,10 @@ void read_model(const std::filesystem::path& path, Model& model, const ReadOptio
 void read_model(std::string_view data, const std::string& name, const std::string& format,
                 Model& model, const ReadOptions& options) {
   require_known(name, format);
+  std::string unpacked;
   if (is_gzipped(data)) {
-    return read_model(gunzipped(name, data, options.progress), name, format, model, options);
+    unpacked = gunzipped(name, data, options.progress);
+    data = unpacked;
   }
   if (is_part_format(format)) {
     add(read_content(data, name, format, options), name, model, options);

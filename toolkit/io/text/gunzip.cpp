@@ -68,6 +68,7 @@ bool is_gzipped(std::string_view data) { return data.starts_with("\x1f\x8b\x08")
 std::string gunzipped(const std::string& name, std::string_view data, const Progress& progress) {
   std::string text;
   Inflater inflater(name, data);
+  progress.check();
   while (inflater.append_to(text)) {
     progress.check();
     if (text.size() > max_file_bytes) {

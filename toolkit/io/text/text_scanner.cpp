@@ -89,7 +89,8 @@ std::string read_file(const std::filesystem::path& path, const Progress& progres
   }
   if (std::ferror(file.get()) != 0) throw IoError(name + ": cannot be read");
   data.resize(used);
-  return is_gzipped(data) ? gunzipped(name, data, progress) : data;
+  if (is_gzipped(data)) return gunzipped(name, data, progress);
+  return data;
 }
 
 std::string in_quotes(std::string_view word) {
