@@ -336,6 +336,7 @@ class GraphSolver {
       facet.points.push_back(c.x);
       facet.sides.emplace_back();
     }
+    if (!facet.has_curved_side()) facet.sides.clear();
     facet.slots.assign(facet.contacts.size(), {});
     return facet;
   }
