@@ -248,6 +248,7 @@ std::vector<FlatSampler::Side> FlatSampler::wanted_sides(const std::vector<int>&
                      [](const auto& a, const auto& b) { return a.first > b.first; });
   }
   std::vector<Side> sides;
+  sides.reserve(wanted.size());
   for (const auto& [height, s] : wanted) sides.push_back(s);
   return sides;
 }
