@@ -50,7 +50,7 @@ struct HullContainment::Content {
   double accuracy;
   double mesh_distance = std::numeric_limits<double>::infinity();
 
-  SupportPolytope start{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}, {}};
+  SupportPolytope start{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}};
   std::vector<Sample> samples;  ///< per vertex of the mesh
   std::vector<MeshFacet> facets;
   std::optional<TriangleRays> rays;

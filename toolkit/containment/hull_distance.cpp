@@ -55,7 +55,7 @@ constexpr double least_hull_gap = 2 * support_slack;
 }  // namespace
 
 SupportPolytope support_polytope(const Scene& scene, const std::vector<Sample>& samples) {
-  SupportPolytope polytope{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}, {}};
+  SupportPolytope polytope{PointHull(Box{dvec3(-2.0), dvec3(2.0)}), {}};
   std::vector<dvec3> points;
   dvec3 sum(0.0);
   for (const Sample& s : samples) {

@@ -21,7 +21,7 @@ struct SupportPolytope {
   dvec3 middle = dvec3(0.0);
   double radius = 0;
   /// Directions across the span of a scene that spans less than space: its hull has no inside.
-  std::vector<dvec3> across;
+  std::vector<dvec3> across = {};
 };
 
 /// The polytope of samples, without those that repeat another but for rounding: slivers between

@@ -32,7 +32,7 @@ struct HullOptions {
   /// come in time they do not depend on it; those of a limit that is met do.
   std::optional<double> max_seconds = std::nullopt;
   std::optional<std::size_t> max_memory = std::nullopt;
-  Progress progress;
+  Progress progress = {};
 };
 
 /// The tolerance that the options ask for, in model units; positive where the diagonal is, but 0
