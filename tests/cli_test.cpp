@@ -213,7 +213,7 @@ TEST_F(Cli, ExactHullsOfFlatCurves) {
   EXPECT_EQ(run("verify a.hull.json " + arc).exit_code, 0);
   // A segment has no document yet; its mesh is written.
   const std::string line = curve("line.obj", "1 0 0");
-  expect_failure("hull " + line + " -o b.ply -o b.hull.json", 3, "b.hull.json: ");
+  expect_failure("hull " + line + " -o b.ply -o b.hull.json -q", 3, "b.hull.json: ");
   EXPECT_TRUE(fs::exists(path("b.ply")));
 }
 
