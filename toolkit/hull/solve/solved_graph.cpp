@@ -298,6 +298,13 @@ class GraphSolver {
     return std::nullopt;
   }
 
+  /// Its cells are left so: what is between arcs that leave it is not told.
+  bool is_undecided(const MapGraph::Node& node) const {
+    return std::any_of(node.cells.begin(), node.cells.end(), [&](int k) {
+      return map_.cells[std::size_t(k)].kind == MapCellKind::undecided;
+    });
+  }
+
   /// Where the arc before a corner has its contact elsewhere in the plane the facet runs from there
   /// to the corner along a straight border.
   void run_to(const ClimbedContact& corner, const MapGraph::End& before, FacetNode& facet) const {
@@ -331,7 +338,9 @@ class GraphSolver {
     facet.n = plane.n;
     for (std::size_t k = 0; k < plane.contacts.size(); ++k) {
       const ClimbedContact c = corner_beside(corners.contacts[k], plane.contacts[k], plane.n);
-      run_to(c, node.ends[(k + node.ends.size() - 1) % node.ends.size()], facet);
+      if (is_undecided(node)) {
+        run_to(c, node.ends[(k + node.ends.size() - 1) % node.ends.size()], facet);
+      }
       facet.contacts.push_back(c.contact);
       facet.points.push_back(c.x);
       facet.sides.emplace_back();
