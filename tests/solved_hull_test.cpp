@@ -69,6 +69,28 @@ TEST(SolvedHull, OfCopiesAllButInPlaceIsThatOfOne) {
   }
 }
 
+/// Half of a hull form and its mirror image, with the keel and the bow in common: facets' corners
+/// are where arcs leave, beside which straight borders are in one plane, too.
+TEST(SolvedHull, OfAShipAndItsMirrorImageIsWhole) {
+  NurbsSurface half{3, 3, {0, 0, 0, 0, 1, 2, 2, 2, 2}, {0, 0, 0, 0, 1, 1, 1, 1}, {}};
+  constexpr std::array<double, 5> beam = {0, 6, 8, 7, 5};
+  constexpr std::array<std::array<double, 2>, 4> frame = {{{0, 0}, {0.6, 1}, {0.9, 3}, {1, 6}}};
+  for (std::size_t i = 0; i < beam.size(); ++i) {
+    for (const auto& [width, z] : frame) {
+      half.points.emplace_back(25 * double(i), width * beam[i], z, 1);
+    }
+  }
+  Shape shape;
+  shape.surfaces.push_back(half);
+  const Shape whole = shape + mapped(shape, {1, 0, 0, 0, -1, 0, 0, 0, 1});
+  for (const dmat3& turn : {dmat3(1.0), skew_rotation()}) {
+    const Hull hull = solved_hull_of(make_scene(mapped(whole, turn)));
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_TRUE(hull.boundary->unresolved.empty());
+    EXPECT_EQ(face_counts(*hull.boundary), (FaceCounts{2, 4, 4}));
+  }
+}
+
 struct Ruled {
   const char* name;
   Shape shape;
