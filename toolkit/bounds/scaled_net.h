@@ -1,17 +1,11 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "taut/bounds/scalar_net.h"
+#include "taut/surface/bernstein.h"
 
 namespace taut {
-
-inline std::vector<double> binomials(int n) {
-  std::vector<double> result = {1};
-  for (int k = 1; k <= n; ++k) result.push_back(std::round(result.back() * (n - k + 1) / k));
-  return result;
-}
 
 /// A tensor-product Bernstein net (v within u) whose entries carry their binomial coefficients:
 /// products are those of polynomials.

@@ -315,9 +315,9 @@ ScenePart make_part(const Part& part, double scale, const SceneOptions& options)
       built[k] = make_element(kind, index, found.patches[k]);
       if (kind != SourceKind::face) continue;
       const Patch& patch = part.patches()[std::size_t(index)];
-      built[k]->ruled_u = patch.ruled_u;
-      built[k]->ruled_v = patch.ruled_v;
-      built[k]->ruled_obliquely = patch.ruled_obliquely;
+      built[k]->off_u = patch.ruled_u ? 0 : scale * patch.off_ruled.u;
+      built[k]->off_v = patch.ruled_v ? 0 : scale * patch.off_ruled.v;
+      built[k]->off_oblique = patch.ruled_obliquely ? 0 : scale * patch.off_ruled.oblique;
       built[k]->stand_in = patch.stand_in;
     }
   });

@@ -102,12 +102,12 @@ struct SceneElement {
   double reach;  ///< largest |x| + |y| + |z| of the control points
   SceneNet net;
   CoonsBvh bvh;
-  /// A patch's lines along u, along v, or others that end on its border are straight (Patch); both
-  /// of a plane one.
-  bool ruled_u = false;
-  bool ruled_v = false;
-  bool ruled_obliquely = false;
-  bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
+  /// By how much a patch's lines along u, along v, or others that end on its border miss being
+  /// straight (Patch::lines), in the scene's frame: not at all where it is ruled. Both of a plane.
+  double off_u = infinity;
+  double off_v = infinity;
+  double off_oblique = infinity;
+  bool ruled() const { return std::min({off_u, off_v, off_oblique}) == 0; }
   bool stand_in = false;  ///< see Patch
 };
 

@@ -28,8 +28,13 @@ struct SecondOrderBound {
 /// separate and each is maximised exactly. Where both curvatures are negative, r = sqrt(uu_max /
 /// vv_max) keeps them so exactly if uv_abs^2 < uu_max vv_max; where one is, the largest r that
 /// keeps it so leaves the other the least.
-inline SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, double u,
-                                           double v) {
+struct SharedCurvature {
+  double u, v;
+  /// Upper bound of the two directions' shares over the unit square where slopes vanish.
+  double loss() const { return 0.5 * (std::max(u, 0.0) + std::max(v, 0.0)); }
+};
+
+inline SharedCurvature shared_curvature(const NetCurvature& c) {
   double r = 1;
   if (c.uv_abs > 0) {
     if (c.uu_max < 0 && c.vv_max < 0) {
@@ -40,8 +45,14 @@ inline SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature
       r = -c.uv_abs / c.vv_max;
     }
   }
-  const double along_u = quadratic_max(jet.gu, c.uu_max + c.uv_abs * r, -u, 1 - u);
-  const double along_v = quadratic_max(jet.gv, c.vv_max + c.uv_abs / r, -v, 1 - v);
+  return {c.uu_max + c.uv_abs * r, c.vv_max + c.uv_abs / r};
+}
+
+inline SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, double u,
+                                           double v) {
+  const SharedCurvature shared = shared_curvature(c);
+  const double along_u = quadratic_max(jet.gu, shared.u, -u, 1 - u);
+  const double along_v = quadratic_max(jet.gv, shared.v, -v, 1 - v);
   return {jet.g + along_u + along_v, along_u, along_v};
 }
 

@@ -50,6 +50,7 @@ class SupportQuery::Search {
 
   Support run(const dvec3& n, const Contact& hint);
   void leave_out(const Contact& patch);
+  void leave_out_lines(double off) { off_lines_ = off; }
   void check_stop() const { stop_.check(); }
 
   long queries = 0;
@@ -129,6 +130,7 @@ class SupportQuery::Search {
   void open_coons(const Entry& entry);
   static bool is_inside(double lower, double size) { return lower > 0 && lower + size < 1; }
   void push_coons(int instance, const CoonsEntry& entry, const SceneElement& e);
+  static double off_inside(const NetCell& cell, const SceneElement& e);
   void push_net(const NetCell& cell, const SceneElement& e);
   NetCell net_cell(int instance, int element, const CoonsCell& place, const SceneNet& net,
                    const SceneElement& e);
@@ -168,7 +170,8 @@ class SupportQuery::Search {
   const SceneContent& scene_;
   Stop stop_;
   SupportBounds bounds_;
-  double rounding_;  ///< of a value x . n
+  double rounding_;       ///< of a value x . n
+  double off_lines_ = 0;  ///< insides of straight lines that are off by no more do not count
   dvec3 n_ = dvec3(0.0);
   dvec3 abs_n_ = dvec3(0.0);
   std::vector<LocalDirection> directions_;
@@ -177,6 +180,7 @@ class SupportQuery::Search {
   double best_h_ = -infinity;
   Contact best_;
   int best_element_ = -1;
+  double low_ = 0;             ///< of the answer, as lines were left out
   double proof_rounding_ = 0;  ///< of the second-order bounds that the answer rests on
   bool converged_ = false;     ///< Newton's method has ended at the best contact
   bool curved_ = false;        ///< the value is strictly concave there
@@ -305,14 +309,21 @@ SupportQuery::Search::NetCell SupportQuery::Search::net_cell(int instance, int e
   return {instance, element, u.lower, v.lower, u.upper - u.lower, v.upper - v.lower, slot};
 }
 
-/// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
-/// Inside of a straight line on a patch nothing is higher than the higher one of its ends; the
-/// straight lines of a plane patch are no parameter lines.
-void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
+/// By how much the cell may be above the ends of straight lines on whose insides it lies, infinity
+/// if it lies on none; the straight lines of a plane patch are no parameter lines.
+double SupportQuery::Search::off_inside(const NetCell& cell, const SceneElement& e) {
   const bool inside_u = is_inside(cell.u, cell.size_u);
   const bool inside_v = is_inside(cell.v, cell.size_v);
-  const bool oblique = e.ruled_obliquely || (e.ruled_u && e.ruled_v);
-  if (oblique ? inside_u && inside_v : (e.ruled_u && inside_u) || (e.ruled_v && inside_v)) return;
+  if (inside_u && inside_v) return std::min({e.off_u, e.off_v, e.off_oblique});
+  const bool plane = e.off_u < infinity && e.off_v < infinity;
+  if (plane || !(inside_u || inside_v)) return infinity;
+  return inside_u ? e.off_u : e.off_v;
+}
+
+/// Queues the cell under its largest coefficient, by which the convex hull property bounds it.
+void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) {
+  const double off = off_inside(cell, e);
+  if (off == 0) return;
   const int size = e.shape.size();
   const double* b = nets_.data() + cell.slot;
   double highest = -infinity;
@@ -323,6 +334,10 @@ void SupportQuery::Search::push_net(const NetCell& cell, const SceneElement& e) 
   }
   const double bound = highest + local(cell.instance).offset;
   if (!(bound > threshold())) return;
+  if (off <= off_lines_) {
+    low_ = std::max(low_, off);
+    return;
+  }
   net_cells_.push_back(cell);
   push(bound, Kind::net_cell, cell.instance, int(net_cells_.size()) - 1);
 }
@@ -398,6 +413,7 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
     choose_split(curvature, b);
     if (b.bound > hopeless_bound) return false;
   }
+  const double loss = shared_curvature(curvature).loss();
   for (int step = 0; step < newton_step_limit; ++step) {
     NetJet jet = net.jet(g, u, v);
     if (!e.rational) jet.g -= h;
@@ -425,9 +441,9 @@ bool SupportQuery::Search::settle(const Net& net, const SceneElement& e, const N
     const double v_before = v;
     ++newton_iterations;
     // Worth a step only where it may beat the best value, or where the bound about the cell's own
-    // maximum may succeed.
+    // maximum, or about a point of a ridge as good as level, may succeed.
     const double gain = newton_step(jet, u, v);
-    if (jet.g + gain < 0 && !concave) return false;
+    if (jet.g + gain < 0 && jet.g + gain + loss > 0) return false;
     if (std::abs(u - u_before) + std::abs(v - v_before) < newton_step_end) return false;
   }
   return false;
@@ -516,7 +532,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   best_h_ = -infinity;
   best_element_ = -1;
   converged_ = false;
-  proof_rounding_ = 0;
+  low_ = proof_rounding_ = 0;
   stack_.clear();
   net_cells_.clear();
   coons_cells_.clear();
@@ -552,7 +568,7 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
   const double proven = std::max(best_h_ + support_slack, stack_.highest());
   assert(best_.instance >= 0);  // the direction is finite
   if (!converged_ || !curved_) finish();
-  return {best_h_, std::max(proven, best_h_) + rounding_ + proof_rounding_, best_,
+  return {best_h_, std::max(proven, best_h_) + rounding_ + proof_rounding_ + low_, low_, best_,
           scene_.frame_point(best_)};
 }
 
@@ -575,6 +591,8 @@ Support SupportQuery::operator()(const dvec3& n, const Contact& hint) {
 void SupportQuery::leave_out(const std::vector<Contact>& patches) {
   for (const Contact& c : patches) search_->leave_out(c);
 }
+
+void SupportQuery::leave_out_lines(double off) { search_->leave_out_lines(off); }
 
 void SupportQuery::check_stop() const { search_->check_stop(); }
 

@@ -17,9 +17,14 @@ struct Support {
   double h = 0;
   /// Proven upper bound of max over the model of x . n, rounding included.
   double h_bound = 0;
+  /// By how much the answer may be too low, as lines do not count (SupportQuery::leave_out_lines).
+  double low = 0;
   Contact contact;
   /// The contact's point.
   dvec3 point = dvec3(0.0);
+
+  /// At most this is x . n anywhere on the model, rounding and SupportQuery::leave_out apart.
+  double highest() const { return h + low; }
 };
 
 /// Which bounds prune the search; all give the same answers.
@@ -52,6 +57,10 @@ class SupportQuery {
 
   /// Patches that do not count, with their borders, from now on: the answers are those of the rest.
   void leave_out(const std::vector<Contact>& patches);
+
+  /// Nor do insides of lines that miss being straight by no more (Patch::lines), in the scene's
+  /// frame: Support::low tells what that may cost.
+  void leave_out_lines(double off);
 
   /// What works long on the same and asks for no support asks now and then. @throws Cancelled
   void check_stop() const;

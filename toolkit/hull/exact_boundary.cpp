@@ -77,6 +77,7 @@ HullBoundary solved_with(double place_depths, const ContactGeometry& geometry,
   options.progress.update("trace", 0);
   SupportQuery uncovered(geometry.scene(), options.progress.stop);
   uncovered.leave_out(directions.covered);
+  uncovered.leave_out_lines(geometry.scene().frame().length_to_frame(geometry.bent()));
   SeparatingGraph graph =
       solved_graph(geometry, uncovered, directions, options.progress, place_depths);
   statistics.support_queries += uncovered.queries();
@@ -89,6 +90,7 @@ HullBoundary solved_with(double place_depths, const ContactGeometry& geometry,
   boundary.gap = directions.resolution;
   // What is not closed is not known to anything.
   if (boundary.unresolved.empty()) {
+    query.leave_out_lines(tie_share * rho);
     find_tolerant_places(ContactSystem(geometry), query, boundary, rho);
     label_ruled_faces(geometry, boundary);
   }

@@ -1,6 +1,16 @@
 #pragma once
 
+#include <cmath>
+#include <vector>
+
 namespace taut {
+
+/// n over k, for k from 0 to n.
+inline std::vector<double> binomials(int n) {
+  std::vector<double> result = {1};
+  for (int k = 1; k <= n; ++k) result.push_back(std::round(result.back() * (n - k + 1) / k));
+  return result;
+}
 
 /// Values, first and second derivatives of the cubic Bernstein polynomials at t, into the rows 0,
 /// 1 and 2 of b: a common case, for which recurrences cost several times as much.

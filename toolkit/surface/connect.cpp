@@ -10,6 +10,7 @@
 #include "taut/surface/flatness.h"
 #include "taut/surface/join_smoothness.h"
 #include "taut/surface/model.h"
+#include "taut/surface/nearly_ruled.h"
 #include "taut/surface/point_grid.h"
 #include "taut/surface/repeated_patches.h"
 #include "taut/surface/side_joins.h"
@@ -425,22 +426,35 @@ void Connector::fill_repeated() {
   }
 }
 
-/// By how much the patch misses being ruled along u and v, where rounding alone may have made it.
-std::array<double, 2> distances_from_ruled(const BezierPatch& patch, double bent, double size) {
+/// By how much the patch misses being ruled, where rounding alone may have made it. What stands for
+/// a surface has no lines of its own, unless it is plane.
+Patch::OffRuled off_ruled(const Patch& own, double bent, double size) {
+  const BezierPatch& patch = own.bezier;
   // The middle of a line of length s bent with radius r is s^2 / (8 r) off.
-  const auto was_straight = [&](Direction direction, double off) {
-    return off <= bent && square_of_lines(patch, direction) >= 8 * straight_radius * size * off;
+  const auto was_straight = [&](double square, double off) {
+    return off <= bent && square >= 8 * straight_radius * size * off;
   };
-  const auto were_straight = [&](double off) {
-    return was_straight(Direction::u, off) && was_straight(Direction::v, off);
-  };
+  const double square_u = square_of_lines(patch, Direction::u);
+  const double square_v = square_of_lines(patch, Direction::v);
+  Patch::OffRuled result;
   const double from_plane = distance_from_plane(patch);
-  if (were_straight(from_plane) && !is_folded(patch)) return {from_plane, from_plane};
-  const auto off = [&](Direction direction) {
-    const double d = distance_from_ruled(patch, direction);
-    return was_straight(direction, d) ? d : infinity;
-  };
-  return {off(Direction::u), off(Direction::v)};
+  if (was_straight(std::min(square_u, square_v), from_plane) && !is_folded(patch)) {
+    result.u = result.v = from_plane;
+    return result;
+  }
+  if (own.stand_in) return result;
+  const double off_u = distance_from_ruled(patch, Direction::u);
+  const double off_v = distance_from_ruled(patch, Direction::v);
+  if (was_straight(square_u, off_u)) result.u = off_u;
+  if (was_straight(square_v, off_v)) result.v = off_v;
+  if (result.any()) return result;
+  const NearCylinder cylinder = near_cylinder(patch);
+  if (was_straight(cylinder.length * cylinder.length, cylinder.distance)) {
+    result.oblique = cylinder.distance;
+    result.along = cylinder.along;
+    result.turned = cylinder.turned;
+  }
+  return result;
 }
 
 /// `bent`: what the rounding of coordinates may have made of the distances of patches' points from
@@ -453,9 +467,7 @@ void find_rulings(std::vector<Patch>& patches, const Box& box, double bent,
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
     patch.ruled_obliquely = !patch.ruled() && is_developable(patch.bezier);
-    if (bent > 0 && !patch.stand_in) {
-      patch.off_ruled = distances_from_ruled(patch.bezier, bent, diagonal(box));
-    }
+    if (bent > 0) patch.off_ruled = off_ruled(patch, bent, diagonal(box));
   }
 }
 

@@ -75,21 +75,6 @@ class DerivativeRounding {
   double u_, v_, uu_, uv_, vv_;
 };
 
-/// Upper bound of how far points move where weights are replaced by products of two factors: those
-/// along the first line of each parameter.
-double distance_by_weights(const BezierPatch& patch) {
-  double most = 0;
-  Box box;
-  for (int i = 0; i <= patch.degree_u; ++i) {
-    for (int j = 0; j <= patch.degree_v; ++j) {
-      const double product = patch.at(i, 0).w * patch.at(0, j).w / patch.at(0, 0).w;
-      most = std::max(most, std::abs(patch.at(i, j).w / product - 1));
-      box.include(euclidean(patch.at(i, j)));
-    }
-  }
-  return most < 1 ? 2 * most / (1 - most) * diagonal(box) : infinity;
-}
-
 /// Places in each parameter, times the degree, at which a plane patch is looked at for folds.
 constexpr int fold_places = 4;
 
@@ -193,36 +178,6 @@ bool is_developable(const BezierPatch& original) {
     }
   }
   return true;
-}
-
-double distance_from_ruled(const BezierPatch& patch, Direction direction) {
-  if (direction == Direction::v) return distance_from_ruled(transposed(patch), Direction::u);
-  const int last = patch.degree_u;
-  const auto x = [&](int i, int j) { return euclidean(patch.at(i, j)); };
-  double farthest = 0;
-  for (int i = 1; i < last; ++i) {
-    double along = 0, square = 0;
-    for (int j = 0; j <= patch.degree_v; ++j) {
-      const dvec3 segment = x(last, j) - x(0, j);
-      along += glm::dot(x(i, j) - x(0, j), segment);
-      square += glm::dot(segment, segment);
-    }
-    const double share = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0;
-    for (int j = 0; j <= patch.degree_v; ++j) {
-      farthest = std::max(farthest, glm::distance(x(i, j), glm::mix(x(0, j), x(last, j), share)));
-    }
-  }
-  return farthest + distance_by_weights(patch);
-}
-
-double square_of_lines(const BezierPatch& patch, Direction direction) {
-  if (direction == Direction::v) return square_of_lines(transposed(patch), Direction::u);
-  double sum = 0;
-  for (int j = 0; j <= patch.degree_v; ++j) {
-    const dvec3 segment = euclidean(patch.at(patch.degree_u, j)) - euclidean(patch.at(0, j));
-    sum += glm::dot(segment, segment);
-  }
-  return sum / (patch.degree_v + 1);
 }
 
 double distance_from_segment(const BezierCurve& curve) {

@@ -33,18 +33,9 @@ BezierCurve parameter_curve(const BezierPatch& patch, Direction direction, doubl
 /// Largest absolute coordinate of the Euclidean control points.
 double largest_coordinate(const std::vector<dvec4>& points);
 
-/// @name How far a surface is from one that is ruled
+/// @name How far points are from where they would be straight
 /// Upper bounds.
 /// @{
-
-/// Of a patch's points from the segments between the ends, for the same value of the other
-/// parameter, of its lines along this one: its control points are off points that divide these
-/// segments all alike by no more. By how much weights miss being products of two factors counts as
-/// well; infinity where that is all of one.
-double distance_from_ruled(const BezierPatch& patch, Direction direction);
-
-/// Mean square of the lengths of these segments, over the control points of the sides.
-double square_of_lines(const BezierPatch& patch, Direction direction);
 
 /// Of a curve's control points from the segment between its ends.
 double distance_from_segment(const BezierCurve& curve);

@@ -68,17 +68,22 @@ struct Patch {
   /// at a speed of their own.
   bool ruled_obliquely = false;
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
-  /// By how much the patch misses being ruled along u and along v: what the rounding of its control
-  /// points has left of one that was. Infinity where nothing tells so, as where they were not
-  /// rounded.
-  std::array<double, 2> off_ruled = {infinity, infinity};
+  /// By how much the patch misses being ruled: what the rounding of its control points has left of
+  /// one that was. Infinity where nothing tells so, as where they were not rounded.
+  struct OffRuled {
+    double u = infinity, v = infinity;
+    double oblique = infinity;  ///< along lines of one direction, whatever the parameters
+    dvec3 along = dvec3(0.0);   ///< that direction
+    double turned = 0;          ///< sine of the angle by which lines may miss it
+    bool any() const { return std::min({u, v, oblique}) < infinity; }
+  };
+  OffRuled off_ruled;
   /// It is, or was before its control points were rounded.
-  bool may_be_ruled() const {
-    return ruled() || off_ruled[0] < infinity || off_ruled[1] < infinity;
-  }
+  bool may_be_ruled() const { return ruled() || off_ruled.any(); }
   /// Those that it misses by no more than a length.
   RuledLines lines(double within) const {
-    return {ruled_u || off_ruled[0] <= within, ruled_v || off_ruled[1] <= within, ruled_obliquely};
+    return {ruled_u || off_ruled.u <= within, ruled_v || off_ruled.v <= within,
+            ruled_obliquely || off_ruled.oblique <= within};
   }
   /// Indexed by Side: known to go on smoothly there, whatever its tangent planes say.
   std::array<bool, 4> smooth_sides = {};

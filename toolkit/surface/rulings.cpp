@@ -74,6 +74,13 @@ std::optional<RulingDirection> traced_direction(const BezierPatch& patch, const 
   return std::nullopt;
 }
 
+/// Of the oblique line through the point: what was one before its control points were rounded has
+/// the direction in which they are nearest to that.
+std::optional<RulingDirection> oblique_direction(const Patch& patch, const dvec2& uv) {
+  if (patch.ruled_obliquely) return traced_direction(patch.bezier, uv);
+  return RulingDirection{patch.off_ruled.along, patch.off_ruled.turned};
+}
+
 /// Follows the line through a point of the patch, in its tangent plane there, which is that of all
 /// of the ruling.
 class RulingTrace {
@@ -174,6 +181,14 @@ class RulingTrace {
   dvec3 along_, across_;
 };
 
+/// Its ends, on the patch's border.
+std::optional<std::array<dvec2, 2>> ends_in(const BezierPatch& patch, const dvec2& uv,
+                                            const std::optional<RulingDirection>& direction) {
+  if (!direction) return std::nullopt;
+  const RulingTrace trace(patch, uv, direction->along);
+  return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
+}
+
 /// Ends of segments through the point, that in the direction among them if there is one.
 std::vector<dvec2> ends_along(const Patch& patch, const dvec2& uv, const dvec3& along,
                               double bent) {
@@ -182,7 +197,7 @@ std::vector<dvec2> ends_along(const Patch& patch, const dvec2& uv, const dvec3& 
   if (lines.v) ends.insert(ends.end(), {dvec2(uv.x, 0), dvec2(uv.x, 1)});
   if (lines.u) ends.insert(ends.end(), {dvec2(0, uv.y), dvec2(1, uv.y)});
   if (!lines.oblique) return ends;
-  if (const auto direction = traced_direction(patch.bezier, uv)) {
+  if (const auto direction = oblique_direction(patch, uv)) {
     const double sense = glm::dot(direction->along, along) < 0 ? -1 : 1;
     ends.push_back(RulingTrace(patch.bezier, uv, direction->along).end(sense));
   }
@@ -229,10 +244,7 @@ std::vector<PatchPoint> about(const Part& part, const PatchPoint& at, double ben
 }  // namespace
 
 std::optional<std::array<dvec2, 2>> ruling_ends(const BezierPatch& patch, const dvec2& uv) {
-  const std::optional<RulingDirection> direction = traced_direction(patch, uv);
-  if (!direction) return std::nullopt;
-  const RulingTrace trace(patch, uv, direction->along);
-  return std::array<dvec2, 2>{trace.end(-1), trace.end(1)};
+  return ends_in(patch, uv, traced_direction(patch, uv));
 }
 
 std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv, double bent) {
@@ -241,12 +253,14 @@ std::vector<std::array<dvec2, 2>> rulings(const Patch& patch, const dvec2& uv, d
   if (lines.v) result.push_back({dvec2(uv.x, 0), dvec2(uv.x, 1)});
   if (lines.u) result.push_back({dvec2(0, uv.y), dvec2(1, uv.y)});
   if (!lines.oblique) return result;
-  if (const auto ends = ruling_ends(patch.bezier, uv)) result.push_back(*ends);
+  const auto ends = ends_in(patch.bezier, uv, oblique_direction(patch, uv));
+  if (ends) result.push_back(*ends);
   return result;
 }
 
 std::optional<RulingDirection> ruling_at(const Patch& patch, const dvec2& uv, double bent) {
-  if (patch.ruled_obliquely) return traced_direction(patch.bezier, uv);
+  const RuledLines lines = patch.lines(bent);
+  if (lines.oblique) return oblique_direction(patch, uv);
   const std::vector<std::array<dvec2, 2>> all = rulings(patch, uv, bent);
   if (all.size() != 1) return std::nullopt;
   const auto at = [&](const dvec2& end) { return point(patch.bezier, end.x, end.y); };

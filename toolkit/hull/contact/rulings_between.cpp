@@ -41,14 +41,19 @@ bool is_flat(const CommonSupport& s, const ContactGeometry& geometry) {
   return is_flat(s.jet[0], s.n, least) || is_flat(s.jet[1], s.n, least);
 }
 
-/// The derivatives in m are not those of a curve that runs about straight between the two.
+/// The derivatives in m are not those of a curve that runs about straight between the two; of n,
+/// which may stand still, not by more than may be corrected.
 bool bends(const Ruling& begin, const Ruling& end, const MovingRuling& m) {
+  double chord = squared(end.n - begin.n);
   for (std::size_t i = 0; i < 2; ++i) {
     const dvec2 straight = parameters(end.contact[i]) - parameters(begin.contact[i]);
     const dvec2 bend = m.dp[i] - straight;
     if (!(glm::dot(bend, bend) <= glm::dot(straight, straight))) return true;
+    chord += squared(end.point[i] - begin.point[i]);
   }
-  return false;
+  const dvec3 turned = end.n - begin.n;
+  return squared(m.dn - turned) >
+         std::max(squared(turned), correction_share * correction_share * chord);
 }
 
 /// Where a surface's parabolic curve touches an edge, the rulings' length falls with the square of

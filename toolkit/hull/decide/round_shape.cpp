@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "taut/core/tolerances.h"
+#include "taut/surface/bernstein.h"
 
 namespace taut {
 namespace {
@@ -15,12 +16,6 @@ constexpr int frame_roundings = 16;
 /// A way t along which F = 0 is sought with F = g t - t^2 / r^2, where F / g = e and e / (g r^2) is
 /// at most a quarter, is at most e (1 + 4 e / (g r^2)).
 constexpr double most_bend = 0.25;
-
-std::vector<double> binomials(int n) {
-  std::vector<double> row = {1};
-  for (int k = 0; k < n; ++k) row.push_back(row.back() * (n - k) / (k + 1));
-  return row;
-}
 
 /// Of points where the shape is the unit sphere: bounds by coefficients of twice the degrees.
 struct Norms {

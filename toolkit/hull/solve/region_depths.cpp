@@ -190,7 +190,7 @@ double RegionDepths::own_depth(const PatchRegion& region, const dvec2& uv) {
   const Contact c = contact(region, uv);
   const ContactJet j = geometry_.jet(c);
   const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-  return n == dvec3(0.0) ? 0 : query_(n, c).h - glm::dot(j.x, n);
+  return n == dvec3(0.0) ? 0 : query_(n, c).highest() - glm::dot(j.x, n);
 }
 
 }  // namespace taut

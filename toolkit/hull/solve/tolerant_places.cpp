@@ -59,7 +59,7 @@ class TolerantPlaces {
   }
 
   double of(const HullFace& facet) {
-    const double h = query_(facet.n, facet.contacts.front()).h;
+    const double h = query_(facet.n, facet.contacts.front()).highest();
     double deepest = 0;
     bool touches = true;
     const auto depth_of = [&](const dvec3& x) { return h - glm::dot(x, facet.n); };
@@ -167,7 +167,7 @@ class TolerantPlaces {
   }
 
   double depth(const Ruling& r) {
-    const double h = query_(r.n, r.contact[0]).h;
+    const double h = query_(r.n, r.contact[0]).highest();
     return h - std::min(glm::dot(r.point[0], r.n), glm::dot(r.point[1], r.n));
   }
 
