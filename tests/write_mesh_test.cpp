@@ -325,6 +325,28 @@ TEST_F(WriteMesh, LowerDimensionsAreVerifiedHulls) {
   }
 }
 
+/// Half a unit in the last place of floats, and of nothing else.
+TEST_F(WriteMesh, RoundingOfFloatsIsKnownExactly) {
+  const auto rounding = [](const dvec3& p) { return taut::float_rounding(std::vector<dvec3>{p}); };
+  EXPECT_EQ(rounding({1e6, 0.1, 0.1}), 0.03125);
+  EXPECT_EQ(rounding({-1048576, 0.1, 0.1}), 0.0625);
+  EXPECT_EQ(rounding({0.1, 0.1, 0.1}), 0);
+  EXPECT_EQ(rounding({1e300, -1e300, 0.1}), 0);
+  EXPECT_EQ(rounding({0, 0.1, 0.1}), std::numeric_limits<float>::denorm_min() / 2.0);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> size(-40, 40), share(-1, 1);
+  for (int k = 0; k < 10'000; ++k) {
+    const double scale = std::exp2(size(random));
+    const dvec3 p = scale * dvec3(share(random), share(random), share(random));
+    const dvec3 rounded = dvec3(glm::vec3(p));
+    const double bound = rounding(rounded);
+    EXPECT_LE(glm::distance(p, rounded), bound * (1 + 1e-9));
+    taut::Box about;
+    about.include(rounded);
+    EXPECT_LE(bound, taut::float_rounding_bound(about));
+  }
+}
+
 TEST_F(WriteMesh, SegmentsHaveAnEdge) {
   const HullMesh segment = hull_of({{0, 0, 0}, {1, 0.5, 0}, {2, 1, 0}});
   for (const std::string& name : exact_formats) taut::write_mesh(path(name), segment);

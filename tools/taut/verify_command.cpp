@@ -236,10 +236,7 @@ struct HullFile {
 /// A mesh with what its format does to it.
 HullFile mesh_file(PolygonMesh mesh, const std::string& format) {
   HullFile file{{}, std::move(mesh)};
-  if (format != ".stl") return file;
-  Box box;
-  for (const dvec3& p : file.mesh.points) box.include(p);
-  file.rounding = float_rounding_bound(box);
+  if (format == ".stl") file.rounding = float_rounding(file.mesh.points);
   return file;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 dvec3 to_floats(const dvec3& p) {
   dvec3 rounded;
-  for (int i = 0; i < 3; ++i) rounded[i] = double{static_cast<float>(p[i])};
+  for (int i = 0; i < 3; ++i) rounded[i] = nearest_float(p[i]);
   return rounded;
 }
 

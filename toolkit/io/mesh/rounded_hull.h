@@ -4,6 +4,13 @@
 
 namespace taut {
 
+/// The float nearest to a number that is not beyond the floats. By way of memory: GCC 12 leaves the
+/// rounding out where it converts two numbers to float and back at once.
+inline double nearest_float(double x) {
+  const volatile float nearest = static_cast<float>(x);
+  return double{nearest};
+}
+
 /// A hull as floats hold it.
 struct RoundedHull {
   /// The convex hull of the rounded vertices, unlabelled: closed, exactly convex, no face of zero

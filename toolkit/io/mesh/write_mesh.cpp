@@ -245,6 +245,22 @@ double float_rounding_bound(const Box& box) {
   return std::max(unit * reach, double(std::numeric_limits<float>::denorm_min()));
 }
 
+double float_rounding(std::span<const dvec3> points) {
+  using Float = std::numeric_limits<float>;
+  double largest = 0;
+  for (const dvec3& p : points) {
+    dvec3 half_unit(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const bool is_float = std::abs(p[i]) <= double{Float::max()} && nearest_float(p[i]) == p[i];
+      if (!is_float) continue;
+      const int exponent = std::max(std::ilogb(p[i]), Float::min_exponent - 1);
+      half_unit[i] = std::ldexp(1.0, exponent - Float::digits);
+    }
+    largest = std::max(largest, glm::length(half_unit));
+  }
+  return largest;
+}
+
 WrittenMesh write_mesh(const std::filesystem::path& path, const HullMesh& mesh) {
   const std::string format = extension(path);
   check_format(path.string(), format);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "taut/hull/result/hull_mesh.h"
@@ -16,6 +17,10 @@ struct WrittenMesh {
 
 /// How far rounding to float, as STL does it, moves a point of the box at most.
 double float_rounding_bound(const Box& box);
+
+/// How far rounding to floats may have moved one of these points, at most: half a unit in the last
+/// place of each of its coordinates that is a float. What is none was not rounded to one.
+double float_rounding(std::span<const dvec3> points);
 
 /// Writes a hull mesh by the file name's extension: `.ply` (binary, doubles, with the origin of
 /// every vertex and face and colours), `.obj` (grouped by hull face, with an .mtl beside it),
