@@ -151,6 +151,23 @@ TEST(PolyhedralHull, RoundedPlanesAndLinesAreFlat) {
   }
 }
 
+/// All that is extreme of the solid counts, also where two corners are one in the plane.
+TEST(PolyhedralHull, PointsLeftOutOfFlatSolidsAreCounted) {
+  const double thick = 1e-15;
+  const Points rectangle = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}};
+  Points plate = rectangle;
+  for (const dvec3& p : rectangle) plate.push_back(p + dvec3(0, 0, thick));
+  EXPECT_EQ(exact_hull_of(plate).points_left_out, 4);
+  Points tent = rectangle;
+  tent.emplace_back(1, 1, thick);
+  const Hull hull = exact_hull_of(tent);
+  EXPECT_EQ(hull.kind, HullKind::planar);
+  EXPECT_EQ(hull.points_left_out, 1);
+  const Hull line = exact_hull_of({{0, 0, 0}, {4, 0, 0}, {1, thick, 0}, {1, 0, thick}});
+  EXPECT_EQ(line.kind, HullKind::segment);
+  EXPECT_EQ(line.points_left_out, 2);
+}
+
 TEST(PolyhedralHull, BoundsCountBothSidesOfAPlane) {
   // One corner of a planar outline lies as deep below the plane as another point, behind it along
   // an axis, lies above.

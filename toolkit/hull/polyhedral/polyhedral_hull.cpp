@@ -52,6 +52,7 @@ class PolyhedralHull {
   void make_planar(std::span<const int> candidates, const std::array<int, 4>& witnesses,
                    double thickness);
   void make_solid(const PointHull& hull);
+  void make_thin(const PointHull& hull, std::span<const int> vertices, const AffineSpan& span);
   void make_polytope(const PointHull& hull, const std::vector<int>* original = nullptr);
   void finish(std::vector<int> corners);
   /// How many of the points are vertices of the hull.
@@ -137,7 +138,7 @@ void PolyhedralHull::make_planar(std::span<const int> candidates,
   // some of the exact outline's hull across from it.
   double bound = std::sqrt(3.0) * thickness;
   if (outline.size() < exact.size()) bound += width_ + rounding();
-  result_.points_left_out += long(exact.size() - outline.size());
+  result_.points_left_out = long(exact.size() - outline.size());
   for (int& corner : outline) corner = candidates[std::size_t(corner)];
   if (outline.size() < 3) {
     make_segment(outline.front(), outline.back(), bound);
@@ -176,17 +177,8 @@ void PolyhedralHull::make_solid(const PointHull& hull) {
     int& witness = span.witnesses[std::size_t(k)];
     witness = vertices[std::size_t(witness)];
   }
-  if (span.dimension == 1) {
-    make_segment(span.witnesses[0], span.witnesses[1], width_ + rounding());
-  } else if (span.dimension == 2) {
-    double low = 0;
-    double high = 0;
-    for (const dvec3& p : positions) {
-      const double height = glm::dot(p - point(span.witnesses[0]), span.normal);
-      low = std::min(low, height);
-      high = std::max(high, height);
-    }
-    make_planar(vertices, span.witnesses, high - low + 2 * rounding());
+  if (span.dimension < 3) {
+    make_thin(hull, vertices, span);
   } else if (!has_nearly_flat_edges(hull, rounding_) || coarsening_work(hull) > most_work) {
     make_polytope(hull);
   } else {
@@ -199,6 +191,24 @@ void PolyhedralHull::make_solid(const PointHull& hull) {
       make_polytope(hull);  // at a corner too sharp to tell how much is rounding
     }
   }
+}
+
+/// Of a solid whose vertices are on a line or a plane, but for what is put down to rounding.
+void PolyhedralHull::make_thin(const PointHull& hull, std::span<const int> vertices,
+                               const AffineSpan& span) {
+  if (span.dimension == 1) {
+    make_segment(span.witnesses[0], span.witnesses[1], width_ + rounding());
+  } else {
+    double low = 0;
+    double high = 0;
+    for (const int v : vertices) {
+      const double height = glm::dot(point(v) - point(span.witnesses[0]), span.normal);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    make_planar(vertices, span.witnesses, high - low + 2 * rounding());
+  }
+  result_.points_left_out = extreme_count(hull) - long(result_.mesh.n_vertices());
 }
 
 long PolyhedralHull::extreme_count(const PointHull& hull) const {
@@ -262,10 +272,11 @@ void PolyhedralHull::finish(std::vector<int> corners) {
   std::vector<dvec3> vertex_normals(corners_.size(), dvec3(0.0));
   for (const auto f : mesh.faces()) {
     mesh.data(f).kind = FaceKind::facet;
-    mesh.data(f).hull_face = f.idx();
+    // Both sides of a planar hull are one face, of which its vertices take the first one's normal.
+    const bool is_planar = result_.kind == HullKind::planar;
+    mesh.data(f).hull_face = is_planar ? 0 : f.idx();
     normals_.push_back(normal_of(f));
-    // Both sides of a planar hull would cancel: its vertices take the first one's.
-    if (result_.kind == HullKind::planar && f.idx() > 0) continue;
+    if (is_planar && f.idx() > 0) continue;
     for (const auto v : mesh.fv_range(f)) vertex_normals[std::size_t(v.idx())] += normals_.back();
   }
   for (const auto v : mesh.vertices()) {
