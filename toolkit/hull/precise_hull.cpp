@@ -42,6 +42,22 @@ std::string broken_promise(const HullBoundary& boundary, const Resolution& resol
   return text.data();
 }
 
+/// Throws the mesh with its faces as the boundary, in place of one that does not keep its promise,
+/// and what keeps the mesh from its tolerance, if anything does.
+[[noreturn]] void throw_facetted(const Scene& scene, const HullOptions& options,
+                                 const std::string& broken, const HullStatistics& statistics) {
+  std::string text = broken + "; its faces are those of the mesh";
+  Hull hull;
+  try {
+    hull = facetted_hull(scene, options);
+  } catch (const HullNotConverged& failure) {
+    text += std::string("; ") + failure.what();
+    hull = *failure.best;
+  }
+  hull.statistics += statistics;
+  throw HullNotConverged(text, std::move(hull));
+}
+
 /// The hull with its boundary; or with its mesh's faces as the boundary, where that
 /// is not closed or would be farther off than these.
 Hull with_boundary(const Scene& scene, const ContactGeometry& geometry, HullBoundary boundary,
@@ -71,9 +87,7 @@ Hull with_boundary(const Scene& scene, const ContactGeometry& geometry, HullBoun
   if (own->unresolved.empty() && depth <= hull.distance_bound) {
     throw HullNotConverged(broken, std::move(hull));
   }
-  Hull facetted = facetted_hull(scene, options);
-  facetted.statistics += hull.statistics;
-  throw HullNotConverged(broken + "; its faces are those of the mesh", std::move(facetted));
+  throw_facetted(scene, options, broken, hull.statistics);
 }
 
 /// A boundary, and what it was found with.
@@ -210,7 +224,7 @@ Hull flat_hull(const Scene& scene, const HullOptions& options, const SampledStar
     if (!boundary) return hull;
     for (const auto f : hull.mesh.faces()) {
       hull.mesh.data(f).kind = FaceKind::facet;
-      hull.mesh.data(f).source = boundary->faces[std::size_t(f.idx())].source;
+      hull.mesh.data(f).source = boundary->faces.front().source;
     }
     hull.boundary = std::make_shared<const HullBoundary>(*std::move(boundary));
     return hull;

@@ -227,10 +227,6 @@ ExitCode run_within_limits(const HullArguments& arguments, const OutputPlaces& p
   check_reachable(wanted, input);
   Outcome outcome =
       compute(input, arguments, options_for(arguments, wanted, input, console), console);
-  if (outcome.failure && !outcome.met_limit && arguments.max_vertices && wanted > 0) {
-    outcome.failure = "the tolerance " + number(wanted, 3) + " was not reached with " +
-                      number(long(*arguments.max_vertices)) + " vertices";
-  }
   Report report = make_report(input, outcome, arguments, wanted, console);
   console.lift_limits();
   const double deviation = input.model().deviation_bound();

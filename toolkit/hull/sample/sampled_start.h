@@ -50,7 +50,7 @@ inline constexpr double gap_rounding = 16 * rounding_unit;
 
 /// Why a tolerance is not reached.
 inline constexpr const char* vertex_limit_met =
-    "the number of vertices allowed was reached before the tolerance";
+    "the tolerance was not reached with as many vertices as are allowed";
 inline constexpr const char* tolerance_too_fine =
     "the tolerance is below what double precision can certify here";
 inline constexpr const char* flat_within_more =
