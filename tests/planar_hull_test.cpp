@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <stop_token>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "models.h"
+#include "taut/core/error.h"
+#include "taut/core/stopwatch.h"
 
 namespace taut {
 namespace {
@@ -179,6 +184,23 @@ TEST(PlanarHull, NothingAndPoints) {
   const PlanarHull hull = planar_hull(square, {});
   EXPECT_EQ(hull.sides.size(), 4U);
   expect_hull(hull, square, {});
+}
+
+/// All of many points are corners, each of which asks for all points.
+TEST(PlanarHull, StopsWhenAsked) {
+  constexpr int count = 50'000;
+  Points circle;
+  for (int k = 0; k < count; ++k)
+    circle.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
+  std::stop_source stop;
+  Stopwatch watch;
+  const std::jthread asks([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    watch.lap();
+    stop.request_stop();
+  });
+  EXPECT_THROW(planar_hull(circle, {}, stop.get_token()), Cancelled);
+  EXPECT_LT(watch.lap(), 0.2);
 }
 
 TEST(PlanarHull, CircleOfFourArcs) {

@@ -60,6 +60,7 @@ class ContactGeometry {
   const Part& part(const Contact& c) const;
   /// What works long on contacts and evaluates none asks now and then. @throws Cancelled
   void check_stop() const { stop_.check(); }
+  const Stop& stop() const { return stop_; }
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little @throws Cancelled, as the
   /// next two do

@@ -110,7 +110,7 @@ std::optional<FacetContacts> ContactSet::outline() const {
   std::vector<dvec2> points;
   points.reserve(points_.size());
   for (const dvec3& x : points_) points.push_back(in_plane(x));
-  const PlanarHull hull = planar_hull(points, curves_);
+  const PlanarHull hull = planar_hull(points, curves_, geometry_.stop());
   if (!hull.verified) return std::nullopt;
   FacetContacts f;
   for (const OutlineSide& side : hull.sides) {

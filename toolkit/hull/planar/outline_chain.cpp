@@ -158,6 +158,7 @@ void OutlineChain::polish(Stretch& a, Stretch& b) const {
 
 /// Makes the straight side, or the joint, behind a stretch exact.
 void OutlineChain::connect(std::size_t k) {
+  arcs_.check_stop();
   if (chain_.size() < 2 && !chain_[k].smooth) return;
   Stretch& a = chain_[k];
   Stretch& b = chain_[next(k)];
@@ -244,6 +245,7 @@ void OutlineChain::drop_collinear() {
 }
 
 OutlineSide OutlineChain::corner_of(const Stretch& s, bool end) const {
+  arcs_.check_stop();
   OutlineSide side;
   side.point = s.point;
   side.curve = s.curve;

@@ -113,8 +113,9 @@ std::vector<dvec2> part_polygon(const std::vector<dvec3>& curve, double from, do
   return plane_point(parts(lower, to > 0 ? from / to : 0).second);
 }
 
-PlanarArcs::PlanarArcs(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves)
-    : curves_(curves) {
+PlanarArcs::PlanarArcs(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves,
+                       Stop stop)
+    : curves_(curves), stop_(std::move(stop)) {
   elements_.reserve(points.size() + curves.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     ConvexArc arc;
@@ -131,6 +132,7 @@ PlanarArcs::PlanarArcs(std::span<const dvec2> points, std::span<const std::vecto
 }
 
 void PlanarArcs::add_curve(int number) {
+  stop_.check();
   const std::vector<dvec3>& points = curve(number);
   const int first = int(arcs_.size());
   std::vector<dvec2> polygon = plane_point(points);
@@ -227,6 +229,7 @@ ArcPoint PlanarArcs::element_support(const Element& element, const dvec2& n, dou
 }
 
 ArcPoint PlanarArcs::support(const dvec2& n, int preferred) const {
+  stop_.check();
   double highest = -std::numeric_limits<double>::infinity();
   ArcPoint own;
   if (preferred >= 0) {
@@ -264,6 +267,7 @@ void PlanarArcs::leave_out_inside(const std::vector<dvec2>& polygon) {
 }
 
 std::vector<int> PlanarArcs::beyond(const dvec2& n, double least) const {
+  stop_.check();
   std::vector<int> result;
   for (const int k : active_) {
     const Element& element = elements_[std::size_t(k)];

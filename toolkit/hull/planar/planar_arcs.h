@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "taut/core/geometry.h"
+#include "taut/core/stop.h"
 
 namespace taut {
 
@@ -54,12 +55,16 @@ struct ConvexArc {
 /// The points and curves, cut into convex arcs; the arcs of a curve follow each other.
 class PlanarArcs {
  public:
-  /// The points are kept by reference, as are the curves.
-  PlanarArcs(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves);
+  /// The points are kept by reference, as are the curves. `stop`: makes this and all that goes
+  /// through the arcs throw Cancelled.
+  PlanarArcs(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves,
+             Stop stop = {});
 
   const ConvexArc& operator[](int arc) const { return arcs_[std::size_t(arc)]; }
   const std::vector<dvec3>& curve(int number) const { return curves_[std::size_t(number)]; }
   bool empty() const { return arcs_.empty(); }
+  /// @throws Cancelled if stopping was asked for
+  void check_stop() const { stop_.check(); }
 
   /// The arc's farthest point in a direction.
   ArcPoint support(int arc, const dvec2& n) const;
@@ -89,6 +94,7 @@ class PlanarArcs {
   ArcPoint tangent_point(int arc, const dvec2& n) const;
 
   std::span<const std::vector<dvec3>> curves_;
+  Stop stop_;
   std::vector<ConvexArc> arcs_;
   std::vector<Element> elements_;
   std::vector<int> element_of_arc_;

@@ -39,8 +39,9 @@ void leave_out_inside(PlanarArcs& arcs) {
 
 }  // namespace
 
-PlanarHull planar_hull(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves) {
-  PlanarArcs arcs(points, curves);
+PlanarHull planar_hull(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves,
+                       const Stop& stop) {
+  PlanarArcs arcs(points, curves, stop);
   PlanarHull hull;
   if (arcs.empty()) return hull;
   leave_out_inside(arcs);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "taut/core/geometry.h"
+#include "taut/core/stop.h"
 #include "taut/hull/planar/outline_side.h"
 
 namespace taut {
@@ -31,7 +32,8 @@ struct PlanarHull {
 /// one corner, with straight sides. Nothing: no corner.
 ///
 /// @pre coordinates are of size about one, weights are positive, curves have a degree of one or
-/// more
-PlanarHull planar_hull(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves);
+/// more @throws Cancelled
+PlanarHull planar_hull(std::span<const dvec2> points, std::span<const std::vector<dvec3>> curves,
+                       const Stop& stop = {});
 
 }  // namespace taut
