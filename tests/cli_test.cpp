@@ -211,10 +211,14 @@ TEST_F(Cli, ExactHullsOfFlatCurves) {
   const std::string arc = curve("arc.obj", "1 2 0");
   EXPECT_EQ(run("hull " + arc + " -o a.ply -o a.hull.json -q").exit_code, 0);
   EXPECT_EQ(run("verify a.hull.json " + arc).exit_code, 0);
-  // A segment has no document yet; its mesh is written.
   const std::string line = curve("line.obj", "1 0 0");
-  expect_failure("hull " + line + " -o b.ply -o b.hull.json -q", 3, "b.hull.json: ");
-  EXPECT_TRUE(fs::exists(path("b.ply")));
+  EXPECT_EQ(run("hull " + line + " -o b.ply -o b.hull.json -q").exit_code, 0);
+  EXPECT_EQ(run("verify b.hull.json " + line).exit_code, 0);
+  const Json segment = Json::parse(content(path("b.hull.json")));
+  EXPECT_EQ(segment["dimension"], 1);
+  EXPECT_EQ(segment["faces"].size(), 0U);
+  EXPECT_EQ(segment["curves"].size(), 1U);
+  EXPECT_EQ(run("verify b.hull.json " + arc).exit_code, 1);
 }
 
 TEST_F(Cli, QuietHullSaysNothing) {

@@ -33,7 +33,10 @@ Hull expect_flat(const Shape& shape, const KnownFlat& known, double relative = 1
     return hull;
   }
   EXPECT_EQ(hull.boundary->dimension, 2);
-  EXPECT_EQ(hull.boundary->faces.size(), 2U);
+  EXPECT_EQ(hull.boundary->faces.size(), 1U);
+  for (const HullCurve& curve : hull.boundary->curves) {
+    EXPECT_EQ(curve.faces, (std::array{0, -1}));
+  }
   EXPECT_EQ(int(hull.boundary->curves.size()), known.curves);
   const BoundaryMeasures m = measure(scene, ContactGeometry(scene), *hull.boundary);
   EXPECT_EQ(m.volume, 0);

@@ -25,14 +25,16 @@ void add_report(const Hull& hull, Sound& sound) {
   report.hull.counts = {count(FaceKind::patch), count(FaceKind::scroll), count(FaceKind::facet),
                         int(sound.hull.curves.size()),
                         hull.boundary ? int(hull.boundary->unresolved.size()) : 0};
-  if (!sound.scene.model().polyhedral()) {
+  if (hull.boundary && !sound.scene.model().polyhedral()) {
     const BoundaryMeasures measures =
         measure(sound.scene, ContactGeometry(sound.scene), *hull.boundary);
     report.hull.measures = measures;
     report.hull.mean_width = measures.mean_width;
     report.hull.measures_accuracy = measures.bounds.largest();
   } else {
-    report.hull.measures = measure(polygons(hull.mesh));
+    Measures measures = measure(polygons(hull.mesh));
+    if (hull.kind == HullKind::planar) measures.area /= 2;
+    report.hull.measures = measures;
   }
   sound.hull.report = to_json(report);
 }

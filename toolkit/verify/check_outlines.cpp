@@ -116,9 +116,12 @@ bool OutlineCheck::is_straight(const Curve& curve) const {
 
 void OutlineCheck::check_kind(std::size_t i) {
   const Curve& curve = hull_.curves[i];
-  if (curve.faces[0] < 0 || curve.faces[1] < 0) return;
-  const std::array<const Face*, 2> faces = {&hull_.faces[to_size(curve.faces[0])],
-                                            &hull_.faces[to_size(curve.faces[1])]};
+  std::vector<const Face*> faces;
+  for (const int face : curve.faces) {
+    if (face >= 0) faces.push_back(&hull_.faces[to_size(face)]);
+  }
+  // Of a planar hull there is but one.
+  if (faces.size() < 2 && hull_.dimension != 2) return;
   int patches = 0;
   for (const Face* face : faces) patches += face->kind == FaceKind::patch ? 1 : 0;
   const auto wrong = [&](const char* what) { faults_.add("kinds", at("curves", i) + what); };
@@ -510,20 +513,29 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
   if (count == 0) return faults_.add("outlines", at("faces", f) + "a facet without contacts");
   std::vector<dvec3> polygon;
   polygon.reserve(parts * count);
-  const std::vector<dvec3> along = points_of(face.outline);
-  std::vector<double> off(along.size(), std::numeric_limits<double>::infinity());
+  std::vector<SideJet> sides;
   for (std::size_t k = 0; k < count; ++k) {
     const auto side = side_jet(face, k);
     if (!side) return see(std::numeric_limits<double>::infinity());
     for (int i = 0; i < parts; ++i) {
       polygon.push_back((*side)(double(i) / parts).x + geometry_.origin());
     }
-    for (std::size_t i = 0; i < along.size(); ++i) {
-      if (off[i] <= listed_) continue;
-      off[i] = std::min(off[i], closest_on_curve(geometry_.local(along[i]), 0, 1, *side).distance);
-    }
+    sides.push_back(*side);
   }
-  for (const double distance : off) see(distance);
+  // Neighbouring points lie along the same side, or the next one.
+  std::size_t nearest = 0;
+  for (const dvec3& p : points_of(face.outline)) {
+    double off = std::numeric_limits<double>::infinity();
+    const std::size_t first = nearest;
+    for (std::size_t i = 0; i < count && off > listed_; ++i) {
+      const std::size_t k = (first + i) % count;
+      const double distance = closest_on_curve(geometry_.local(p), 0, 1, sides[k]).distance;
+      if (!(distance < off)) continue;
+      off = distance;
+      nearest = k;
+    }
+    see(off);
+  }
   if (!is_convex(polygon, face)) {
     faults_.add("outlines", at("faces", f) + "the facet's sides are not convex");
   }

@@ -134,6 +134,12 @@ StatedResolution stated_resolution(const HullDocument& hull) {
   return stated_resolution(Json::parse(hull.report, nullptr, false));
 }
 
+double stated_gap(const HullDocument& hull) {
+  const Json report = Json::parse(hull.report, nullptr, false);
+  const double gap = number(find(find(&report, "hull"), "gap_bound")).value_or(0);
+  return std::isfinite(gap) ? std::max(gap, 0.0) : 0;
+}
+
 std::optional<double> stated_mean_width(const HullDocument& hull) {
   const Json report = Json::parse(hull.report, nullptr, false);
   return number(find(find(&report, "hull"), "mean_width"));

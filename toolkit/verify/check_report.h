@@ -19,6 +19,10 @@ struct StatedResolution {
 };
 StatedResolution stated_resolution(const HullDocument& hull);
 
+/// How far, in model units, the model may be from the whole document at most, as its report states;
+/// 0 if it does not.
+double stated_gap(const HullDocument& hull);
+
 /// The exact hull's mean width that a document's report states, in model units.
 std::optional<double> stated_mean_width(const HullDocument& hull);
 

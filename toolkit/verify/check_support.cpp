@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "taut/bounds/support_query.h"
+#include "taut/core/integers.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
 #include "taut/verify/hull_faults.h"
@@ -50,23 +51,28 @@ double side_reach(const DocumentGeometry& geometry, const HullDocument::Side& si
 }  // namespace
 
 std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int count,
-                                         double bound) {
-  std::vector<SupportClaim> claims;
-  if (geometry.hull().faces.empty()) return claims;
+                                         const VerifyOptions& options) {
+  if (geometry.hull().faces.empty()) return {};
   const HullDocument::Face& face = geometry.hull().faces.front();
   const std::array<dvec3, 2> frame = tangent_frame(unit(face.normal));
-  for (int k = 0; k < count; ++k) {
-    const double angle = 2 * std::numbers::pi * k / count;
-    SupportClaim claim{std::cos(angle) * frame[0] + std::sin(angle) * frame[1], -infinity, bound};
+  std::vector<SupportClaim> claims(to_size(count));
+  const auto claim_at = [&](std::size_t k) {
+    const double angle = 2 * std::numbers::pi * double(k) / count;
+    SupportClaim claim{std::cos(angle) * frame[0] + std::sin(angle) * frame[1], -infinity,
+                       face.tolerant};
     for (const HullDocument::Contact& c : face.contacts) {
       claim.h = std::max(claim.h, glm::dot(geometry.local(c.p), claim.n));
     }
     for (const HullDocument::Side& side : face.sides) {
+      options.progress.check();
       if (side.from.size() != 1 || side.to.size() != 1) continue;
       claim.h = std::max(claim.h, side_reach(geometry, side, claim.n));
     }
-    claims.push_back(claim);
-  }
+    return claim;
+  };
+  parallel_for(claims.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) claims[k] = claim_at(k);
+  });
   return claims;
 }
 

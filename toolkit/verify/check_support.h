@@ -24,8 +24,10 @@ std::vector<SupportClaim> claims_between(const DocumentGeometry& geometry,
                                          const DocumentOutlines& outlines);
 
 /// Those of directions in the plane of a planar hull, `count` of them, as far as the outline
-/// reaches by its sides and what these run along; above it the model may rise by the bound.
-std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int count, double bound);
+/// reaches by its sides and what these run along.
+/// @throws Cancelled
+std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int count,
+                                         const VerifyOptions& options);
 
 /// By how much the model rises above claims and their bounds, and by how much they rise above the
 /// model, at most; in model units, infinite where a direction is none.

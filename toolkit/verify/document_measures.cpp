@@ -204,7 +204,9 @@ DocumentMeasures MeasureSums::run(const Progress& progress) {
   measures.vector_area = unit_ * unit_ * dvec3(value[area_x], value[area_y], value[area_z]);
   measures.vector_area_bound = unit_ * unit_ * open_;
   measures.volume_bound = unit_ * unit_ * unit_ * between_;
-  measures.mean_width = unit_ * value[curvature] / (2 * std::numbers::pi);
+  // The other side of a planar hull turns about the outline as well.
+  const double sides = geometry_.hull().dimension == 2 ? 2 : 1;
+  measures.mean_width = sides * unit_ * value[curvature] / (2 * std::numbers::pi);
   measures.volume_error = share(volume);
   measures.area_error = share(area);
   measures.mean_width_error = share(curvature);

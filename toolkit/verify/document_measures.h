@@ -10,7 +10,7 @@ namespace taut {
 /// What the faces of a hull document enclose, in model units.
 struct DocumentMeasures {
   double volume = 0;
-  double area = 0;
+  double area = 0;  ///< of a planar hull, of its one face
   /// Mean over all directions n of h(n) + h(-n).
   double mean_width = 0;
   /// Integral of the outward unit normal over all faces: zero if they make up a closed surface.
@@ -38,7 +38,7 @@ struct DocumentMeasures {
 /// The mean width is total mean curvature over 2 pi. Creases have their share of it: the outline of
 /// each face counts with the angle between the face's normal and the direction from a point inside
 /// of the hull, whose differences are the creases' angles.
-/// Meaningless where faces are missing or contacts off their sources. @pre hull of dimension 3
+/// Meaningless where faces are missing or contacts off their sources. @pre hull of dimension 2 or 3
 /// @throws Cancelled
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
                          const Progress& progress = {});

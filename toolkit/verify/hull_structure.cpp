@@ -100,9 +100,10 @@ Structure::Structure(const HullDocument& hull, double tolerance)
 
 HullStructure Structure::check() const {
   HullStructure result;
-  result.complete = !hull_.faces.empty();
+  const bool is_planar = hull_.dimension == 2;
+  result.complete = !hull_.faces.empty() && (!is_planar || hull_.faces.size() == 1);
   for (const HullDocument::Curve& curve : hull_.curves) {
-    if (curve.faces[0] < 0 || curve.faces[1] < 0) result.complete = false;
+    if (curve.faces[0] < 0 || (curve.faces[1] < 0) != is_planar) result.complete = false;
   }
   result.closed = true;
   for (int f = 0; f < int(hull_.faces.size()); ++f) {
@@ -178,6 +179,7 @@ int Structure::euler() const {
   }
   int faces = 0;
   for (const HullDocument::Face& face : hull_.faces) faces += characteristic(face);
+  if (hull_.dimension == 2) ++faces;  // the other side
   return int(uses.size()) - edges + faces;
 }
 

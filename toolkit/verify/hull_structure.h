@@ -6,13 +6,13 @@ namespace taut {
 
 /// How the faces and curves of a hull document fit together.
 struct HullStructure {
-  /// There are faces, and every curve has two.
+  /// There are faces, and every curve has two; of a planar hull one, to the left of all.
   bool complete = false;
   /// The curves about every face close, those that it names are those that name it, and the
   /// outlines of patches and facets run from each curve to the next.
   bool closed = false;
   /// V - E + F, where a face counts as its own Euler characteristic. A curve without ends, and what
-  /// is no longer than the tolerance, counts as nothing.
+  /// is no longer than the tolerance, counts as nothing; the other side of a planar hull as a face.
   int euler = 0;
 };
 

@@ -112,6 +112,10 @@ class HullVerifier {
                              const std::optional<DocumentMeasures>& measures);
   void check_points();
 
+  /// Of what may be stated.
+  double largest_bound() const {
+    return deepest_bound * (resolution_ > 0 ? resolution_ : coarsest_resolution * diagonal_);
+  }
   /// In every direction some point of the boundary is no farther below the supporting plane.
   double promised_length() const {
     double length = std::max((same_point + rounding_) * diagonal_, resolution_);
@@ -156,10 +160,9 @@ HullVerification HullVerifier::run() {
 
 /// What all else is held to must not be stated at will.
 void HullVerifier::check_bounds() {
-  const double coarsest = resolution_ > 0 ? resolution_ : coarsest_resolution * diagonal_;
   for (std::size_t f = 0; f < hull_.faces.size(); ++f) {
     const double bound = hull_.faces[f].tolerant;
-    if (0 <= bound && bound <= deepest_bound * coarsest) continue;
+    if (0 <= bound && bound <= largest_bound()) continue;
     faults_.add("bounds", "faces[" + std::to_string(f) +
                               "]: its places are too far below the supporting planes");
   }
@@ -303,12 +306,14 @@ void HullVerifier::check_faces() {
           relative(check_outlines(geometry_, outlines, tolerance, resolution_, faults_)));
     check_labels(geometry_, scene_, resolution_, faults_);
   }
-  if (hull_.dimension == 3) {
+  if (hull_.dimension >= 2) {
     measures = measure(geometry_, outlines, options_.progress);
+    raise(result_.measures_error, measures->error());
+  }
+  if (hull_.dimension == 3) {
     raise(result_.vector_area,
           std::max(glm::length(measures->vector_area) - measures->vector_area_bound, 0.0) /
               measures->area);
-    raise(result_.measures_error, measures->error());
     raise(result_.vector_area_error, measures->vector_area_error);
     // What is flat to within the resolution may enclose no more than that over its area.
     const bool is_flat = std::abs(measures->volume) < resolution_ * measures->area;
@@ -360,15 +365,16 @@ void HullVerifier::check_even_directions(const Coverage& coverage,
   if (const auto stated = stated_mean_width(hull_)) raise(result_.mean_width_error, miss(*stated));
 }
 
-/// A hull of lower dimension reaches as far as its points, which a polyhedral one lists; another
-/// planar one as far as its outline.
+/// A hull of lower dimension reaches as far as its points, which a polyhedral one lists, as a
+/// segment does and a point; another planar one as far as its outline. What has no faces that state
+/// a bound is within that of the whole.
 void HullVerifier::check_points() {
-  if (!scene_.model().polyhedral()) {
-    if (hull_.dimension == 2) {
-      check_support(outline_claims(geometry_, outline_directions, resolution_));
-    }
+  if (hull_.dimension == 2 && !scene_.model().polyhedral()) {
+    check_support(outline_claims(geometry_, outline_directions, options_));
     return;
   }
+  const double bound = hull_.faces.empty() ? stated_gap(hull_) : 0;
+  if (bound > largest_bound()) faults_.add("bounds", "the model may be too far off");
   std::vector<dvec3> points;
   for (const HullDocument::Curve& curve : hull_.curves) {
     points.insert(points.end(), curve.points.begin(), curve.points.end());
@@ -380,7 +386,7 @@ void HullVerifier::check_points() {
   }
   std::vector<SupportClaim> claims;
   for (const dvec3& n : even_directions(options_.random_directions, options_.seed)) {
-    SupportClaim claim{n, -infinity};
+    SupportClaim claim{n, -infinity, bound};
     for (const dvec3& p : points) claim.h = std::max(claim.h, glm::dot(geometry_.local(p), n));
     claims.push_back(claim);
   }

@@ -17,13 +17,15 @@ struct HullVerification {
   /// What the rounding of coordinates, large against the diagonal far from the origin, may do to
   /// lengths.
   double rounding = 0;
-  /// Every curve has two faces, and every face is there that the outlines ask for.
+  /// Every curve has two faces, and every face is there that the outlines ask for; of a planar hull
+  /// there is one face.
   bool complete = false;
   /// The curves about every face close, those that it names are those that name it, and the
   /// outlines of patches and facets run from each curve to the next.
   bool closed = false;
   /// V - E + F, where a face counts as its own Euler characteristic; 2 for a convex body. A curve
-  /// without ends, and what is no longer than rounding, counts as nothing.
+  /// without ends, and what is no longer than rounding, counts as nothing; the other side of a
+  /// planar hull as a face.
   int euler = 0;
   /// Largest distance of a source's control point from the model's, and difference of diagonals.
   double off_model = 0;
@@ -87,9 +89,9 @@ struct HullVerification {
 /// kinds say and lie on their faces, and its rulings and facets support the model, also in between.
 /// Of dimension 3 moreover, if the sources are the model's: whether points of patches support, and
 /// others of their sources do not; that the integrals of n and of mean curvature are those of a
-/// closed surface about the model, and volume and area those of the report. A planar hull is
-/// checked for how far its outline reaches; one of lower dimension for its sources and points
-/// alone, and counts as closed.
+/// closed surface about the model, and volume and area those of the report. Of a
+/// planar hull it is how far its outline reaches, its area and its mean width; one of lower
+/// dimension is checked for its sources and points alone, and counts as closed.
 HullVerification verify(const HullDocument& hull, const Scene& scene,
                         const VerifyOptions& options = {});
 

@@ -16,11 +16,18 @@ namespace {
 
 /// The exact hull, with the report as far as it goes.
 HullDocument document_of(Input& input, const Hull& hull, const Report& report) {
-  HullDocument document = hull.boundary
-                              ? hull_document(input.scene(), *hull.boundary, input.part_files())
-                              : hull_document(input.model(), hull.mesh, input.part_files());
+  const std::vector<std::string>& files = input.part_files();
+  HullDocument document = hull.boundary ? hull_document(input.scene(), *hull.boundary, files)
+                          : input.model().polyhedral()
+                              ? hull_document(input.model(), hull.mesh, files)
+                              : hull_document(input.scene(), hull.mesh, files);
   document.report = taut::to_json(report);
   return document;
+}
+
+/// Segments and points are their meshes, as polyhedral hulls are.
+bool is_known(const Hull& hull, const Model& model) {
+  return hull.boundary || model.polyhedral() || hull.kind < HullKind::planar;
 }
 
 /// Why the exact hull is not written, and what could be instead.
@@ -64,7 +71,7 @@ Output write_output(const std::string& file, const HullArguments& arguments, Inp
   const std::string format = arguments.format_of(file);
   const Hull& hull = *outcome.hull;
   if (is_document(format)) {
-    if (!outcome.exact().boundary && !input.model().polyhedral()) {
+    if (!is_known(outcome.exact(), input.model())) {
       throw IoError((file == "-" ? std::string(standard_output) : file) + ": " +
                     no_document(arguments, hull));
     }

@@ -133,7 +133,8 @@ Report::ExactHull exact_hull(Input& input, Outcome& outcome, const std::string& 
       }
     }
   } else if (input.model().polyhedral() && method == "precise") {
-    exact.counts = {0, 0, int(hull.mesh.n_faces()), int(hull.mesh.n_edges()), 0};
+    // The two sides of a planar hull are one facet.
+    exact.counts = {0, 0, hull.kind == HullKind::planar ? 1 : 0, int(hull.mesh.n_edges()), 0};
     exact.tolerant = Report::ExactHull::Tolerant{};
     exact.measures = mesh_measures(hull);
     exact.mean_width = mean_width(hull.mesh);

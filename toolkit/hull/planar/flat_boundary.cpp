@@ -15,6 +15,9 @@ namespace {
 /// Places on edges no farther from an end are there: Newton's method leaves them so near to it.
 constexpr double end_distance = 1e-9;
 
+/// What the outline's heights, and those of support queries above them, differ by as they round.
+constexpr double rounding_of_heights = planar_slack + support_slack;
+
 /// Segments of a stretch of an edge within a piece, and tangents of it that are checked.
 constexpr int stretch_points = 8;
 
@@ -63,13 +66,16 @@ class FlatBoundary {
   void set_polygon(FlatSide& side) const;
   void take(const PlanarHull& hull);
   void simplify();
+  double distance_beside(std::size_t from, std::size_t to) const;
   std::size_t straight_end(std::size_t from, std::size_t limit) const;
   void close_dents();
-  bool is_dent(const FlatSide& before, const FlatSide& across, const FlatSide& after) const;
+  std::optional<double> dent(const FlatSide& before, const FlatSide& across,
+                             const FlatSide& after) const;
+  void see_corners();
   bool supports();
   bool supports(const dvec2& outward, double height, const Contact& hint);
 
-  HullFace facet(bool upper) const;
+  HullFace facet() const;
   void add_curves(HullBoundary& boundary) const;
   std::vector<dvec3> points_along(std::size_t k) const;
   int source_of(const FlatSide& side) const;
@@ -79,8 +85,8 @@ class FlatBoundary {
   FlatExtent extent_;
   std::array<dvec3, 2> frame_;
   double rho_;
-  double width_;         ///< what may be left out
-  double left_out_ = 0;  ///< by how much what was may reach beyond the outline
+  double width_;    ///< what may be left out
+  double off_ = 0;  ///< how far the outline is from the hull's
   std::vector<Contact> corners_;
   std::vector<Contact> pieces_;
   std::vector<FlatSide> sides_;
@@ -138,21 +144,25 @@ void FlatBoundary::take(const PlanarHull& hull) {
   }
 }
 
+/// How far the sides from one corner to another are from the segment between these, at most.
+double FlatBoundary::distance_beside(std::size_t from, std::size_t to) const {
+  geometry_.check_stop();
+  const auto side = [&](std::size_t k) -> const FlatSide& { return sides_[k % sides_.size()]; };
+  double farthest = 0;
+  const auto see = [&](const dvec2& x) {
+    farthest = std::max(farthest, distance_to_segment(x, side(from).x, side(to).x));
+  };
+  for (std::size_t k = from; k < to; ++k) {
+    see(side(k).x);
+    for (const dvec2& x : side(k).polygon) see(x);
+  }
+  return farthest;
+}
+
 /// The last corner, before the limit, to which a segment runs beside all sides from the first on.
 std::size_t FlatBoundary::straight_end(std::size_t from, std::size_t limit) const {
-  const auto side = [&](std::size_t k) -> const FlatSide& { return sides_[k % sides_.size()]; };
-  const auto is_beside = [&](std::size_t to) {
-    for (std::size_t k = from; k < to; ++k) {
-      const auto near = [&](const dvec2& x) {
-        return distance_to_segment(x, side(from).x, side(to).x) <= width_;
-      };
-      if (!near(side(k).x)) return false;
-      if (!std::all_of(side(k).polygon.begin(), side(k).polygon.end(), near)) return false;
-    }
-    return true;
-  };
   std::size_t to = from;
-  while (to < limit && is_beside(to + 1)) ++to;
+  while (to < limit && distance_beside(from, to + 1) <= width_) ++to;
   return to;
 }
 
@@ -167,8 +177,8 @@ void FlatBoundary::simplify() {
   for (std::size_t from = 0; from < sides_.size();) {
     left.push_back(sides_[from]);
     const std::size_t to = straight_end(from, sides_.size());
-    if (to > from + 1 || (to > from && left.back().is_curved())) left_out_ = rho_;
     if (to > from) {
+      off_ = std::max(off_, distance_beside(from, to));
       left.back().along = {};
       left.back().polygon.clear();
     }
@@ -177,18 +187,19 @@ void FlatBoundary::simplify() {
   sides_ = std::move(left);
 }
 
-/// The straight side leads from one piece of an edge over a dent at its end to the next one.
-bool FlatBoundary::is_dent(const FlatSide& before, const FlatSide& across,
-                           const FlatSide& after) const {
-  if (!before.is_curved() || across.is_curved() || !after.is_curved()) return false;
+/// Where a straight side leads from one piece of an edge over a dent at its end to the next one:
+/// how deep that is.
+std::optional<double> FlatBoundary::dent(const FlatSide& before, const FlatSide& across,
+                                         const FlatSide& after) const {
+  if (!before.is_curved() || across.is_curved() || !after.is_curved()) return std::nullopt;
   const double end = before.along.to > before.along.from ? 1 : 0;
   const double begin = after.along.to > after.along.from ? 0 : 1;
   const dvec2 a = in_plane(geometry_.point(before.along.at(end)));
   const dvec2 b = in_plane(geometry_.point(after.along.at(begin)));
-  const auto near = [&](const dvec2& x) {
-    return distance_to_segment(x, across.x, after.x) <= width_;
-  };
-  return glm::distance(a, b) <= geometry_.tie() && near(a) && near(b);
+  const double depth = std::max(distance_to_segment(a, across.x, after.x),
+                                distance_to_segment(b, across.x, after.x));
+  if (glm::distance(a, b) > geometry_.tie() || depth > width_) return std::nullopt;
+  return depth;
 }
 
 /// Pieces of edges are followed to where they join.
@@ -196,10 +207,12 @@ void FlatBoundary::close_dents() {
   for (std::size_t k = 0; k < sides_.size() && sides_.size() > 2;) {
     const std::size_t before = (k + sides_.size() - 1) % sides_.size();
     const std::size_t after = next(k);
-    if (!is_dent(sides_[before], sides_[k], sides_[after])) {
+    const std::optional<double> depth = dent(sides_[before], sides_[k], sides_[after]);
+    if (!depth) {
       ++k;
       continue;
     }
+    off_ = std::max(off_, *depth);
     EdgeStretch& in = sides_[before].along;
     EdgeStretch& out = sides_[after].along;
     in.to = in.to > in.from ? 1 : 0;
@@ -209,14 +222,26 @@ void FlatBoundary::close_dents() {
     sides_[after].corner = geometry_.canonical(out.at(out.from));
     sides_[after].x = in_plane(geometry_.point(sides_[after].corner));
     sides_.erase(sides_.begin() + std::ptrdiff_t(k));
-    left_out_ = rho_;
   }
 }
 
 bool FlatBoundary::supports(const dvec2& outward, double height, const Contact& hint) {
   const double rise = query_(unit(in_space(outward)), hint).h_bound - height;
-  if (rise > geometry_.tie()) left_out_ = rho_;
+  off_ = std::max(off_, rise);
   return rise <= rho_ + geometry_.tie();
+}
+
+/// Curved sides begin and end in their corners, but for elements that are one.
+void FlatBoundary::see_corners() {
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const FlatSide& side = sides_[k];
+    if (!side.is_curved()) continue;
+    const auto see = [&](double t, const dvec2& corner) {
+      off_ = std::max(off_, glm::distance(in_plane(geometry_.point(side.along.at(t))), corner));
+    };
+    see(side.along.from, side.x);
+    see(side.along.to, sides_[next(k)].x);
+  }
 }
 
 /// Nothing is beyond a side by more than the resolution.
@@ -243,24 +268,19 @@ bool FlatBoundary::supports() {
   return true;
 }
 
-/// The side that is seen from along n, or the other one.
-HullFace FlatBoundary::facet(bool upper) const {
+/// The side that is seen from along n.
+HullFace FlatBoundary::facet() const {
   HullFace face;
   face.kind = FaceKind::facet;
-  face.n = upper ? extent_.n : -extent_.n;
-  face.offset = (upper ? extent_.middle : -extent_.middle) + extent_.half_width;
-  face.tolerant = 2 * extent_.half_width;
-  const std::size_t count = sides_.size();
+  face.n = extent_.n;
+  face.offset = extent_.middle + extent_.half_width;
+  face.tolerant = std::max(2 * extent_.half_width, off_ > rounding_of_heights ? off_ : 0);
   const bool is_curved = std::any_of(sides_.begin(), sides_.end(),
                                      [](const FlatSide& side) { return side.is_curved(); });
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t k = upper ? i : (count - i) % count;
-    face.contacts.push_back(sides_[k].corner);
-    face.points.push_back(geometry_.point(sides_[k].corner));
-    if (!is_curved) continue;
-    EdgeStretch along = sides_[upper ? k : (k + count - 1) % count].along;
-    if (!upper) std::swap(along.from, along.to);
-    face.sides.push_back(along);
+  for (const FlatSide& side : sides_) {
+    face.contacts.push_back(side.corner);
+    face.points.push_back(geometry_.point(side.corner));
+    if (is_curved) face.sides.push_back(side.along);
   }
   return face;
 }
@@ -299,7 +319,7 @@ void FlatBoundary::add_curves(HullBoundary& boundary) const {
       HullCurve& curve = boundary.curves.emplace_back();
       curve.source = source_of(sides_[k]);
       curve.kind = curve.source >= 0 ? HullCurveKind::edge : HullCurveKind::ruling;
-      curve.faces = {0, 1};
+      curve.faces = {0, -1};
       curve.closed = closed;
     }
     std::vector<dvec3>& points = boundary.curves.back().points;
@@ -317,19 +337,20 @@ std::optional<HullBoundary> FlatBoundary::make() {
     std::vector<dvec3>& curve = curves.emplace_back();
     for (const dvec4& p : geometry_.curve(c).points) curve.emplace_back(in_plane(dvec3(p)), p.w);
   }
-  take(planar_hull(points, curves));
+  take(planar_hull(points, curves, geometry_.stop()));
   if (sides_.empty()) return std::nullopt;
   simplify();
   close_dents();
   const bool has_area =
       sides_.size() > 2 || sides_.front().is_curved() || sides_.back().is_curved();
   if (!has_area || !supports()) return std::nullopt;
+  see_corners();
   HullBoundary boundary;
   boundary.frame = geometry_.scene().frame();
   boundary.dimension = 2;
-  boundary.faces = {facet(true), facet(false)};
+  boundary.faces = {facet()};
   add_curves(boundary);
-  boundary.gap = extent_.half_width > 0 ? rho_ : left_out_;
+  boundary.gap = boundary.faces.front().tolerant > 0 ? rho_ : 0;
   return boundary;
 }
 

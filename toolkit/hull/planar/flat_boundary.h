@@ -15,13 +15,14 @@ struct FlatExtent {
   double half_width = 0;  ///< 0: nothing but rounding
 };
 
-/// The exact boundary of a planar hull: its two sides, facets whose outlines are stretches of the
-/// model's edges and segments, and the curves between them.
+/// The exact boundary of a planar hull: one facet, seen from along n, whose outline is stretches of
+/// the model's edges and segments, and these curves, which have it to the left.
 ///
 /// What keeps the outline from being simpler by no more than `rho`, in the scene's frame, what the
 /// scene reaches across its plane included, is left out: corners and bent edges that are as near to
 /// a straight side, and dents between pieces of an edge. Corners are contacts where they are, and
-/// the facets are tolerant by the scene's width.
+/// the facet is tolerant by the scene's width, and by how far its outline is from the
+/// hull's.
 ///
 /// None where the outline is not one of edges and vertices, to within rho: that of faces that fold
 /// over beyond their borders.

@@ -74,6 +74,7 @@ enum class HullCurveKind {
 struct HullCurve {
   HullCurveKind kind = HullCurveKind::ruling;
   /// Numbers of faces: to the left and to the right of the curve, seen from outside. May be equal.
+  /// -1: none; of a planar hull, always to the right.
   std::array<int, 2> faces = {-1, -1};
   /// Points along it from its beginning to its end, in the scene's frame; the first one again at
   /// the end of a closed curve. Dense enough that the curve is smooth between them.
@@ -161,7 +162,7 @@ struct Unresolved {
 struct HullBoundary {
   /// The scene's frame, that of scene_frame() also where there is no scene.
   SceneFrame frame;
-  /// Of the hull: 3, or 2 where its faces are the two sides of a planar one.
+  /// Of the hull: 3, or 2 where its one face is a side of a planar one.
   int dimension = 3;
   std::vector<SeparatingArc> arcs;
   std::vector<HullFace> faces;

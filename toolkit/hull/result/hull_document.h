@@ -108,7 +108,8 @@ struct HullDocument {
   /// What separates two faces.
   struct Curve {
     HullCurveKind kind = HullCurveKind::ruling;
-    /// To the left and to the right, seen from outside; -1 where a face is missing.
+    /// To the left and to the right, seen from outside; -1 where a face is missing, and to the
+    /// right of all curves of a planar hull, whose one face is a facet, one side of it.
     std::array<int, 2> faces = {-1, -1};
     int source = -1;  ///< edge: the model's edge; else -1
     /// From its beginning to its end; of a closed curve the last is the first.

@@ -193,7 +193,7 @@ Hull FlatSampler::make_hull(HullKind kind, const std::vector<int>& corners) {
     const dvec3& n = kind == HullKind::planar ? start_.span.normal : sample.n;
     hull.mesh.set_normal(v, {n.x, n.y, n.z});
   }
-  for (const auto f : hull.mesh.faces()) hull.mesh.data(f).hull_face = f.idx();
+  for (const auto f : hull.mesh.faces()) hull.mesh.data(f).hull_face = 0;
   for (const auto e : hull.mesh.edges()) hull.mesh.data(e).feature = true;
   hull.distance_bound = bound_in_model(bound_);
   hull.resolution = resolution_for(options_, scene_.model(), scene_.diagonal());

@@ -21,6 +21,8 @@ HullDocument hull_document(const Model& model, const HullMesh& mesh,
                                             : 2;
   document.sources = sources.make();
   for (const auto f : mesh.faces()) {
+    // The two sides of a planar hull are one face.
+    if (document.dimension == 2 && f.idx() > 0) break;
     HullDocument::Face& face = document.faces.emplace_back();
     face.source = sources.place(mesh.data(f).source);
     for (const auto h : mesh.fh_range(f)) {
@@ -43,12 +45,23 @@ HullDocument hull_document(const Model& model, const HullMesh& mesh,
   for (const auto e : mesh.edges()) {
     const auto h = mesh.halfedge_handle(e, 0);
     const auto opposite = mesh.halfedge_handle(e, 1);
+    const auto face = [&](OpenMesh::HalfedgeHandle side) {
+      const int f = mesh.face_handle(side).idx();
+      return f < int(document.faces.size()) ? f : -1;
+    };
     document.curves.push_back(
         {HullCurveKind::ruling,
-         {mesh.face_handle(h).idx(), mesh.face_handle(opposite).idx()},
+         {face(h), face(opposite)},
          -1,
          {position(mesh, mesh.from_vertex_handle(h)), position(mesh, mesh.to_vertex_handle(h))}});
   }
+  return document;
+}
+
+HullDocument hull_document(const Scene& scene, const HullMesh& mesh,
+                           const std::vector<std::string>& files) {
+  HullDocument document = hull_document(scene.model(), mesh, files);
+  document.diagonal = scene.diagonal();
   return document;
 }
 

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "sound_hull.h"
+
+namespace taut {
+namespace {
+
+using namespace taut_test;  // NOLINT: models
+
+/// A circle and a point beside it: an arc and two segments.
+Shape drop() {
+  Shape shape{{}, {circle({1, 2, 3}, {2, 0, 0}, {0, 2, 0})}, {{6, 2, 3}}};
+  return mapped(shape, skew_rotation());
+}
+
+TEST(VerifyPlanar, OneFaceWithItsCurvesPasses) {
+  for (const Shape& shape : {drop(), scaled(drop(), 1e-6), shifted(drop(), {3e4, -2e4, 1e4})}) {
+    const Sound sound = sound_hull(shape);
+    ASSERT_EQ(sound.hull.faces.size(), 1U);
+    EXPECT_EQ(sound.hull.faces.front().tolerant, 0);
+    EXPECT_EQ(sound.hull.curves.size(), 3U);
+    const HullVerification v = verified(sound.hull, sound.scene);
+    EXPECT_TRUE(v.is_hull(exact)) << text_of(v);
+    EXPECT_EQ(v.euler, 2);
+  }
+}
+
+/// The arc gives way to its chord; all else is as the chord asks.
+void cut_arc(HullDocument& h) {
+  HullDocument::Face& face = h.faces.front();
+  for (HullDocument::Side& side : face.sides) side = {};
+  for (HullDocument::Curve& curve : h.curves) {
+    curve.kind = HullCurveKind::ruling;
+    curve.source = -1;
+    curve.points = {curve.points.front(), curve.points.back()};
+  }
+  face.boundary.clear();
+  for (const HullDocument::Contact& c : face.contacts) face.boundary.push_back(c.p);
+}
+
+TEST(VerifyPlanar, FaultsAreFound) {
+  struct Fault {
+    const char* name;
+    const char* finder;
+    std::function<void(HullDocument&)> make;
+  };
+  const auto set = [](HullDocument& h, const std::string& key, double factor) {
+    const std::size_t at = h.report.find("\"" + key + "\": ") + key.size() + 4;
+    const std::size_t end = h.report.find_first_of(",\n", at);
+    h.report.replace(at, end - at,
+                     std::to_string(factor * std::stod(h.report.substr(at, end - at))));
+  };
+  const std::vector<Fault> faults = {
+      {"there is another side", "complete",
+       [](auto& h) { h.faces.push_back(HullDocument::Face(h.faces.front())); }},
+      {"a curve has a face to its right", "complete", [](auto& h) { h.curves[0].faces[1] = 0; }},
+      {"a curve runs backwards", "closed",
+       [](auto& h) { std::reverse(h.curves[0].points.begin(), h.curves[0].points.end()); }},
+      {"a segment is called an edge", "kinds",
+       [](auto& h) {
+         for (HullDocument::Curve& curve : h.curves) curve.kind = HullCurveKind::edge;
+       }},
+      {"an arc is cut", "model_outside", cut_arc},
+      {"the outline is off by what the document's resolution is", "model_outside",
+       [](auto& h) {
+         state(h, 2 * h.diagonal, 0, 0);
+         cut_arc(h);
+       }},
+      {"the area is wrong", "report", [&](auto& h) { set(h, "area", 1.001); }},
+      {"the mean width is wrong", "report", [&](auto& h) { set(h, "mean_width", 1.001); }},
+  };
+  const Sound sound = sound_hull(drop());
+  for (const Fault& fault : faults) {
+    HullDocument hull = sound.hull;
+    fault.make(hull);
+    const HullVerification v = verified(hull, sound.scene);
+    EXPECT_FALSE(v.is_hull(exact)) << fault.name;
+    EXPECT_TRUE(failed(v).contains(fault.finder)) << fault.name << ": " << text_of(v);
+  }
+}
+
+/// A segment between the ends of a straight curve, and points within a line.
+TEST(VerifyPlanar, SegmentsPass) {
+  Shape line;
+  line.curves.push_back(as_nurbs(BezierCurve{{{0, 0, 0, 1}, {2, 1, 2, 1}, {6, 3, 6, 1}}}));
+  for (const Shape& shape : {line, Shape{{}, {}, {{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}}}) {
+    Sound sound = sound_hull(shape);
+    EXPECT_EQ(sound.hull.dimension, 1);
+    EXPECT_EQ(sound.hull.faces.size(), 0U);
+    EXPECT_TRUE(verified(sound.hull, sound.scene).is_hull(exact))
+        << text_of(verified(sound.hull, sound.scene));
+    sound.hull.curves[0].points[0] *= 0.5;
+    sound.hull.curves[0].points[1] *= 0.5;
+    EXPECT_TRUE(failed(verified(sound.hull, sound.scene)).contains("model_outside"));
+  }
+}
+
+}  // namespace
+}  // namespace taut
