@@ -16,10 +16,12 @@ namespace taut {
 /// A contact's point and its derivatives with respect to the contact's parameters, in the scene's
 /// frame (Scene::frame).
 struct ContactJet {
-  int dimension = 0;  ///< parameters: 2 on a face (u, v), 1 on an edge (u), 0 at a vertex
-  dvec3 x = dvec3(0.0);
-  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};
-  dvec3 dxx = dvec3(0.0), dxy = dvec3(0.0), dyy = dvec3(0.0);
+  int dimension = 0;     ///< parameters: 2 on a face (u, v), 1 on an edge (u), 0 at a vertex
+  dvec3 x = dvec3(0.0);  ///< the point
+  std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};  ///< first derivatives, as many as parameters
+  dvec3 dxx = dvec3(0.0);  ///< second derivatives, of those parameters that there are
+  dvec3 dxy = dvec3(0.0);  ///< likewise
+  dvec3 dyy = dvec3(0.0);  ///< likewise
 };
 
 /// None of the numbers is infinite or no number.
@@ -50,6 +52,7 @@ class ContactGeometry {
   /// patches ruled that are no farther from one that is than seven times; rounding apart.
   explicit ContactGeometry(const Scene& scene, Stop stop = {}, double same = 0);
 
+  /// What the contacts are of.
   const Scene& scene() const { return scene_; }
   /// Values of contacts that differ by no more, in the scene's frame, are one: support_tie, or more
   /// where the model is so far from the origin that its coordinates are rounded to more.
@@ -57,9 +60,11 @@ class ContactGeometry {
   /// What the rounding of the model's coordinates may do to points, to planes through them and to
   /// slopes at joins of surfaces, in the scene's frame (coordinate_rounding).
   double rounding() const { return rounding_; }
+  /// The part of which the contact's element is. @pre the contact exists
   const Part& part(const Contact& c) const;
   /// What works long on contacts and evaluates none asks now and then. @throws Cancelled
   void check_stop() const { stop_.check(); }
+  /// What makes evaluations throw Cancelled.
   const Stop& stop() const { return stop_; }
 
   /// @pre the contact exists; parameters may leave [0, 1] by a little @throws Cancelled, as the
@@ -69,6 +74,7 @@ class ContactGeometry {
   PatchJet3 patch_jet(const Contact& c) const;
   /// Of a contact on a piece.
   CurveJet curve_jet(const Contact& c) const;
+  /// The contact's point. @pre as of jet()
   dvec3 point(const Contact& c) const { return jet(c).x; }
 
   /// The contact in the lowest kind that it lies on exactly: at a corner that is a vertex, or on a
@@ -92,16 +98,16 @@ class ContactGeometry {
 
   /// A side of a patch, not a ruled one, that lies on an edge's piece.
   struct PieceSide {
-    int instance = -1;  ///< -1: the contact's
-    int patch = -1;
-    Side side = Side::u0;
+    int instance = -1;      ///< -1: the contact's
+    int patch = -1;         ///< of the instance's part
+    Side side = Side::u0;   ///< of the patch
     bool reversed = false;  ///< the piece runs against the border
   };
   /// An edge's piece that ends in a vertex.
   struct PieceEnd {
     int instance = -1;  ///< -1: the contact's
-    int piece = -1;
-    int end = 0;  ///< 0: begins there, 1: ends there
+    int piece = -1;     ///< of the instance's part
+    int end = 0;        ///< 0: begins there, 1: ends there
   };
   /// Sides along the piece, and along the pieces that repeat it.
   /// @pre kind edge, not repeated
@@ -125,6 +131,7 @@ class ContactGeometry {
   /// On an edge with a side of a patch that is told ruled but is not: contacts near it are told as
   /// the edge's.
   bool is_beside_bent(const Contact& c) const;
+  /// Along which lines the patch is told ruled.
   RuledLines lines(const Patch& patch) const { return patch.lines(bent_); }
 
   /// @pre kind face
@@ -136,7 +143,9 @@ class ContactGeometry {
   /// The piece in the scene's frame. @pre kind edge
   BezierCurve curve(const Contact& c) const;
 
+  /// A direction in the scene's frame as one of the instance's part.
   dvec3 to_local(int instance, const dvec3& n) const;
+  /// A direction of the instance's part in the scene's frame.
   dvec3 to_frame(int instance, const dvec3& direction) const;
 
  private:

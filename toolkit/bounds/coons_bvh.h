@@ -12,10 +12,12 @@ namespace taut {
 struct CoonsCell {
   std::int32_t node = 0;   ///< the explicit node, for implicit cells the leaf that holds them
   std::int32_t level = 0;  ///< depth in the hierarchy, the root is 0
-  std::uint32_t i = 0;
-  std::uint32_t j = 0;
+  std::uint32_t i = 0;     ///< of the rectangle, along u
+  std::uint32_t j = 0;     ///< of the rectangle, along v
 
+  /// Its range of the patch's u.
   Interval u() const { return interval(i); }
+  /// Its range of the patch's v.
   Interval v() const { return interval(j); }
 
  private:
@@ -52,6 +54,7 @@ class CoonsBvh {
   /// neither over- nor underflow)
   CoonsBvh(const BezierPatch& patch, double coons_tolerance);
 
+  /// The whole patch.
   CoonsCell root() const { return {}; }
   /// The cell is a leaf or below one: its children are implicit, its corners on the Coons patch.
   bool is_leaf(const CoonsCell& cell) const {
@@ -62,12 +65,15 @@ class CoonsBvh {
   std::array<CoonsCell, 4> children(const CoonsCell& cell) const;
   /// In the same order.
   std::array<dvec3, 4> corners(const CoonsCell& cell) const;
+  /// How far the sub-patch is from the tetrahedron of the corners, at most, rounding included.
   double deviation(const CoonsCell& cell) const;
   /// Distance of the surface from the leaf's Coons patch; zero for inner cells, whose corners lie
   /// on the surface itself (within rounding).
   double coons_distance(const CoonsCell& cell) const;
 
+  /// Nodes that are stored.
   int node_count() const { return static_cast<int>(nodes_.size()); }
+  /// Those of them that are leaves.
   int leaf_count() const { return static_cast<int>(leaves_.size()); }
   /// Bytes held.
   std::size_t memory() const;

@@ -11,10 +11,10 @@ namespace taut {
 /// from -1, of a face of the cube [-1, 1]^3, seen from the centre. Faces 0 .. 5 are +x, -x, +y, -y,
 /// +z, -z; the square's axes are the two coordinates after the face's own, cyclically.
 struct DirectionCell {
-  int face = 0;
-  int level = 0;
-  std::uint32_t i = 0;
-  std::uint32_t j = 0;
+  int face = 0;         ///< 0 .. 5
+  int level = 0;        ///< 0 .. 15
+  std::uint32_t i = 0;  ///< 0 .. 2^level - 1
+  std::uint32_t j = 0;  ///< 0 .. 2^level - 1
 
   /// The cell of that level that holds the direction. @pre not zero; 0 <= level <= 15
   static DirectionCell of(const dvec3& n, int level);

@@ -16,16 +16,16 @@ struct ScenePart;
 struct GaussMapOptions {
   /// Levels of the patches' quadtrees below their roots, at most, and of the sphere's. 0 .. 8
   int levels = 3;
-  int threads = 0;
-  Progress progress;
+  int threads = 0;    ///< 0: all
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 /// A node of a patch's quadtree. Its points are bounded by the patch's CBVH or control points.
 struct GaussNode {
-  int element = -1;  ///< index among the part's elements; a face's patch
-  PatchCell cell;
+  int element = -1;               ///< index among the part's elements; a face's patch
+  PatchCell cell;                 ///< of the patch
   std::int32_t first_child = -1;  ///< of four consecutive nodes; -1 for a leaf
-  NormalBounds bounds;
+  NormalBounds bounds;            ///< of the cell
 };
 
 /// The Gauss map of the parts of a scene, as a hierarchy: for every patch a quadtree of cells with
@@ -45,18 +45,20 @@ class GaussMap {
   /// @throws InvalidInput for levels out of range, Cancelled
   explicit GaussMap(const Scene& scene, const GaussMapOptions& options = {});
 
+  /// Levels of the quadtrees below their roots, as the options ask.
   int levels() const { return levels_; }
 
   /// The nodes of a part. The roots come first, one for each patch of a face.
   std::span<const GaussNode> nodes(int part) const { return maps_[std::size_t(part)].nodes; }
+  /// Patches of the part's faces.
   int root_count(int part) const { return maps_[std::size_t(part)].root_count; }
   /// Roots of ruled patches have no children (PatchNets).
   bool ruled(int part, int root) const { return maps_[std::size_t(part)].ruled[std::size_t(root)]; }
 
   /// A leaf and a sign with which it may touch a plane.
   struct Entry {
-    std::int32_t node;
-    bool opposite;  ///< with the opposite of its normals
+    std::int32_t node;  ///< its number among the part's nodes
+    bool opposite;      ///< with the opposite of its normals
   };
   /// All leaves that may touch, from inside the leaf or smoothly at its border, a supporting plane
   /// whose normal lies in the cell; entries may repeat if the cell is above the finest level.

@@ -9,11 +9,13 @@ namespace taut {
 
 /// A rectangle [i, i + 1] / 2^level x [j, j + 1] / 2^level of a patch's unit square.
 struct PatchCell {
-  int level = 0;
-  std::uint32_t i = 0;
-  std::uint32_t j = 0;
+  int level = 0;        ///< 0: the whole patch
+  std::uint32_t i = 0;  ///< along u, 0 .. 2^level - 1
+  std::uint32_t j = 0;  ///< along v, 0 .. 2^level - 1
 
+  /// Its range of the patch's u.
   Interval u() const { return interval(i); }
+  /// Its range of the patch's v.
   Interval v() const { return interval(j); }
   /// k-th quarter, in the order (u0,v0), (u0,v1), (u1,v0), (u1,v1).
   PatchCell child(std::uint32_t k) const { return {level + 1, 2 * i + k / 2, 2 * j + k % 2}; }
@@ -28,8 +30,9 @@ struct PatchCell {
 /// Which of its two unit normals a piece of surface can touch a supporting plane with: n of the
 /// pyramid or the opposite. By curvature alone, so unchanged by rigid motions and mirrors.
 struct ContactSigns {
-  bool plus = true;
-  bool minus = true;
+  bool plus = true;   ///< with the pyramid's normals
+  bool minus = true;  ///< with their opposites
+  /// Not proven to touch none.
   bool any() const { return plus || minus; }
 };
 
@@ -37,7 +40,7 @@ struct ContactSigns {
 struct NormalBounds {
   /// Contains the normals Su x Sv; none where they are not within a half space, or all zero.
   std::optional<NormalPyramid> pyramid;
-  ContactSigns signs;
+  ContactSigns signs;  ///< with which of its normals it may
   /// Certain: both principal curvatures have one sign, not zero, so one of `signs` is set.
   bool definite = false;
 };

@@ -10,12 +10,12 @@ namespace taut {
 
 /// A patch, piece or vertex of an instance by its control points, in one frame for all.
 struct PlacedElement {
-  SourceKind kind = SourceKind::face;
-  int instance = -1;
-  int element = -1;
-  int degree_u = 0;  ///< 0 of a vertex
-  int degree_v = 0;  ///< 0 of a piece or a vertex
-  std::vector<dvec4> points;
+  SourceKind kind = SourceKind::face;  ///< what it is
+  int instance = -1;                   ///< whose it is
+  int element = -1;           ///< index of the patch, piece or vertex in the instance's part
+  int degree_u = 0;           ///< 0 of a vertex
+  int degree_v = 0;           ///< 0 of a piece or a vertex
+  std::vector<dvec4> points;  ///< homogeneous control points
 };
 
 /// Which elements of a scene coincide: copies of models, faces that touch each other all over, the
@@ -33,6 +33,7 @@ class RepeatedElements {
     places_.try_emplace(key(vertex), on_edge);
   }
 
+  /// No element is the same as an earlier one, or placed on an edge.
   bool empty() const { return repeats_.empty() && places_.empty(); }
   /// How far control points are from those that they repeat, at most.
   double farthest() const { return farthest_; }

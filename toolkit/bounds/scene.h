@@ -14,8 +14,8 @@ struct SceneContent;  // in scene_content.h, for the bounds layer
 
 /// How a scene is built.
 struct SceneOptions {
-  int threads = 0;
-  Progress progress;
+  int threads = 0;    ///< 0: all
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 /// A model prepared for queries: every part's CBVHs, built once and shared by its instances, and
@@ -34,10 +34,14 @@ class Scene {
   /// @throws InvalidInput if the model holds no geometry
   explicit Scene(Model model, const SceneOptions& options = {});
   ~Scene();
+  /// Leaves the other one to be assigned to or destroyed.
   Scene(Scene&&) noexcept;
+  /// Leaves the other one to be assigned to or destroyed.
   Scene& operator=(Scene&&) noexcept;
 
+  /// The model as it was given.
   const Model& model() const;
+  /// The scene's own frame.
   const SceneFrame& frame() const;
   /// Box of the geometry itself, in model coordinates: by support queries along the axes.
   const Box& box() const;
@@ -62,6 +66,7 @@ class Scene {
   /// Bytes held by the CBVHs and hierarchies.
   std::size_t memory() const;
 
+  /// What queries read.
   const SceneContent& content() const { return *content_; }
   /// Queries read what a scene holds and know nothing of the scene.
   operator const SceneContent&() const { return *content_; }

@@ -19,7 +19,7 @@ struct Support {
   double h_bound = 0;
   /// By how much the answer may be too low, as lines do not count (SupportQuery::leave_out_lines).
   double low = 0;
-  Contact contact;
+  Contact contact;  ///< where h is attained
   /// The contact's point.
   dvec3 point = dvec3(0.0);
 
@@ -43,6 +43,7 @@ class SupportQuery {
   explicit SupportQuery(const SceneContent& scene, Stop stop = {},
                         SupportBounds bounds = SupportBounds::bezier_nets);
   ~SupportQuery();
+  /// Leaves the other one to be destroyed.
   SupportQuery(SupportQuery&&) noexcept;
 
   /// The support in direction n. h_bound - h is about 2^-43 of the scene's size and what rounding
@@ -67,6 +68,7 @@ class SupportQuery {
 
   /// Since construction.
   long queries() const;
+  /// Steps of Newton's method, since construction.
   long newton_iterations() const;
   /// Cells split and cells certified by the second-order bound.
   long cells() const;

@@ -12,8 +12,9 @@ set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
 set(DOXYGEN_EXCLUDE_SYMBOLS std)
 set(DOXYGEN_HAVE_DOT NO)
 set(DOXYGEN_QUIET YES)
-# Members whose names say all need no words.
-set(DOXYGEN_WARN_IF_UNDOCUMENTED NO)
+# Every public name is described, or the target fails.
+set(DOXYGEN_WARN_IF_UNDOCUMENTED YES)
+set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 get_property(public_headers GLOBAL PROPERTY TAUT_PUBLIC_HEADERS)
 list(TRANSFORM public_headers REPLACE "^taut/" "toolkit/")
 doxygen_add_docs(docs README.md toolkit/io/formats.md ${public_headers}

@@ -21,8 +21,8 @@ struct HullContainmentOptions {
   /// How well distances are to be known, in model units; negative: default_distance_accuracy of the
   /// diagonal. What cannot be reached is told by their bounds.
   double accuracy = -1;
-  int threads = 0;
-  Progress progress;
+  int threads = 0;    ///< 0: all
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 /// Tells whether points lie inside, on or outside a scene's convex hull, and how far from its
@@ -45,19 +45,26 @@ class HullContainment {
   /// is not positive, BackendError or LimitExceeded if Embree fails, Cancelled
   explicit HullContainment(const Scene& scene, const HullContainmentOptions& options = {});
   ~HullContainment();
+  /// Leaves the other one to be destroyed.
   HullContainment(HullContainment&&) noexcept;
 
   /// @name One point, in model coordinates @throws InvalidInput if it is not finite
   /// @{
+
+  /// Whether the point is proven to lie inside or outside.
   Location locate(const dvec3& x) const;
+  /// From the boundary, negative inside.
   SignedDistance distance(const dvec3& x) const;
   /// @}
 
   /// @name Many points, in their order, on the threads of the options
   /// What it took is added to `counts`, where given. @throws InvalidInput as above, Cancelled
   /// @{
+
+  /// As locate() of one point.
   std::vector<Location> locate(std::span<const dvec3> points,
                                ContainmentCounts* counts = nullptr) const;
+  /// As distance() of one point.
   std::vector<SignedDistance> distances(std::span<const dvec3> points,
                                         ContainmentCounts* counts = nullptr) const;
   /// @}

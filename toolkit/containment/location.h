@@ -17,10 +17,11 @@ struct SignedDistance {
   double value = 0;
   /// Proven bounds of the true distance, rounding included: lower <= value <= upper up to rounding.
   double lower = 0;
-  double upper = 0;
+  double upper = 0;  ///< see lower
 
   /// Largest amount by which `value` may be off.
   double error_bound() const { return std::max(upper - value, value - lower); }
+  /// What the bounds prove of a point that is on the boundary within the tolerance.
   Location location(double tolerance) const {
     if (lower > tolerance) return Location::outside;
     return upper < -tolerance ? Location::inside : Location::on;
@@ -35,11 +36,12 @@ inline constexpr double default_distance_accuracy = 1e-12;
 
 /// What questions took.
 struct ContainmentCounts {
-  long points = 0;
+  long points = 0;  ///< that were asked for
   /// Points that the exact search had to decide.
   long searched = 0;
-  long support_queries = 0;
+  long support_queries = 0;  ///< made for them
 
+  /// Adds all counts.
   ContainmentCounts& operator+=(const ContainmentCounts& other) {
     points += other.points;
     searched += other.searched;

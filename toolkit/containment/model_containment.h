@@ -21,8 +21,8 @@ struct ModelContainmentOptions {
   /// How well distances are to be known, in model units; negative: default_distance_accuracy of the
   /// diagonal.
   double accuracy = -1;
-  int threads = 0;
-  Progress progress;
+  int threads = 0;    ///< 0: all
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 /// Tells whether points lie inside, on or outside a closed freeform model, and how far from its
@@ -47,10 +47,13 @@ class ModelContainment {
   /// are not planar, or an option is no number; BackendError or LimitExceeded if Embree fails
   explicit ModelContainment(const Scene& scene, const ModelContainmentOptions& options = {});
   ~ModelContainment();
+  /// Leaves the other one to be destroyed.
   ModelContainment(ModelContainment&&) noexcept;
 
   /// @name One point, in model coordinates @throws InvalidInput if it is not finite
   /// @{
+
+  /// Whether the point is proven to lie inside or outside.
   Location locate(const dvec3& x) const;
   /// Inside several bodies the distance to the surface of the one in which the point is deepest;
   /// `lower` accounts for what lies beyond.
@@ -60,8 +63,11 @@ class ModelContainment {
   /// @name Many points, in their order, on the threads of the options
   /// What it took is added to `counts`, where given. @throws InvalidInput as above, Cancelled
   /// @{
+
+  /// As locate() of one point.
   std::vector<Location> locate(std::span<const dvec3> points,
                                ContainmentCounts* counts = nullptr) const;
+  /// As distance() of one point.
   std::vector<SignedDistance> distances(std::span<const dvec3> points,
                                         ContainmentCounts* counts = nullptr) const;
   /// @}

@@ -34,9 +34,10 @@ class IoError : public Error {
 /// A tolerance was not reached; `reached` is what was, in model units.
 class NotConverged : public Error {
  public:
+  /// The message and what was reached, in model units.
   NotConverged(const std::string& message, double reached_tolerance)
       : Error(message), reached(reached_tolerance) {}
-  double reached;
+  double reached;  ///< in model units
 };
 
 /// A third-party library failed at what it was asked for.

@@ -17,8 +17,8 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A closed parameter interval, lower <= upper.
 struct Interval {
-  double lower = 0;
-  double upper = 1;
+  double lower = 0;  ///< least value
+  double upper = 1;  ///< largest value
 
   /// Affine map of [0, 1] onto the interval; the ends are met exactly.
   double at(double s) const {
@@ -29,14 +29,17 @@ inline bool excludes_zero(const Interval& x) { return x.lower > 0 || x.upper < 0
 
 /// Axis-parallel closed box. A default-constructed box is empty and contains nothing.
 struct Box {
-  dvec3 lower = dvec3(infinity);
-  dvec3 upper = dvec3(-infinity);
+  dvec3 lower = dvec3(infinity);   ///< least coordinates
+  dvec3 upper = dvec3(-infinity);  ///< largest coordinates
 
+  /// It contains nothing.
   bool empty() const { return lower.x > upper.x; }
+  /// Makes it contain the point.
   void include(const dvec3& p) {
     lower = glm::min(lower, p);
     upper = glm::max(upper, p);
   }
+  /// Makes it contain the other box.
   void include(const Box& other) {
     lower = glm::min(lower, other.lower);
     upper = glm::max(upper, other.upper);
@@ -88,9 +91,10 @@ std::array<dvec3, 2> tangent_frame(const dvec3& n);
 
 /// A rigid motion x -> rotation * x + translation. @pre rotation is orthogonal with determinant 1.
 struct RigidMotion {
-  dmat3 rotation = dmat3(1.0);
-  dvec3 translation = dvec3(0.0);
+  dmat3 rotation = dmat3(1.0);     ///< about the origin
+  dvec3 translation = dvec3(0.0);  ///< after the rotation
 
+  /// The place to which a point is moved.
   dvec3 operator()(const dvec3& x) const { return rotation * x + translation; }
   /// The motion moves nothing.
   bool at_rest() const { return rotation == dmat3(1.0) && translation == dvec3(0.0); }

@@ -21,10 +21,12 @@ struct Progress {
   /// helper; or it has limits.
   Stop stop;
 
+  /// Tells the share of the step that is done. @throws as check()
   void update(std::string_view step, double share) const {
     check();
     if (report) report(step, share);
   }
+  /// Tells a warning, if anyone listens.
   void warning(std::string_view code, std::string_view text) const {
     if (warn) warn(code, text);
   }

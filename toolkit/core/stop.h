@@ -24,6 +24,7 @@ class Stop {
   Stop(std::stop_token token, std::shared_ptr<const Limits> limits)
       : token_(std::move(token)), limits_(std::move(limits)) {}
 
+  /// Whether check() would throw.
   bool stop_requested() const {
     return token_.stop_requested() || (limits_ != nullptr && limits_->met());
   }
@@ -33,6 +34,7 @@ class Stop {
     if (limits_ != nullptr && limits_->met()) throw LimitMet(limits_->text());
   }
 
+  /// Whether there are limits of time or memory, met or not.
   bool has_limits() const { return limits_ != nullptr; }
   /// The same with limits of its own that these begin, and what is left of those it has.
   Stop within(std::optional<double> max_seconds, std::optional<std::size_t> max_memory) const {

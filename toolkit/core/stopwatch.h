@@ -8,6 +8,7 @@ namespace taut {
 /// Tells the time since it was made.
 class Stopwatch {
  public:
+  /// Since it was made.
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }

@@ -15,7 +15,7 @@ struct EnvelopeOptions {
   int size = 1024;
   /// Threads of everything but the drawing itself, 0 for all. The images do not depend on it.
   int threads = 0;
-  Progress progress;
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 struct EnvelopeContent;  // in envelope_content.h, for this layer
@@ -38,11 +38,16 @@ class EnvelopeImages {
   /// draw (OffscreenCanvas), Cancelled
   explicit EnvelopeImages(const Scene& scene, const EnvelopeOptions& options = {});
   ~EnvelopeImages();
+  /// Leaves the other one to be destroyed.
   EnvelopeImages(EnvelopeImages&&) noexcept;
 
+  /// Whose images they are.
   const Scene& scene() const;
+  /// Width and height of each, in pixels.
   int size() const;
+  /// How directions map to the image of the hemisphere.
   StereographicView view(Hemisphere hemisphere) const { return {hemisphere, size()}; }
+  /// What drawing took.
   const EnvelopeStatistics& statistics() const;
 
   /// The direction at the pixel's centre.
@@ -56,6 +61,7 @@ class EnvelopeImages {
   /// The contact that is seen at the pixel, recomputed in double precision.
   Contact contact(const EnvelopePixel& p) const;
 
+  /// For this layer.
   const EnvelopeContent& content() const { return *content_; }
 
  private:

@@ -15,13 +15,15 @@ using Color = std::array<std::uint8_t, 3>;
 
 /// An image of three bytes a pixel, rows from the top.
 struct Picture {
-  int width = 0;
-  int height = 0;
-  std::vector<Color> pixels;
+  int width = 0;              ///< columns
+  int height = 0;             ///< rows
+  std::vector<Color> pixels;  ///< row by row
 
+  /// The colour of a pixel. @pre it is in the image
   Color& at(int column, int row) {
     return pixels[std::size_t(row) * std::size_t(width) + std::size_t(column)];
   }
+  /// The colour of a pixel. @pre it is in the image
   const Color& at(int column, int row) const {
     return pixels[std::size_t(row) * std::size_t(width) + std::size_t(column)];
   }
@@ -32,8 +34,8 @@ std::map<int, Color> source_colors(const EnvelopeImages& images);
 
 /// Curves and points on the sphere of directions that are drawn over the images.
 struct EnvelopeOverlay {
-  std::vector<std::vector<dvec3>> curves;
-  std::vector<dvec3> points;
+  std::vector<std::vector<dvec3>> curves;  ///< polylines of unit directions
+  std::vector<dvec3> points;               ///< unit directions
 };
 
 /// One of the images in colours that a person can read: every pixel in its source's colour, over it

@@ -6,8 +6,8 @@ namespace taut {
 
 /// What drawing the images took, and what was met.
 struct EnvelopeStatistics {
-  std::string driver;
-  long triangles = 0;
+  std::string driver;  ///< of the drawing library, with its version
+  long triangles = 0;  ///< drawn, of both images
   /// Pixels decided in double precision: at which two contacts were so close that depths of 32 bits
   /// do not tell, or beside which another element is seen.
   long decided_pixels = 0;
@@ -16,9 +16,9 @@ struct EnvelopeStatistics {
   long filled_pixels = 0;
   /// Pixels without anything. None.
   long empty_pixels = 0;
-  double seconds_triangles = 0;
-  double seconds_draw = 0;
-  double seconds_decide = 0;
+  double seconds_triangles = 0;  ///< making triangles
+  double seconds_draw = 0;       ///< drawing them
+  double seconds_decide = 0;     ///< deciding in double precision
 };
 
 }  // namespace taut

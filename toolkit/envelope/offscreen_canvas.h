@@ -20,7 +20,8 @@ class OffscreenCanvas {
  public:
   /// A corner of a triangle, in the plane (StereographicView).
   struct Vertex {
-    float x, y;
+    float x;  ///< to the right
+    float y;  ///< up
     /// The contact: its value in the direction n of a pixel is point . n.
     float point[3];
     /// Barycentric coordinates of the corner: (1, 0), (0, 1), (0, 0).
@@ -30,20 +31,21 @@ class OffscreenCanvas {
     /// order.
     float bend[3];
     /// Per triangle: what names it.
-    std::uint32_t element, triangle;
+    std::uint32_t element;   ///< per triangle: what names it
+    std::uint32_t triangle;  ///< per triangle: what names it, within the element
   };
   /// What is drawn at a pixel where nothing is.
   static constexpr std::uint32_t nothing = 0xffffffffU;
 
   /// What is drawn at a pixel.
   struct Pixel {
-    std::uint32_t element = nothing;
-    std::uint32_t triangle = nothing;
+    std::uint32_t element = nothing;   ///< as its triangle has it
+    std::uint32_t triangle = nothing;  ///< as its triangle has it
   };
   /// Rows from the top. Depths are (reach - value) / (2 reach), 1 where nothing is drawn.
   struct Layer {
-    std::vector<Pixel> pixels;
-    std::vector<float> depths;
+    std::vector<Pixel> pixels;  ///< row by row
+    std::vector<float> depths;  ///< per pixel
   };
 
   /// @throws BackendError if the library cannot be loaded or started, another driver than llvmpipe

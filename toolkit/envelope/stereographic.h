@@ -20,9 +20,10 @@ inline constexpr std::array<Hemisphere, 2> hemispheres = {Hemisphere::north, Hem
 ///     column = size / 2 - 1/2 + size / 2 * n.x / (1 + pole n.z),
 ///     row    = size / 2 - 1/2 - size / 2 * n.y / (1 + pole n.z).
 struct StereographicView {
-  Hemisphere hemisphere = Hemisphere::north;
-  int size = 1;  ///< width and height, in pixels
+  Hemisphere hemisphere = Hemisphere::north;  ///< that the inscribed circle shows
+  int size = 1;                               ///< width and height, in pixels
 
+  /// 1 in the north image, -1 in the south one.
   double pole() const { return hemisphere == Hemisphere::north ? 1 : -1; }
   /// The direction's place in the plane. @pre n is not the pole from which is projected
   dvec2 plane(const dvec3& n) const { return dvec2(n.x, n.y) / (1 + pole() * n.z); }

@@ -15,7 +15,7 @@ struct CageOptions {
   /// What may be left of the exact limit surface near extraordinary vertices: a bound of the change
   /// of the support function, as a fraction of the diagonal of the cage's box.
   double accuracy = default_cage_accuracy;
-  Progress progress;
+  Progress progress;  ///< told of the share done and of warnings, and asked to stop
 };
 
 /// Adds the limit surface of a control cage to a part: a face for each face of the cage that has a

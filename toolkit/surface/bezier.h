@@ -15,8 +15,9 @@ enum class Direction { u, v };
 ///
 /// Control points are homogeneous, (w x, w y, w z, w) with w > 0; there are degree + 1 of them.
 struct BezierCurve {
-  std::vector<dvec4> points;
+  std::vector<dvec4> points;  ///< homogeneous
 
+  /// -1 without points.
   int degree() const { return static_cast<int>(points.size()) - 1; }
 };
 
@@ -25,12 +26,15 @@ struct BezierCurve {
 /// Control points are homogeneous, (w x, w y, w z, w) with w > 0, and stand along v within along u:
 /// point (i, j) is points[i * (degree_v + 1) + j].
 struct BezierPatch {
-  int degree_u = 0;
-  int degree_v = 0;
-  std::vector<dvec4> points;
+  int degree_u = 0;           ///< along u
+  int degree_v = 0;           ///< along v
+  std::vector<dvec4> points;  ///< homogeneous, (degree_u + 1) (degree_v + 1)
 
+  /// Control point (i, j), 0 <= i <= degree_u, 0 <= j <= degree_v.
   const dvec4& at(int i, int j) const { return points[index(i, j)]; }
+  /// Control point (i, j), likewise.
   dvec4& at(int i, int j) { return points[index(i, j)]; }
+  /// Place of control point (i, j) in the list.
   std::size_t index(int i, int j) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(degree_v + 1) +
            static_cast<std::size_t>(j);
@@ -63,19 +67,29 @@ void validate_points(const std::vector<dvec4>& points, const std::string& name);
 
 /// A point of a curve and its derivatives: to the third.
 struct CurveJet {
-  dvec3 c, ct, ctt, cttt;
+  dvec3 c;     ///< the point
+  dvec3 ct;    ///< dc/dt
+  dvec3 ctt;   ///< d2c/dt2
+  dvec3 cttt;  ///< d3c/dt3
 };
 /// A point of a patch and its derivatives: to the first.
 struct PatchJet1 {
-  dvec3 S, Su, Sv;
+  dvec3 S;   ///< the point
+  dvec3 Su;  ///< dS/du
+  dvec3 Sv;  ///< dS/dv
 };
 /// To the second.
 struct PatchJet2 : PatchJet1 {
-  dvec3 Suu, Suv, Svv;
+  dvec3 Suu;  ///< d2S/du2
+  dvec3 Suv;  ///< d2S/du dv
+  dvec3 Svv;  ///< d2S/dv2
 };
 /// To the third.
 struct PatchJet3 : PatchJet2 {
-  dvec3 Suuu, Suuv, Suvv, Svvv;
+  dvec3 Suuu;  ///< d3S/du3
+  dvec3 Suuv;  ///< d3S/du2 dv
+  dvec3 Suvv;  ///< d3S/du dv2
+  dvec3 Svvv;  ///< d3S/dv3
 };
 
 dvec3 point(const BezierCurve& curve, double t);
@@ -128,8 +142,8 @@ BezierCurve border(const BezierPatch& patch, Side side);
 /// the weight part, separately, over [0, 1]^2. From differences of the control net; rounding
 /// included.
 struct HomogeneousBound {
-  double space = 0;
-  double weight = 0;
+  double space = 0;   ///< of (w x, w y, w z)
+  double weight = 0;  ///< of w
 };
 /// Of d^2/du^2 or d^2/dv^2 over the patch.
 HomogeneousBound second_derivative_bound(const BezierPatch& patch, Direction direction);

@@ -21,14 +21,14 @@ enum class CageBoundary {
 
 /// An edge, by its ends, with its sharpness: smooth at 0, infinitely sharp from infinite_sharpness.
 struct CageCrease {
-  std::array<int, 2> vertices = {0, 0};
-  double sharpness = 0;
+  std::array<int, 2> vertices = {0, 0};  ///< its ends, by index
+  double sharpness = 0;                  ///< not negative
 };
 
 /// A vertex with its sharpness, likewise.
 struct CageCorner {
-  int vertex = 0;
-  double sharpness = 0;
+  int vertex = 0;        ///< by index
+  double sharpness = 0;  ///< not negative
 };
 
 /// Sharpness from which creases and corners never become smooth.
@@ -36,18 +36,18 @@ inline constexpr double infinite_sharpness = 10;
 
 /// The control cage of a subdivision surface, in OpenSubdiv's terms.
 struct ControlCage {
-  CageScheme scheme = CageScheme::catmark;
-  CageBoundary boundary = CageBoundary::edge_and_corner;
+  CageScheme scheme = CageScheme::catmark;                ///< how it is refined
+  CageBoundary boundary = CageBoundary::edge_and_corner;  ///< of the limit surface
   /// Semi-sharp creases lose sharpness as their neighbours along the crease do (Chaikin), rather
   /// than each by one a level.
   bool chaikin = false;
   /// Triangles of a Catmull-Clark cage have weights of their own.
   bool smooth_triangles = false;
-  std::vector<dvec3> points;
+  std::vector<dvec3> points;  ///< of the vertices
   /// Vertex indices, at least three a face.
   std::vector<std::vector<int>> faces;
-  std::vector<CageCrease> creases;
-  std::vector<CageCorner> corners;
+  std::vector<CageCrease> creases;  ///< in any order
+  std::vector<CageCorner> corners;  ///< in any order
   /// Faces that have no surface, though they count for that of their neighbours.
   std::vector<int> holes;
 };

@@ -9,14 +9,15 @@ namespace taut {
 
 /// The grid on which coordinates lie, where it tells how they were rounded.
 struct CoordinateGrid {
+  /// How the coordinates were rounded.
   enum class Kind {
     none,      ///< they are doubles, or were not rounded: 12, 0.5, 2.54
     float32,   ///< each is a float32
     decimals,  ///< each has so many decimals, or fewer
   };
-  Kind kind = Kind::none;
-  int decimals = 0;  ///< kind decimals: at least six
-  double step = 0;   ///< between neighbours on the grid, at the largest coordinate
+  Kind kind = Kind::none;  ///< how they were rounded
+  int decimals = 0;        ///< kind decimals: at least six
+  double step = 0;         ///< between neighbours on the grid, at the largest coordinate
 };
 
 /// Judges by the numbers themselves how the coordinates of a file or an array were rounded, whoever
@@ -32,11 +33,13 @@ class StoredCoordinates {
   /// More are not looked for: powers of ten are doubles up to this one.
   static constexpr int most_decimals = 22;
 
+  /// Counts the coordinates of points.
   void add(std::span<const dvec3> points);
   /// Homogeneous points, whose Euclidean coordinates are the numbers, stored times their weights,
   /// rounded. Weights do not count.
   void add(std::span<const dvec4> points);
 
+  /// What the numbers counted tell.
   CoordinateGrid grid() const;
 
  private:

@@ -26,18 +26,18 @@ enum class BorderKind {
 
 /// One side of a patch.
 struct Border {
-  BorderKind kind = BorderKind::edge;
+  BorderKind kind = BorderKind::edge;  ///< how the patch ends there
   /// smooth, and an edge in which exactly two sides meet: the patch on the other side (the patch
   /// itself where it closes on itself), else -1.
   int neighbor = -1;
-  Side neighbor_side = Side::u0;
+  Side neighbor_side = Side::u0;  ///< the neighbour's side that it meets
   /// The neighbour's free parameter runs the other way.
   bool reversed = false;
   /// edge: the edge and its piece (an index into Part::pieces), else -1; smooth: -1 and its piece
   /// where it is a seam. `piece_reversed`: the piece runs against the border.
   int edge = -1;
-  int piece = -1;
-  bool piece_reversed = false;
+  int piece = -1;               ///< see edge
+  bool piece_reversed = false;  ///< see edge
   /// collapsed onto a vertex (a tip, or the end of an edge): the vertex; -1 where the surface is
   /// smooth there (a pole).
   int vertex = -1;
@@ -46,9 +46,10 @@ struct Border {
 /// Along which parameters a patch is a straight segment for every value of the other one, or
 /// obliquely to them.
 struct RuledLines {
-  bool u = false;
-  bool v = false;
-  bool oblique = false;
+  bool u = false;        ///< for every v
+  bool v = false;        ///< for every u
+  bool oblique = false;  ///< neither along u nor along v
+  /// It is a straight segment some way.
   bool any() const { return u || v || oblique; }
   /// As planes are, whatever their parameters.
   bool both() const { return u && v; }
@@ -56,17 +57,19 @@ struct RuledLines {
 
 /// A Bezier patch of a face with the rectangle of the face's parameters that it covers.
 struct Patch {
-  BezierPatch bezier;
-  Interval u, v;
-  int face = -1;
+  BezierPatch bezier;  ///< over [0, 1]^2
+  Interval u;          ///< of the face's parameter
+  Interval v;          ///< of the face's parameter
+  int face = -1;       ///< of the part
   /// Parameters along which it is a straight segment for every value of the other one, up to
   /// rounding: no point inside of such a segment is extreme. Both of a plane patch, whatever its
   /// parameters.
   bool ruled_u = false;
-  bool ruled_v = false;
+  bool ruled_v = false;  ///< see ruled_u
   /// Neither, but developable: the straight segments run across the parameter lines, or along them
   /// at a speed of their own.
   bool ruled_obliquely = false;
+  /// In any of these ways.
   bool ruled() const { return ruled_u || ruled_v || ruled_obliquely; }
   /// By how much the patch misses being ruled: what the rounding of its control points has left of
   /// one that was. Infinity where nothing tells so, as where they were not rounded.
@@ -97,8 +100,8 @@ struct Patch {
   /// How: its point (u, v) is the other's point (u, v) with the two exchanged if `swapped`, and
   /// then the first replaced by 1 - u if `reversed_u`, the second by 1 - v if `reversed_v`.
   bool swapped = false;
-  bool reversed_u = false;
-  bool reversed_v = false;
+  bool reversed_u = false;  ///< see swapped
+  bool reversed_v = false;  ///< see swapped
   /// Indexed by Side.
   std::array<Border, 4> borders;
   /// Vertex at the corners (u0,v0), (u0,v1), (u1,v0), (u1,v1), or -1 where the corner is none.
@@ -109,25 +112,25 @@ struct Patch {
 /// smooth join along which supporting planes can change from one surface to another, though it is
 /// no edge (Part::connect).
 struct EdgePiece {
-  BezierCurve bezier;
-  Interval t;
-  int edge = -1;  ///< -1: a seam
+  BezierCurve bezier;  ///< over [0, 1]
+  Interval t;          ///< of the edge's parameter
+  int edge = -1;       ///< -1: a seam
   /// How it goes on at t.lower and t.upper: either with a vertex, or straight on (G1) with a piece
   /// of this or another edge, which may run the other way or be this piece itself. The other is -1.
   std::array<int, 2> end_vertex = {-1, -1};
-  std::array<int, 2> end_neighbor = {-1, -1};
+  std::array<int, 2> end_neighbor = {-1, -1};  ///< see end_vertex
 };
 
 /// A closed loop of curves in a face's parameters, each beginning where the one before it ends.
 /// Their control points are (w u, w v, 0, w). The face lies to the left: outer loops run
 /// counter-clockwise, those around holes clockwise.
 struct TrimLoop {
-  std::vector<NurbsCurve> curves;
+  std::vector<NurbsCurve> curves;  ///< in order
 };
 
 /// A Bezier patch of a face that is given by patches.
 struct FacePatch {
-  BezierPatch bezier;
+  BezierPatch bezier;  ///< over [0, 1]^2
   /// Indexed by Side: the surface is known to go on smoothly there (Part::connect).
   std::array<bool, 4> smooth_sides = {};
   bool stand_in = false;  ///< see Patch
@@ -135,9 +138,9 @@ struct FacePatch {
 
 /// What the input calls a face: one surface. Its patches are consecutive in Part::patches.
 struct Face {
-  std::string name;
-  int first_patch = 0;
-  int patch_count = 0;
+  std::string name;     ///< as the input has it, or empty
+  int first_patch = 0;  ///< in Part::patches
+  int patch_count = 0;  ///< of patches
   /// The loops that bound it; none where the whole surface counts.
   std::vector<TrimLoop> loops;
   int cage = -1;  ///< the cage of the part that it belongs to (Part::cages), or none
@@ -145,19 +148,19 @@ struct Face {
 
 /// A control cage and what became of it.
 struct CageOfPart {
-  std::shared_ptr<const ControlCage> cage;
+  std::shared_ptr<const ControlCage> cage;  ///< as it was read
   /// Its faces whose surface is no single polynomial (at extraordinary vertices, semi-sharp creases
   /// and the like), and those of them that were refined since they may touch the hull.
   long irregular_faces = 0;
-  long refined_faces = 0;
+  long refined_faces = 0;  ///< see irregular_faces
 };
 
 /// A curve where the surface is not smooth or ends, or a free curve; its pieces are consecutive in
 /// Part::pieces. Border edges run over [0, number of pieces], free curves over their own domain.
 struct Edge {
-  std::string name;
-  int first_piece = 0;
-  int piece_count = 0;
+  std::string name;     ///< as the input has it, or empty
+  int first_piece = 0;  ///< in Part::pieces
+  int piece_count = 0;  ///< of pieces
   /// Faces that meet in it, ascending, one entry per side: none (a free curve), one (an open
   /// border) or more; the same face twice where it meets itself.
   std::vector<int> faces;
@@ -166,7 +169,7 @@ struct Edge {
 /// Geometry in a frame of its own, placed any number of times by instances.
 class Part {
  public:
-  std::string name;
+  std::string name;  ///< as the input has it, or empty
 
   /// Each call validates what it is given; one that throws changes nothing.
   /// @pre not connected @throws InvalidInput
@@ -176,8 +179,11 @@ class Part {
   /// A face of any Bezier patches, of which the k-th covers [2 k, 2 k + 1] x [0, 1] of its
   /// parameters: patches that follow each other need not meet, so no two have a place in common.
   void add_patches(std::vector<FacePatch> patches, std::string face_name);
+  /// A curve of no face.
   void add_curve(const NurbsCurve& curve, std::string edge_name);
+  /// A free point.
   void add_point(const dvec3& point);
+  /// Free points.
   void add_points(std::span<const dvec3> points);
   /// The mesh's points, used or not, and its polygons, each a face: of a polygon that is not
   /// planar any surface within the convex hull of its corners. Throws also for indices out of range
@@ -214,20 +220,25 @@ class Part {
   /// @pre not connected @throws InvalidInput if the angle is not in [0, pi/2]; Cancelled, after
   /// which the part is of no use
   void connect(double smooth_angle, const Progress& progress = {});
+  /// connect() was called.
   bool connected() const { return connected_; }
 
   /// The surfaces.
   const std::vector<Face>& faces() const { return faces_; }
   /// Corners as indices into vertices(). As sources of contacts they are numbered behind faces().
   const std::vector<std::vector<int>>& polygons() const { return polygons_; }
+  /// Border edges and free curves.
   const std::vector<Edge>& edges() const { return edges_; }
   /// Points that were added, alone or with polygons, behind these the corners of surfaces and the
   /// ends of edges, and last those that stand at the ends of seams alone.
   const std::vector<dvec3>& vertices() const { return vertices_; }
+  /// Vertices at the end of the list that are no sources.
   int seam_vertex_count() const { return seam_vertex_count_; }
+  /// Of the vertices, those that were added, alone or with polygons.
   int point_count() const { return connected_ ? point_count_ : int(vertices_.size()); }
   /// Points and polygons are all there is, so that its hull is a polytope.
   bool polyhedral() const { return patches_.empty() && pieces_.empty(); }
+  /// Of the faces, in their order.
   const std::vector<Patch>& patches() const { return patches_; }
   /// Those of the edges, in their order, and behind them those of seams.
   const std::vector<EdgePiece>& pieces() const { return pieces_; }
@@ -272,14 +283,14 @@ class Part {
 
 /// A part placed by a rigid motion.
 struct Instance {
-  int part = 0;
-  RigidMotion pose;
+  int part = 0;      ///< in Model::parts
+  RigidMotion pose;  ///< where it stands
 };
 
 /// A source of contacts: a face (a surface or polygon), edge or vertex of one instance.
 struct Source {
-  SourceKind kind = SourceKind::face;
-  int instance = 0;
+  SourceKind kind = SourceKind::face;  ///< what it is
+  int instance = 0;                    ///< in Model::instances
   int index = 0;  ///< into the part's faces and then polygons, its edges or its vertices
 };
 
@@ -301,15 +312,20 @@ class Model {
   /// Takes the instances out (those at rest too), to be placed anew.
   void clear_instances();
 
+  /// By index.
   const std::vector<Part>& parts() const { return parts_; }
+  /// In order of their numbers of sources.
   const std::vector<Instance>& instances() const { return instances_; }
   /// The name of the unit of its numbers, "mm"; empty where none is known. Nothing depends on it.
   const std::string& unit() const { return unit_; }
+  /// Sets the name of the unit; converts nothing.
   void set_unit(std::string unit) { unit_ = std::move(unit); }
 
+  /// Of all kinds, over all instances.
   int source_count() const;
   /// @pre 0 <= id < source_count()
   Source source(int id) const;
+  /// The number of a source. @pre the model has it
   int source_id(const Source& source) const;
   /// All parts are: the hull is a polytope.
   bool polyhedral() const;
@@ -321,8 +337,11 @@ class Model {
 
   /// Numbers over all instances.
   int face_count() const;
+  /// Edges, over all instances.
   int edge_count() const;
+  /// Vertices that are sources, over all instances.
   int vertex_count() const;
+  /// Bezier patches of faces, over all instances.
   int patch_count() const;
   /// The largest of all parts (Part::deviation_bound).
   double deviation_bound() const;

@@ -13,38 +13,43 @@ namespace taut {
 /// Control points are homogeneous, as in BezierCurve. The number of knots is that of the points
 /// plus degree plus one, and the curve's domain is [knots[degree], knots[number of points]].
 struct NurbsCurve {
-  int degree = 0;
-  std::vector<double> knots;
-  std::vector<dvec4> points;
+  int degree = 0;             ///< 1 or more
+  std::vector<double> knots;  ///< not decreasing
+  std::vector<dvec4> points;  ///< homogeneous
 
+  /// Where the curve is defined.
   Interval domain() const;
 };
 
 /// A rational tensor-product B-spline surface; control points along v within along u.
 struct NurbsSurface {
-  int degree_u = 0;
-  int degree_v = 0;
-  std::vector<double> knots_u;
-  std::vector<double> knots_v;
-  std::vector<dvec4> points;
+  int degree_u = 0;             ///< 1 or more
+  int degree_v = 0;             ///< 1 or more
+  std::vector<double> knots_u;  ///< not decreasing
+  std::vector<double> knots_v;  ///< not decreasing
+  std::vector<dvec4> points;    ///< homogeneous, count_u() * count_v()
 
+  /// Control points along u.
   int count_u() const { return static_cast<int>(knots_u.size()) - degree_u - 1; }
+  /// Control points along v.
   int count_v() const { return static_cast<int>(knots_v.size()) - degree_v - 1; }
+  /// Where the surface is defined.
   Interval domain_u() const;
+  /// Where the surface is defined.
   Interval domain_v() const;
 };
 
 /// A Bezier curve and the interval of the original parameter that it covers.
 struct CurvePiece {
-  BezierCurve bezier;
-  Interval t;
+  BezierCurve bezier;  ///< over [0, 1]
+  Interval t;          ///< that it covers
 };
 
 /// A Bezier patch and the rectangle of the original parameters that it covers.
 struct PatchPiece {
-  BezierPatch bezier;
-  Interval u;
-  Interval v;
+  BezierPatch bezier;  ///< over [0, 1]^2
+  Interval u;          ///< that it covers
+  Interval v;          ///< that it covers
 };
 
 /// @throws InvalidInput if a degree is out of range, counts do not match, knots decrease or are

@@ -25,8 +25,8 @@ const char* name_of(ResolutionSource source);
 /// The resolution of a model: what is nearer than that may be taken for one. Lengths in model
 /// units.
 struct Resolution {
-  double rho = 0;
-  ResolutionSource source = ResolutionSource::rounding;
+  double rho = 0;                                        ///< the resolution
+  ResolutionSource source = ResolutionSource::rounding;  ///< what it comes from
   /// What the model asks for by itself: more than rho where that is capped.
   double of_model = 0;
   /// The coarsest grid of a part that is placed.
@@ -39,6 +39,7 @@ struct Resolution {
   /// The model's resolution, where places of its hull are told apart at the coarser rho only; or 0.
   double raised_from = 0;
 
+  /// The model asks for a coarser one by itself.
   bool capped() const { return source != ResolutionSource::option && of_model > rho; }
 };
 

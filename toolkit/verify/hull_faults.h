@@ -18,12 +18,14 @@ struct HullFault {
 /// Faults, no more of each check than one wants to read.
 class HullFaults {
  public:
+  /// Adds one, unless its check has found too many already.
   void add(const std::string& check, std::string text) {
     const auto of_check = [&](const HullFault& f) { return f.check == check; };
     if (std::count_if(faults_.begin(), faults_.end(), of_check) < limit) {
       faults_.push_back({check, std::move(text)});
     }
   }
+  /// In the order in which they were added.
   const std::vector<HullFault>& list() const { return faults_; }
 
  private:

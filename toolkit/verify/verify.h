@@ -10,9 +10,9 @@ namespace taut {
 struct VerifyOptions {
   /// Random directions, besides those of all facets and vertices.
   int random_directions = 10'000;
-  unsigned seed = 1;
-  int threads = 0;
-  Progress progress;
+  unsigned seed = 1;  ///< of the random directions
+  int threads = 0;    ///< 0: all
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 /// What verify() found; lengths in model units.
@@ -38,7 +38,7 @@ struct Verification {
   /// max over the directions tried of h_mesh - h_model: how far the mesh reaches outside the
   /// model's hull.
   double mesh_outside = 0;
-  int directions = 0;
+  int directions = 0;  ///< that were tried
 
   /// The mesh is the model's hull within the tolerance. Files that hold rounded coordinates are not
   /// exactly convex; they pass if they are convex within the tolerance too.

@@ -46,7 +46,7 @@ struct HullVerification {
   /// max of h_model - h_document and of h_document - h_model over the directions of all rulings,
   /// some between them, and facets, by support queries.
   double model_outside = 0;
-  double hull_outside = 0;
+  double hull_outside = 0;  ///< see model_outside
   /// Largest h_model(n) - x . n of points x of patches with normal n.
   double patch_outside = 0;
   /// Directions, spread evenly, in which the boundary does not reach as far as the model: the
@@ -54,17 +54,17 @@ struct HullVerification {
   /// patch or near its outline, nor is any place of these as near, or a listed point as high, as
   /// the resolution and the largest bound that the document states.
   int uncovered = 0;
-  int directions = 0;
+  int directions = 0;  ///< that were tried, by all checks
   /// |integral of n dA| over the area, beyond what outlines of facets off their planes, by the
   /// bounds of the faces along them, make of it; and the relative difference of the mean width that
   /// is stated, and of that by integrals over the faces beyond what these may err by, from that by
   /// support queries; of hulls of dimension 3.
   double vector_area = 0;
-  double mean_width_error = 0;
+  double mean_width_error = 0;  ///< see vector_area
   /// How well the integrals over the faces are known, as far as one can tell: volume, area and mean
   /// width, and the vector area.
   double measures_error = 0;
-  double vector_area_error = 0;
+  double vector_area_error = 0;  ///< see measures_error
   /// How well that many queries tell it.
   double mean_width_accuracy = 0;
   /// The document's numbers are finite and its sources are the model's, else nothing was looked at
@@ -73,8 +73,11 @@ struct HullVerification {
   /// All else that is wrong, each with its place.
   std::vector<HullFault> faults;
 
+  /// The boundary is one closed surface without holes.
   bool topological_sphere() const { return euler == 2; }
+  /// The integral of n dA vanishes within the relative accuracy.
   bool closes_up(double relative) const;
+  /// All mean widths agree within the relative accuracy.
   bool has_width(double relative) const;
   /// The largest of all lengths.
   double worst_length() const;

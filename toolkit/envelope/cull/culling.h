@@ -14,8 +14,8 @@ struct CullingOptions {
   /// Finest level of the patches' quadtrees. Levels that the Gauss map does not hold are computed
   /// on the way. 0 .. 20
   int levels = 3;
-  int threads = 0;
-  Progress progress;
+  int threads = 0;    ///< 0: all
+  Progress progress;  ///< told of the share done, and asked to stop
 };
 
 /// The finest level at which so many patches have no more than 16384 cells in all; at most 3.
@@ -31,10 +31,10 @@ enum class CellState {
 
 /// A cell of the final subdivision.
 struct CulledCell {
-  int instance = -1;
-  int patch = -1;
-  PatchCell cell;
-  CellState state = CellState::mixed;
+  int instance = -1;                   ///< of the scene
+  int patch = -1;                      ///< of the instance's part
+  PatchCell cell;                      ///< of the patch
+  CellState state = CellState::mixed;  ///< what is known of it
   /// mixed: with which of its normals it may touch; on: with which it does.
   ContactSigns signs;
   /// Certain: both principal curvatures have one sign all over it, its border included, not zero.
@@ -43,14 +43,14 @@ struct CulledCell {
 
 /// What happened to the cells of one level.
 struct CullingLevel {
-  long visited = 0;
+  long visited = 0;           ///< cells looked at
   long off_by_samples = 0;    ///< some sampled point is above all their possible tangent planes
   long off_by_curvature = 0;  ///< saddles, or curved the wrong way where samples left one sign
-  long on = 0;
-  long ruled = 0;
-  long kept = 0;             ///< mixed: refined, or at the finest level
-  double removed_share = 0;  ///< of all patches' parameter area, off at this level or above
-  double decided_share = 0;  ///< of the same area, off, on or ruled
+  long on = 0;                ///< cells that are on
+  long ruled = 0;             ///< cells of ruled patches
+  long kept = 0;              ///< mixed: refined, or at the finest level
+  double removed_share = 0;   ///< of all patches' parameter area, off at this level or above
+  double decided_share = 0;   ///< of the same area, off, on or ruled
 };
 
 /// What of a scene can touch supporting planes, and what is proven not to.
@@ -59,14 +59,16 @@ struct Culling {
   /// directions first (curves and points are among them), then those of the cells' axes and the
   /// middles of cells that are on.
   std::vector<Sample> samples;
-  std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
-  std::vector<CulledCell> cells;    ///< cover every patch of every distinct instance once
-  std::vector<CullingLevel> levels;
-  long support_queries = 0;
+  std::vector<dvec3> frame_points;   ///< per sample, in the scene's frame
+  std::vector<CulledCell> cells;     ///< cover every patch of every distinct instance once
+  std::vector<CullingLevel> levels;  ///< coarse to fine
+  long support_queries = 0;          ///< that it took
 
   /// Cells visited on all levels, and cells left mixed at the end.
   long visited() const;
+  /// Cells left mixed at the end.
   long mixed() const;
+  /// At the finest level (CullingLevel).
   double removed_share() const { return levels.empty() ? 0 : levels.back().removed_share; }
 };
 

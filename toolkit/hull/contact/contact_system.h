@@ -10,25 +10,30 @@ namespace taut {
 
 /// Contacts that are to support at one common direction, with their jets.
 struct CommonSupport {
-  static constexpr int capacity = 3;
+  static constexpr int capacity = 3;  ///< contacts, at most
 
-  dvec3 n = dvec3(0.0);
-  int count = 0;
-  std::array<Contact, capacity> contact;
-  std::array<ContactJet, capacity> jet;
+  dvec3 n = dvec3(0.0);                   ///< unit, outward
+  int count = 0;                          ///< of contacts
+  std::array<Contact, capacity> contact;  ///< the first `count` count
+  std::array<ContactJet, capacity> jet;   ///< per contact, as last evaluated
   /// The parameter that a contact keeps, 0 or 1: one on a side of its patch beyond which a plane or
   /// a ruled surface goes on stays on the side, where the patch may be so flat across it that the
   /// direction does not tell how far off it is. It supports all the same, or is no solution. One at
   /// the end of an edge may stay at a kink, whatever the slope there.
   std::array<int, capacity> kept = {free, free, free};
-  static constexpr int free = -1;
+  static constexpr int free = -1;  ///< of a contact that keeps none
 
   CommonSupport() = default;
+  /// The ruling's two contacts at its direction, evaluated.
   CommonSupport(const ContactGeometry& geometry, const Ruling& ruling);
+  /// Adds a contact, evaluated. @pre fewer than capacity
   void add(const ContactGeometry& geometry, const Contact& c);
+  /// Brings the jets up to date with the contacts.
   void evaluate(const ContactGeometry& geometry);
 
+  /// From the second contact to the first. @pre two contacts, evaluated
   dvec3 d() const { return jet[0].x - jet[1].x; }
+  /// The first two contacts as a ruling. @pre evaluated
   Ruling ruling() const;
 };
 
@@ -42,8 +47,9 @@ inline constexpr double same_contact = 1e-7;
 
 /// One more equation, linearised: residual + n . dn + sum_i parameter[i] . d(u_i, v_i) = 0.
 struct LinearEquation {
-  double residual = 0;
-  dvec3 n = dvec3(0.0);
+  double residual = 0;   ///< what the equation misses
+  dvec3 n = dvec3(0.0);  ///< gradient by the direction
+  /// Gradient by each contact's parameters.
   std::array<dvec2, CommonSupport::capacity> parameter = {dvec2(0.0), dvec2(0.0), dvec2(0.0)};
 
   /// Of the point of contact i: adds the gradient g . dx.
@@ -55,9 +61,9 @@ LinearEquation distance_equation(const CommonSupport& s, double length);
 
 /// Rates of change along a separating curve of two contacts, of unit length in (n, x_0, x_1).
 struct CurveTangent {
-  dvec3 n = dvec3(0.0);
-  std::array<dvec2, 2> parameter = {dvec2(0.0), dvec2(0.0)};
-  std::array<dvec3, 2> x = {dvec3(0.0), dvec3(0.0)};
+  dvec3 n = dvec3(0.0);                                       ///< rate of the direction
+  std::array<dvec2, 2> parameter = {dvec2(0.0), dvec2(0.0)};  ///< rates of the contacts' parameters
+  std::array<dvec3, 2> x = {dvec3(0.0), dvec3(0.0)};          ///< rates of the contacts' points
 };
 
 /// The system of equations of contacts that support together:
@@ -67,8 +73,10 @@ struct CurveTangent {
 /// contacts trace a curve, three meet in isolated directions.
 class ContactSystem {
  public:
+  /// The geometry must outlive it.
   explicit ContactSystem(const ContactGeometry& geometry) : geometry_(geometry) {}
 
+  /// What the contacts are of.
   const ContactGeometry& geometry() const { return geometry_; }
 
   /// Newton's method from `s`; `equation(s)` gives the equation that two contacts leave open.
@@ -104,6 +112,7 @@ class ContactSystem {
   /// system is singular.
   double uncertainty(const CommonSupport& s) const;
 
+  /// Steps of Newton's method, since construction.
   long iterations() const { return iterations_; }
 
  private:

@@ -12,9 +12,13 @@ class HermitePolynomial {
   /// n and the parameters of a ruling's two contacts.
   using State = std::array<double, 7>;
 
+  /// Adds a node with its value.
   void add(double r, const State& value) { append(r, value, nullptr); }
+  /// Adds a node with its value and slope.
   void add(double r, const State& value, const State& slope);
+  /// At any r. @pre there is a node
   State value(double r) const { return evaluate(r)[0]; }
+  /// The derivative at any r. @pre there is a node
   State slope(double r) const { return evaluate(r)[1]; }
 
  private:

@@ -11,12 +11,14 @@ namespace taut {
 
 /// A ruling that moves along a separating curve, and its derivatives.
 struct MovingRuling {
-  CommonSupport at;
-  dvec3 dn = dvec3(0.0);
+  CommonSupport at;                                    ///< the ruling, evaluated
+  dvec3 dn = dvec3(0.0);                               ///< of the direction
   std::array<dvec2, 2> dp = {dvec2(0.0), dvec2(0.0)};  ///< of the contacts' parameters
   std::array<dvec3, 2> dx = {dvec3(0.0), dvec3(0.0)};  ///< of their points
 
+  /// Sets the derivatives: the tangent's times the speed.
   void move(const CurveTangent& t, double speed);
+  /// All derivatives times the factor.
   void speed_up(double factor);
   /// Derivatives of the points and of the unit normal from those of the parameters and of n.
   void complete();
@@ -44,6 +46,7 @@ class RulingsBetween {
 
   /// The two rulings are the same.
   bool empty() const { return square_ == 0; }
+  /// The two contacts merge at one end.
   bool merges() const { return free_end_ >= 0; }
   /// Rounding moves the contacts of exact rulings, and their derivatives, by more than the
   /// interpolation is off: at one end the two, of one smooth surface or curve, merge or are about

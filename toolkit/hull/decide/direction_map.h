@@ -10,12 +10,13 @@
 
 namespace taut {
 
+/// What a map of directions took.
 struct DirectionMapStatistics {
-  long cells = 0;       ///< decided or split
-  long candidates = 0;  ///< pieces of the model that were looked at
-  long queries = 0;     ///< support queries
-  std::array<long, map_cell_kinds> of_kind = {};
-  int deepest = 0;  ///< level of a cell
+  long cells = 0;                                 ///< decided or split
+  long candidates = 0;                            ///< pieces of the model that were looked at
+  long queries = 0;                               ///< support queries
+  std::array<long, map_cell_kinds> of_kind = {};  ///< cells that are not split, by MapCellKind
+  int deepest = 0;                                ///< level of a cell
 };
 
 /// The upper envelope of support functions over the sphere of directions, cell by cell: which parts
@@ -23,8 +24,8 @@ struct DirectionMapStatistics {
 struct DirectionMap {
   /// The cells that are not split, which cover the sphere; by face, and along a Z-shaped curve.
   std::vector<MapCell> cells;
-  DirectionMapStatistics statistics;
-  double resolution = 0;  ///< at which it is decided, in the scene's frame
+  DirectionMapStatistics statistics;  ///< what it took
+  double resolution = 0;              ///< at which it is decided, in the scene's frame
   /// Patches, with their borders, that are in the convex hull of the rest to within the resolution.
   std::vector<Contact> covered;
   /// Edges' pieces that are, though lines of a ruled patch go on from there to others that are not.
@@ -44,22 +45,25 @@ struct DirectionMap {
   static dvec3 direction(int face, double s, double t);
   /// Where a direction meets the cube.
   struct Place {
-    int face = 0;
-    double s = 0, t = 0;
+    int face = 0;  ///< of the cube, 0 .. 5
+    double s = 0;  ///< in [-1, 1]
+    double t = 0;  ///< in [-1, 1]
   };
+  /// @pre d is not zero
   static Place place(const dvec3& d);
 };
 
+/// When a map of directions is good enough.
 struct DirectionMapOptions {
   /// In the scene's frame: what is nearer than this may be taken for one. > 0
   double resolution = 0;
   /// Levels of cells, cells, and pieces of the model looked at in them, after which what is left
   /// stays undecided.
-  int level_limit = 30;  ///< at most 30
-  long cell_limit = 1'000'000;
-  long candidate_limit = 1'000'000'000;
-  int threads = 0;  ///< 0: as many as the machine has
-  Stop stop;
+  int level_limit = 30;                  ///< at most 30
+  long cell_limit = 1'000'000;           ///< see level_limit
+  long candidate_limit = 1'000'000'000;  ///< see level_limit
+  int threads = 0;                       ///< 0: as many as the machine has
+  Stop stop;                             ///< makes it throw Cancelled
 };
 
 /// Splits cells, level by level, until each is decided or a limit is reached.

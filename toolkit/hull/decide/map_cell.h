@@ -25,10 +25,11 @@ inline constexpr std::size_t map_cell_kinds = 7;
 /// A cell of a quadtree over a face of the cube of directions: [i, i + 1] x [j, j + 1] in units of
 /// 2^(1 - level) from -1.
 struct MapCell {
-  int face = 0;
-  int level = 0;
-  std::uint32_t i = 0, j = 0;
-  MapCellKind kind = MapCellKind::undecided;
+  int face = 0;                               ///< 0 .. 5
+  int level = 0;                              ///< 0: the whole face
+  std::uint32_t i = 0;                        ///< 0 .. 2^level - 1
+  std::uint32_t j = 0;                        ///< 0 .. 2^level - 1
+  MapCellKind kind = MapCellKind::undecided;  ///< what is decided
   /// Boxes of what may touch, in the scene's frame, one for each contact that is told apart, and
   /// behind them those of what is above their convex hull by no more than the resolution, if at
   /// all; none where there was too much to look at.
@@ -40,17 +41,17 @@ struct MapCell {
   /// Which of the contacts, the first like it, each is a translate of, and by how much it is moved:
   /// itself, not at all, if it is like none. Of several contacts only.
   struct Translate {
-    int of = 0;
-    dvec3 by = dvec3(0.0);
+    int of = 0;             ///< a contact, by number
+    dvec3 by = dvec3(0.0);  ///< in the scene's frame
   };
-  std::vector<Translate> translates;
+  std::vector<Translate> translates;  ///< per contact, or none
   /// Where all contacts are of round shapes (RoundShape), and several, these: what touches a plane
   /// across d is as high as center . d + |root d|.
   struct Round {
-    dvec3 center;
-    dmat3 root;
+    dvec3 center;  ///< in the scene's frame
+    dmat3 root;    ///< see Round
   };
-  std::vector<Round> rounds;
+  std::vector<Round> rounds;  ///< per contact, or none
   /// kinds node and facet: normal of the plane that touches all of them, outwards.
   dvec3 normal = dvec3(0.0);
   /// Of these: how far what touches the plane reaches from a line in it, at least.

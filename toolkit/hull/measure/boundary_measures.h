@@ -11,8 +11,8 @@ namespace taut {
 struct MeasureBounds {
   /// Relative to what they bound.
   double volume = 0;
-  double area = 0;
-  double mean_width = 0;
+  double area = 0;        ///< likewise
+  double mean_width = 0;  ///< likewise
   /// Relative to the diagonal of the scene's box.
   double centroid = 0;
   /// Of each entry, relative to the largest one on the diagonal.

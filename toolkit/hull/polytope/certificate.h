@@ -28,8 +28,8 @@ double cone_depth(std::span<const dvec3> directions);
 /// A depth, and the unit vector m over which all directions are at least so high; zero if there are
 /// none.
 struct ConeDepth {
-  double depth = 1;
-  dvec3 axis = dvec3(0.0);
+  double depth = 1;         ///< in [0, 1]
+  dvec3 axis = dvec3(0.0);  ///< that attains it
 };
 /// cone_depth() with the vector that attains it.
 ConeDepth deepest_axis(std::span<const dvec3> directions);

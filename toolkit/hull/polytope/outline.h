@@ -16,6 +16,7 @@ class PlaneView {
   /// @pre a, b, c are not collinear (exactly)
   PlaneView(const dvec3& a, const dvec3& b, const dvec3& c);
 
+  /// The point as it is seen.
   dvec2 operator()(const dvec3& p) const { return {p[first_], p[second_]}; }
 
  private:

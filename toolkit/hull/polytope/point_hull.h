@@ -23,11 +23,11 @@ class PointHull {
  public:
   /// A triangle of the boundary.
   struct Facet {
-    std::array<int, 3> vertex;
+    std::array<int, 3> vertex;  ///< by number, counter-clockwise from outside
     /// neighbor[k] lies across the edge from vertex[k] to vertex[(k + 1) % 3].
     std::array<int, 3> neighbor;
-    PlaneSide side;
-    bool alive;
+    PlaneSide side;  ///< tells which points are above its plane
+    bool alive;      ///< else its place is free
   };
 
   /// An empty hull for points in the box (the box only decides speed). @pre not empty
@@ -51,11 +51,15 @@ class PointHull {
   /// Points, by number, that span the affine hull: the first dimension() + 1.
   const std::array<int, 4>& simplex() const { return simplex_; }
 
+  /// All that were added, by number.
   const std::vector<dvec3>& points() const { return points_; }
+  /// The point with this number.
   const dvec3& point(int i) const { return points_[std::size_t(i)]; }
   /// Facets by number; the dead among them are free places, which later facets take.
   const std::vector<Facet>& facets() const { return facets_; }
+  /// The facet with this number.
   const Facet& facet(int i) const { return facets_[std::size_t(i)]; }
+  /// Facets that are alive.
   int facet_count() const { return alive_; }
   /// The facets that the last insert() made, around the new point.
   const std::vector<int>& created() const { return created_; }
@@ -66,8 +70,8 @@ class PointHull {
   /// The boundary with coplanar facets joined to convex polygons and with extreme points only, by
   /// exact predicates. `facets[k]` is a facet within polygon k.
   struct Polygons {
-    std::vector<std::vector<int>> loops;
-    std::vector<int> facets;
+    std::vector<std::vector<int>> loops;  ///< points by number, counter-clockwise from outside
+    std::vector<int> facets;              ///< per loop
   };
   /// @throws Cancelled
   Polygons merged_polygons(const Progress& progress = {}) const;

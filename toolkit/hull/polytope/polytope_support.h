@@ -15,6 +15,7 @@ class PolytopeSupport {
   /// A point of the hull, by number, at which p . n is largest to within rounding. `start`: a
   /// vertex near it; makes the climb short.
   int operator()(const dvec3& n, int start) const;
+  /// The same from a vertex of its own choice.
   int operator()(const dvec3& n) const { return (*this)(n, start_); }
 
   /// Calls visit with every vertex that an edge joins with this one.

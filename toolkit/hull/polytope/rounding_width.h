@@ -10,7 +10,7 @@ namespace taut {
 /// How far rounding may have moved points: half the axes, along those of the coordinates, of an
 /// ellipsoid about each.
 struct RoundingWidth {
-  dvec3 half_axes{0.0};
+  dvec3 half_axes{0.0};  ///< along x, y and z, not negative
 
   RoundingWidth() = default;
   /// The same in all directions.
@@ -18,6 +18,7 @@ struct RoundingWidth {
 
   /// In the direction of a unit vector.
   double along(const dvec3& n) const { return glm::length(half_axes * n); }
+  /// In any direction.
   double largest() const { return std::max({half_axes.x, half_axes.y, half_axes.z}); }
 };
 

@@ -17,8 +17,8 @@ enum class HullKind { empty = -1, point, segment, planar, solid };
 
 /// A convex hull with its certificate.
 struct Hull {
-  HullKind kind = HullKind::empty;
-  HullMesh mesh;
+  HullKind kind = HullKind::empty;  ///< of which dimension it is
+  HullMesh mesh;                    ///< labelled; in model units
   /// Proven upper bound of the Hausdorff distance between the mesh and the true convex hull of the
   /// model as it stands, in model units, rounding included. What patches that stand for other
   /// surfaces miss (Model::deviation_bound, of control cages) comes on top.
@@ -31,8 +31,9 @@ struct Hull {
   long points_left_out = 0;
   /// The exact boundary, where the method finds it.
   std::shared_ptr<const HullBoundary> boundary;
-  HullStatistics statistics;
+  HullStatistics statistics;  ///< what it took
 
+  /// -1 if empty, else 0 to 3.
   int dimension() const { return static_cast<int>(kind); }
 };
 
@@ -40,10 +41,11 @@ struct Hull {
 /// how far it came (no farther than the diagonal where nothing could be certified).
 class HullNotConverged : public NotConverged {
  public:
+  /// The message and the hull that was found.
   HullNotConverged(const std::string& message, Hull hull)
       : NotConverged(message, hull.distance_bound),
         best(std::make_shared<const Hull>(std::move(hull))) {}
-  std::shared_ptr<const Hull> best;
+  std::shared_ptr<const Hull> best;  ///< see HullNotConverged
 };
 
 /// A limit of time or memory was met (HullOptions::max_seconds, max_memory); `best` is the best
@@ -51,9 +53,10 @@ class HullNotConverged : public NotConverged {
 /// where it has one, is closed.
 class HullLimitExceeded : public LimitExceeded {
  public:
+  /// The message, which names the limit, and the hull that was found.
   HullLimitExceeded(const std::string& message, Hull hull)
       : LimitExceeded(message), best(std::make_shared<const Hull>(std::move(hull))) {}
-  std::shared_ptr<const Hull> best;
+  std::shared_ptr<const Hull> best;  ///< see HullLimitExceeded
 };
 
 }  // namespace taut

@@ -13,8 +13,8 @@ namespace taut {
 
 /// A direction at which two contacts support at once, and the segment between them.
 struct Ruling {
-  dvec3 n = dvec3(0.0);  ///< unit, outward
-  std::array<Contact, 2> contact;
+  dvec3 n = dvec3(0.0);                                   ///< unit, outward
+  std::array<Contact, 2> contact;                         ///< the two that support
   std::array<dvec3, 2> point = {dvec3(0.0), dvec3(0.0)};  ///< in the scene's frame
 };
 
@@ -36,8 +36,8 @@ struct ArcPiece {
 /// piece has the n of the first of its first). Consecutive pieces share n and points where they
 /// meet, to within their bounds, not the element in which one of the contacts is expressed.
 struct SeparatingArc {
-  std::vector<ArcPiece> pieces;
-  bool closed = false;
+  std::vector<ArcPiece> pieces;  ///< in order
+  bool closed = false;           ///< it has no ends
   /// The facet (number of its face in HullBoundary) in which the curve begins and ends; -1: the two
   /// contacts merge there in a free end, at which the last ruling has length zero.
   std::array<int, 2> facet = {-1, -1};
@@ -46,17 +46,17 @@ struct SeparatingArc {
 /// A stretch of consecutive pieces of an arc; of a closed arc it may run over its end. @c count
 /// pieces, the first is @c first, modulo their number.
 struct ArcRange {
-  int arc = -1;
-  int first = 0;
-  int count = 0;
+  int arc = -1;   ///< of the boundary's arcs; -1: none
+  int first = 0;  ///< of its pieces
+  int count = 0;  ///< of pieces
 };
 
 /// A stretch of a piece of an edge, from one of its parameters to another (from > to: backwards).
 struct EdgeStretch {
-  int instance = -1;
-  int piece = -1;  ///< -1: none
-  double from = 0;
-  double to = 0;
+  int instance = -1;  ///< of the model
+  int piece = -1;     ///< -1: none
+  double from = 0;    ///< parameter in [0, 1] where it begins
+  double to = 0;      ///< parameter in [0, 1] where it ends
 
   /// The edge's point with that parameter. @pre there is a piece
   Contact at(double t) const { return {instance, SourceKind::edge, piece, t, 0}; }
@@ -72,14 +72,14 @@ enum class HullCurveKind {
 /// A curve of the hull's boundary: a maximal one along which its kind and its two faces stay the
 /// same.
 struct HullCurve {
-  HullCurveKind kind = HullCurveKind::ruling;
+  HullCurveKind kind = HullCurveKind::ruling;  ///< what it is
   /// Numbers of faces: to the left and to the right of the curve, seen from outside. May be equal.
   /// -1: none; of a planar hull, always to the right.
   std::array<int, 2> faces = {-1, -1};
   /// Points along it from its beginning to its end, in the scene's frame; the first one again at
   /// the end of a closed curve. Dense enough that the curve is smooth between them.
   std::vector<dvec3> points;
-  bool closed = false;
+  bool closed = false;  ///< without ends
   /// edge: the model's edge (Model::source). Else -1.
   int source = -1;
 };
@@ -90,21 +90,21 @@ struct TrimStretch {
   /// The piece and which of its contacts lies in the patch, `reversed` if passed backwards; arc -1:
   /// a stretch of the border.
   int arc = -1;
-  int piece = -1;
-  int contact = 0;
-  bool reversed = false;
+  int piece = -1;         ///< of the arc
+  int contact = 0;        ///< 0 or 1
+  bool reversed = false;  ///< passed against the arc
   /// The border's free parameter, from .. to (from > to: backwards).
   Side side = Side::u0;
-  double from = 0;
-  double to = 0;
+  double from = 0;  ///< in [0, 1]
+  double to = 0;    ///< in [0, 1]
   /// The hull's curve that it is part of; -1 on seams within a source face and collapsed sides.
   int curve = -1;
 };
 
 /// A connected part of a Bezier patch that lies on the hull, [0, 1]^2 in its parameters at most.
 struct PatchRegion {
-  int instance = -1;
-  int patch = -1;
+  int instance = -1;  ///< of the model
+  int patch = -1;     ///< of the instance's part
   /// The outward normal is along sign * (Su x Sv).
   int sign = 1;
   /// Closed loops of stretches, each beginning where the one before it ends, with the region to the
@@ -121,7 +121,7 @@ struct StretchPlace {
 
 /// A face of the hull's boundary.
 struct HullFace {
-  FaceKind kind = FaceKind::facet;
+  FaceKind kind = FaceKind::facet;  ///< what it is
   /// Source that it lies on, -1 if none.
   int source = -1;
   /// patch: its parts on Bezier patches.
@@ -139,11 +139,11 @@ struct HullFace {
   /// facet: the supporting plane x . n = offset, in the scene's frame, and the contacts in which
   /// its sides meet, counter-clockwise from outside, with their points.
   dvec3 n = dvec3(0.0);
-  double offset = 0;
+  double offset = 0;  ///< see n
   /// As ArcPiece::tolerant, of its places with the normals there.
   double tolerant = 0;
-  std::vector<Contact> contacts;
-  std::vector<dvec3> points;
+  std::vector<Contact> contacts;  ///< see n
+  std::vector<dvec3> points;      ///< per contact, in the scene's frame
   /// facet: per contact the side from it to the next one (the same one again where there is but
   /// one): the stretch of an edge that it runs along, none where it is straight. Empty where all
   /// are straight.
@@ -152,8 +152,8 @@ struct HullFace {
 
 /// A spot that could not be resolved, with the reason.
 struct Unresolved {
-  dvec3 n = dvec3(0.0);
-  const char* reason = "";
+  dvec3 n = dvec3(0.0);     ///< unit; zero where the reason is of all
+  const char* reason = "";  ///< for a person
 };
 
 /// The exact boundary of a convex hull: trimmed patches of the model, developable scrolls and flat
@@ -164,14 +164,15 @@ struct HullBoundary {
   SceneFrame frame;
   /// Of the hull: 3, or 2 where its one face is a side of a planar one.
   int dimension = 3;
-  std::vector<SeparatingArc> arcs;
-  std::vector<HullFace> faces;
-  std::vector<HullCurve> curves;
-  std::vector<Unresolved> unresolved;
+  std::vector<SeparatingArc> arcs;     ///< that scrolls and patches refer to
+  std::vector<HullFace> faces;         ///< by number
+  std::vector<HullCurve> curves;       ///< by number
+  std::vector<Unresolved> unresolved;  ///< none of a complete boundary
   /// How far the support function of the true hull may exceed that of the faces' points, at most,
   /// in the scene's frame: the resolution, or of a mesh its distance. 0: by no more than rounding.
   double gap = 0;
 
+  /// Faces of a kind.
   int count(FaceKind kind) const {
     int n = 0;
     for (const HullFace& face : faces) n += face.kind == kind ? 1 : 0;

@@ -30,36 +30,38 @@ struct HullDocument {
   };
   /// A face, edge or vertex of the model that the hull touches.
   struct Source {
-    int id = -1;  ///< Model::source
-    SourceKind kind = SourceKind::face;
-    std::string file;  ///< empty if not known
-    std::string name;
+    int id = -1;                         ///< Model::source
+    SourceKind kind = SourceKind::face;  ///< what it is
+    std::string file;                    ///< empty if not known
+    std::string name;                    ///< as the model has it, or empty
     /// In the order of the model's patches; none of a polygon.
     std::vector<Patch> patches;
   };
   /// A place on a source.
   struct Contact {
-    int source = -1;
+    int source = -1;  ///< its place in the sources
     /// The source's own parameters, as many as its domain has.
     std::vector<double> uv;
-    dvec3 p = dvec3(0.0);
+    dvec3 p = dvec3(0.0);  ///< in model coordinates
   };
   /// A segment that touches the model with both ends.
   struct Ruling {
-    dvec3 n = dvec3(0.0);
-    Contact a, b;
+    dvec3 n = dvec3(0.0);  ///< unit, outward
+    Contact a;             ///< where the scroll's first side is
+    Contact b;             ///< where its second side is
   };
   /// A curve within one of a source's Bezier patches, along which the source's parameters run
   /// straight from one place to another; source -1: a segment.
   struct Side {
-    int source = -1;
-    std::vector<double> from, to;
+    int source = -1;           ///< its place in the sources
+    std::vector<double> from;  ///< parameters where it begins
+    std::vector<double> to;    ///< parameters where it ends
   };
   /// A curve's number, and +1 if passed along it, -1 if against it.
   using DirectedCurve = std::pair<int, int>;
   /// An outline of a patch, seen from outside with the patch to the left.
   struct Loop {
-    std::vector<DirectedCurve> curves;
+    std::vector<DirectedCurve> curves;  ///< in order, each going on from the one before
     /// Points along it in the source's parameters, the first one not again. Where it passes a seam
     /// of the source, they go on with the parameters of the other side.
     std::vector<dvec2> uv;
@@ -74,15 +76,15 @@ struct HullDocument {
   };
   /// A patch, scroll or facet; what is of one kind alone says so.
   struct Face {
-    FaceKind kind = FaceKind::facet;
-    int source = -1;  ///< that it lies on, -1 if none
+    FaceKind kind = FaceKind::facet;  ///< what it is
+    int source = -1;                  ///< that it lies on, -1 if none
     /// How far its places are below the supporting planes with the normals there, at most, in model
     /// units; 0: no more than rounding makes them, and contacts are no farther than the resolution
     /// from where the planes touch.
     double tolerant = 0;
     /// patch: its outlines; none of a patch that is the whole hull.
     std::vector<Loop> loops;
-    std::vector<Region> regions;
+    std::vector<Region> regions;  ///< patch: what it is made of
     /// scroll: the curves along the contacts a and b, in order; none along a vertex.
     std::array<std::vector<int>, 2> curves;
     /// scroll: in order, dense enough to step from one to the next; of a closed one the last has
@@ -92,7 +94,7 @@ struct HullDocument {
     std::vector<Ruling> rulings;
     /// facet: the plane x . normal = offset.
     dvec3 normal = dvec3(0.0);
-    double offset = 0;
+    double offset = 0;  ///< facet: see normal
     /// facet: counter-clockwise from outside.
     std::vector<Contact> contacts;
     /// facet: per contact the side from it to the next one (the same one again where there is but
@@ -107,7 +109,7 @@ struct HullDocument {
   };
   /// What separates two faces.
   struct Curve {
-    HullCurveKind kind = HullCurveKind::ruling;
+    HullCurveKind kind = HullCurveKind::ruling;  ///< what it is
     /// To the left and to the right, seen from outside; -1 where a face is missing, and to the
     /// right of all curves of a planar hull, whose one face is a facet, one side of it.
     std::array<int, 2> faces = {-1, -1};
@@ -116,11 +118,11 @@ struct HullDocument {
     std::vector<dvec3> points;
   };
 
-  double diagonal = 0;  ///< of the model's box
-  int dimension = 3;
+  double diagonal = 0;          ///< of the model's box
+  int dimension = 3;            ///< of the hull, 0 to 3
   std::vector<Source> sources;  ///< those that occur, ascending ids
-  std::vector<Face> faces;
-  std::vector<Curve> curves;
+  std::vector<Face> faces;      ///< by their ids
+  std::vector<Curve> curves;    ///< by their ids
   /// A JSON object as text, or empty.
   std::string report;
 };

@@ -13,19 +13,22 @@ namespace taut {
 
 /// Traits of HullMesh: double coordinates, and the origin of every vertex and face.
 struct HullMeshTraits : public OpenMesh::DefaultTraitsDouble {
+  /// Vertices have normals that support there.
   VertexAttributes(OpenMesh::Attributes::Normal);
 
+  /// What is known of a vertex.
   VertexTraits {
    public:
     /// Source of the contact (Model::source), -1 if unknown.
     int source = -1;
     /// Parameters on the source: (u, v) of a face, (t, 0) of an edge, (0, 0) of a vertex.
     double u = 0;
-    double v = 0;
+    double v = 0;  ///< see u
     /// Proven upper bound of the distance of the true hull from the mesh about this vertex.
     float quality = 0;
   };
 
+  /// What is known of a face.
   FaceTraits {
    public:
     FaceKind kind = FaceKind::facet;
@@ -35,6 +38,7 @@ struct HullMeshTraits : public OpenMesh::DefaultTraitsDouble {
     int hull_face = -1;
   };
 
+  /// What is known of an edge.
   EdgeTraits {
    public:
     /// The edge separates two hull faces.

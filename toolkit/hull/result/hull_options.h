@@ -31,8 +31,8 @@ struct HullOptions {
   /// there is none as yet. To finish and label it takes some more. None: no limit. Where results
   /// come in time they do not depend on it; those of a limit that is met do.
   std::optional<double> max_seconds = std::nullopt;
-  std::optional<std::size_t> max_memory = std::nullopt;
-  Progress progress = {};
+  std::optional<std::size_t> max_memory = std::nullopt;  ///< see max_seconds
+  Progress progress = {};  ///< told of the share done, and asked to stop
 };
 
 /// The tolerance that the options ask for, in model units; positive where the diagonal is, but 0

@@ -13,18 +13,22 @@ namespace taut {
 /// each has its place.
 class HullSources {
  public:
+  /// Both must outlive it; `files`: per part of the model, the file that it is from.
   HullSources(const Model& model, const std::vector<std::string>& files)
       : model_(model), files_(files) {}
 
+  /// Of a source; -1 of none.
   void add(int id) {
     if (id >= 0) ids_.insert(id);
   }
+  /// When all are added, before the rest is asked for.
   void finish() { order_.assign(ids_.begin(), ids_.end()); }
   /// The place of the source with this id; -1 of none.
   int place(int id) const {
     if (id < 0) return -1;
     return int(std::lower_bound(order_.begin(), order_.end(), id) - order_.begin());
   }
+  /// All that were added, in order of their ids.
   std::vector<HullDocument::Source> make() const {
     std::vector<HullDocument::Source> sources;
     for (const int id : order_) sources.push_back(source(id));

@@ -6,7 +6,8 @@ namespace taut {
 
 /// Volume, area, centroid and inertia of the solid that a closed mesh bounds, in model units.
 struct Measures {
-  double volume = 0;
+  double volume = 0;  ///< in model units, cubed
+  /// Of the surface, in model units, squared; of a planar hull's document of one side.
   double area = 0;
   /// Of the solid; of the surface where the volume is zero.
   dvec3 centroid = dvec3(0.0);

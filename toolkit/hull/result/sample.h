@@ -6,8 +6,8 @@ namespace taut {
 
 /// A point sampled on the hull: the direction that it supports, and where it lies on the model.
 struct Sample {
-  dvec3 n;
-  Contact contact;
+  dvec3 n;          ///< unit
+  Contact contact;  ///< that supports there
 };
 
 }  // namespace taut

@@ -20,9 +20,9 @@ HullMesh bare_mesh(const PointHull& hull, double scale, PointHull::Polygons poly
 
 /// Where a face of a mesh lies.
 struct FaceLabel {
-  FaceKind kind = FaceKind::facet;
-  int source = -1;
-  int hull_face = -1;
+  FaceKind kind = FaceKind::facet;  ///< of the hull's face
+  int source = -1;                  ///< Model::source, -1 where it spans between several
+  int hull_face = -1;               ///< number of the hull's face
 };
 
 /// What is known of the faces of a polytope's mesh.

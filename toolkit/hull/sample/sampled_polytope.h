@@ -17,8 +17,8 @@ class EdgeConstraints {
  public:
   /// A point that bisects an edge.
   struct Middle {
-    Sample sample;
-    dvec3 point;  ///< in model coordinates
+    Sample sample;  ///< its direction and contact
+    dvec3 point;    ///< in model coordinates
   };
 
   virtual ~EdgeConstraints() = default;
@@ -45,7 +45,7 @@ struct SampledPolytope {
   const char* failure = nullptr;
   /// The limit that was met before it was (Limits::text), if so.
   std::optional<std::string> limit;
-  HullStatistics statistics;
+  HullStatistics statistics;  ///< what it took
 };
 
 /// Grows the hull of samples by support points, until its distance from the scene's hull is

@@ -13,7 +13,7 @@ namespace taut {
 
 /// Support points from which the sampling of a scene starts, none twice.
 struct SampledStart {
-  std::vector<Sample> samples;
+  std::vector<Sample> samples;      ///< directions and contacts
   std::vector<dvec3> points;        ///< per sample, in model coordinates
   std::vector<dvec3> frame_points;  ///< per sample, in the scene's frame
   /// What the scene spans, by the samples; what is thinner than tolerances.h tells, or than asked,
@@ -22,7 +22,7 @@ struct SampledStart {
   /// Of a span of a plane: the middle between the heights x . span.normal that the scene reaches in
   /// the scene's frame, and half of how far these are apart if that is more than rounding.
   double middle = 0;
-  double half_width = 0;
+  double half_width = 0;  ///< see middle
 };
 
 /// Below which distances in the scene's frame mean nothing (tolerances.h).

@@ -8,14 +8,14 @@ namespace taut {
 
 /// A file format by its extension.
 struct Format {
-  std::string extension;    ///< with the dot, lower case: ".ply"
-  std::string description;  ///< a few words
-  bool reads_model = false;
-  bool reads_mesh = false;
-  bool writes_mesh = false;
+  std::string extension;     ///< with the dot, lower case: ".ply"
+  std::string description;   ///< a few words
+  bool reads_model = false;  ///< models of it are read
+  bool reads_mesh = false;   ///< meshes of it are read as hulls to verify
+  bool writes_mesh = false;  ///< meshes of hulls are written
   /// Hulls with what else is known of them: the exact faces, or layers of several files.
   bool reads_hull = false;
-  bool writes_hull = false;
+  bool writes_hull = false;  ///< hulls with what else is known of them are written
 };
 
 /// All formats of this library, sorted by extension.
