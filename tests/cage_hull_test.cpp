@@ -479,6 +479,23 @@ TEST(CageHull, OfBoxesWithFlatSidesUpToSharpEdges) {
   }
 }
 
+/// The same of a rim of four divisions, turned and rounded to floats: sides that were cylinders,
+/// with lines across the parameters beside the corners, are bent by rounding.
+TEST(CageHull, OfABoxWithASharpRimOfFloats) {
+  ControlCage cage = box_cage({4});
+  make_sharp(cage, [](const dvec3& x) { return x.z == 1; });
+  for (dvec3& x : cage.points) {
+    x = skew_rotation() * x;
+    x = {double(float(x.x)), double(float(x.y)), double(float(x.z))};
+  }
+  const Model model = cage_model(cage);
+  const Hull hull = whole_hull(model, "rim");
+  ASSERT_TRUE(hull.boundary);
+  expect_verified(model, hull, "rim");
+  EXPECT_EQ(hull.boundary->count(FaceKind::patch), 12);
+  EXPECT_EQ(hull.boundary->count(FaceKind::facet), 6);
+}
+
 /// The curve of an apex and the sides around runs through the flat middles of the sides; of four
 /// apexes, ends there, where two of them are in one plane with a middle.
 TEST(CageHull, OfBoxesWithApexes) {

@@ -48,6 +48,38 @@ double side_reach(const DocumentGeometry& geometry, const HullDocument::Side& si
   return best;
 }
 
+/// Asks the model about claims, one after the other.
+class ClaimJudge {
+ public:
+  ClaimJudge(const Scene& scene, const Stop& stop) : frame_(scene.frame()), query_(scene, stop) {}
+
+  /// Of what has a bound first without the insides of lines that are bent by a small share of it,
+  /// along which planes touch for long, and are slow to be told: if that proves the claim, it
+  /// holds.
+  SupportGaps operator()(const SupportClaim& claim) {
+    if (!(glm::length(claim.n) > 0.5)) return {infinity, infinity};
+    const double off = tie_share * frame_.length_to_frame(claim.bound);
+    if (off > 0) {
+      const SupportGaps gaps = gaps_of(claim, off);
+      if (gaps.above <= 0 && gaps.below <= frame_.length_to_model(support_slack)) return gaps;
+    }
+    return gaps_of(claim, 0);
+  }
+
+ private:
+  SupportGaps gaps_of(const SupportClaim& claim, double off) {
+    query_.leave_out_lines(off);
+    const Support s = query_(claim.n, near_);
+    near_ = s.contact;
+    return {frame_.length_to_model(s.highest()) - claim.h - claim.bound,
+            claim.h - frame_.length_to_model(s.h)};
+  }
+
+  const SceneFrame& frame_;
+  SupportQuery query_;
+  Contact near_;
+};
+
 }  // namespace
 
 std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int count,
@@ -124,27 +156,17 @@ std::vector<SupportClaim> claims_between(const DocumentGeometry& geometry,
 
 SupportGaps support_gaps(const std::vector<SupportClaim>& claims, const Scene& scene,
                          const VerifyOptions& options) {
-  const SceneFrame& frame = scene.frame();
-  std::vector<double> gap(claims.size());
+  std::vector<SupportGaps> gaps(claims.size());
   constexpr std::size_t grain = 64;
   parallel_for(claims.size(), grain, options.threads, [&](std::size_t begin, std::size_t end) {
     options.progress.check();
-    SupportQuery query(scene, options.progress.stop);
-    Contact near;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!(glm::length(claims[i].n) > 0.5)) {
-        gap[i] = infinity;
-        continue;
-      }
-      const Support s = query(claims[i].n, near);
-      near = s.contact;
-      gap[i] = frame.length_to_model(s.h) - claims[i].h;
-    }
+    ClaimJudge judge(scene, options.progress.stop);
+    for (std::size_t i = begin; i < end; ++i) gaps[i] = judge(claims[i]);
   });
   SupportGaps worst;
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    raise(worst.above, gap[i] - claims[i].bound);
-    raise(worst.below, -gap[i]);
+  for (const SupportGaps& gap : gaps) {
+    raise(worst.above, gap.above);
+    raise(worst.below, gap.below);
   }
   return worst;
 }
