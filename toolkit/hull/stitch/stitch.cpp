@@ -381,6 +381,14 @@ void Stitcher::make_creases() {
     }
     (edge >= 0 ? edges : inside).push_back(std::move(e));
   }
+  const auto is_patch = [&](int face) {
+    return face >= 0 && boundary_.faces[std::size_t(face)].kind == FaceKind::patch;
+  };
+  for (const CurveElement& e : inside) {
+    if (is_patch(e.left) == is_patch(e.right)) {
+      fail(unit(e.points.front()), "a smooth surface is left on both sides of a curve, or none");
+    }
+  }
   add_chains(HullCurveKind::edge, edges);
   add_chains(HullCurveKind::bitangent, inside);
 }
