@@ -4,6 +4,7 @@
 
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/sample/vertex_normals.h"
 
 namespace taut {
 namespace {
@@ -118,6 +119,7 @@ class SurfaceWalk {
 void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
                     const std::vector<double>& bounds, const std::vector<int>& point_of,
                     HullMesh& mesh, const Progress& progress) {
+  VertexNormals normals(scene, progress.stop);
   for (const auto v : mesh.vertices()) {
     progress.check();
     const auto p = std::size_t(point_of[std::size_t(v.idx())]);
@@ -127,14 +129,8 @@ void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
     data.u = c.u;
     data.v = c.v;
     data.quality = float_above(bounds[p]);
-    if (c.kind == SourceKind::face) {
-      mesh.set_normal(v, {samples[p].n.x, samples[p].n.y, samples[p].n.z});
-    } else {
-      // On a crease many directions support; which of them found the point says nothing.
-      HullMesh::Normal normal;
-      mesh.calc_vertex_normal_correct(v, normal);
-      mesh.set_normal(v, normal.normalized());
-    }
+    const dvec3 n = normals(mesh, v, samples[p]);
+    mesh.set_normal(v, {n.x, n.y, n.z});
   }
 }
 
