@@ -71,18 +71,40 @@ TEST(ConstrainedEdges, PiecesEndInMiddles) {
   ASSERT_TRUE(over.middle(0, 1));
   expect_on_circle(*over.middle(0, 1), 0, 1);
   over.bisect(0, 1, 2);
-  ASSERT_TRUE(over.middle(0, 2));
-  expect_on_circle(*over.middle(0, 2), 0, 15.5 / 16);
-  ASSERT_TRUE(over.middle(2, 1));
-  expect_on_circle(*over.middle(2, 1), 0, 1 + 1.0 / 16);
-  const ConstrainedEdges from_end =
-      scroll.edges({{0, 1, 1, scroll.place(0, 16), scroll.place(1, 1)}}, 1e-6);
-  ASSERT_TRUE(from_end.middle(0, 1));
-  expect_on_circle(*from_end.middle(0, 1), 1, 1 + 0.5 / 16);
-  const ConstrainedEdges to_begin =
-      scroll.edges({{0, 1, 1, scroll.place(0, 15), scroll.place(1, 0)}}, 1e-6);
-  ASSERT_TRUE(to_begin.middle(0, 1));
-  expect_on_circle(*to_begin.middle(0, 1), 1, 15.5 / 16);
+  const auto quarters = [&](int a, int b) {
+    const dvec3 n = over.middle(a, b).value().sample.n;
+    return std::atan2(n.y, n.x) / (pi / 2);
+  };
+  EXPECT_GT(quarters(0, 2), 15.0 / 16);
+  EXPECT_LT(quarters(0, 2), 1);
+  EXPECT_GT(quarters(2, 1), 1);
+  EXPECT_LT(quarters(2, 1), 1 + 2.0 / 16);
+}
+
+/// At the end of a piece other curves may begin: of chords from there parts are as long as a power
+/// of two, in the root of the second fundamental form.
+TEST(ConstrainedEdges, FromEndsLengthsArePowersOfTwo) {
+  const ScrollChords scroll;
+  const double c = std::sqrt(1 - 1.0 / 36);
+  for (const int sphere : {0, 1}) {
+    const double radius = sphere == 0 ? 1 : 0.5;
+    const dvec3 n(0, c, 1.0 / 6);  // where the second piece begins
+    const double scale = scroll.known.scene.frame().scale;
+    for (const auto& [from, to] : {std::pair(scroll.place(0, 16), scroll.place(1, 1)),
+                                   std::pair(scroll.place(0, 15), scroll.place(1, 0))}) {
+      const ConstrainedEdges edges = scroll.edges({{0, 1, sphere, from, to}}, 1e-6);
+      const std::optional<EdgeConstraints::Middle> middle = edges.middle(0, 1);
+      ASSERT_TRUE(middle);
+      const dvec3 m = middle->sample.n;
+      EXPECT_NEAR(m.z, 1.0 / 6, 1e-12);
+      EXPECT_LT(glm::distance(middle->point, radius * m + dvec3(0, 0, 3 * sphere)), 1e-12);
+      const double turned = glm::distance(m, n) / (2 * c * std::sin(pi / 64));
+      EXPECT_GT(turned, 0.3);
+      EXPECT_LT(turned, 0.75);
+      const double power = std::log2(std::sqrt(radius * scale) * glm::distance(m, n));
+      EXPECT_NEAR(power, std::round(power), 1e-6);
+    }
+  }
 }
 
 /// Lengths are model units, and the scene's frame has others.

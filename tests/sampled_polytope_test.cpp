@@ -113,6 +113,9 @@ struct EquatorChords : EdgeConstraints {
     const Support s = query(between(a, b));
     return Middle{{between(a, b), s.contact}, frame.to_model(s.point)};
   }
+  std::vector<std::pair<int, int>> wanted() const override {
+    return {chords.begin(), chords.end()};
+  }
   void bisect(int a, int b, int middle) override {
     EXPECT_EQ(chords.erase(std::minmax(a, b)), 1U);
     points[middle] = between(a, b);
@@ -124,6 +127,41 @@ struct EquatorChords : EdgeConstraints {
   std::map<int, dvec3> points;
   std::set<std::pair<int, int>> chords;
 };
+
+bool are_edges(const SampledPolytope& polytope, const std::set<std::pair<int, int>>& wanted) {
+  std::set<std::pair<int, int>> edges;
+  for (const PointHull::Facet& facet : polytope.hull.facets()) {
+    for (std::size_t k = 0; facet.alive && k < 3; ++k) {
+      edges.insert(std::minmax(facet.vertex[k], facet.vertex[(k + 1) % 3]));
+    }
+  }
+  return std::includes(edges.begin(), edges.end(), wanted.begin(), wanted.end());
+}
+
+/// An octahedron, and points so near to its equator that they hide its sides.
+TEST(SampledPolytope, RestoresEdgesThatAreHiddenFromTheStart) {
+  StartedPolytope ball(sphere(1));
+  EquatorChords equator(ball.scene);
+  ball.start.samples.clear();
+  ball.start.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (int k = 0; k < 16; ++k) {
+    const double angle = pi / 8 * (k + 0.4);
+    const double height = k % 2 == 0 ? 0.02 : -0.03;
+    ball.start.points.push_back(unit({std::cos(angle), std::sin(angle), height}));
+  }
+  for (const dvec3& n : ball.start.points) {
+    ball.start.samples.push_back({n, equator.query(n).contact});
+  }
+  for (int k = 0; k < 4; ++k) {
+    equator.points[k] = ball.start.points[to_size(k)];
+    equator.chords.insert(std::minmax(k, (k + 1) % 4));
+  }
+  const SampledPolytope polytope = ball.at(1e-2, 100000, &equator);
+  EXPECT_EQ(polytope.failure, nullptr);
+  EXPECT_TRUE(are_edges(polytope, equator.chords));
+  EXPECT_GT(equator.chords.size(), 16U);
+  EXPECT_LT(equator.chords.size(), 512U);
+}
 
 /// From an octahedron on.
 TEST(SampledPolytope, KeepsEdgesThatAreToStay) {

@@ -1,6 +1,7 @@
 #include "taut/hull/mesh/boundary_mesh.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -24,42 +25,87 @@ constexpr double width_share = 1.0 / 32;
 class BoundaryLabels {
  public:
   BoundaryLabels(const HullBoundary& boundary, std::vector<TouchedFaces> touched)
-      : boundary_(boundary), touched_(std::move(touched)) {}
-
-  std::optional<FaceLabel> operator()(std::span<const int> corners) const {
-    std::vector<Candidate> candidates;
-    for (const int corner : corners) {
-      for (const TouchedFace& f : touched_[std::size_t(corner)]) {
-        const auto same = [&](const Candidate& c) { return c.face == f.face; };
-        auto c = std::find_if(candidates.begin(), candidates.end(), same);
-        if (c == candidates.end()) c = candidates.insert(c, {f.face, 0, 0});
-        ++c->corners;
-        c->sides |= f.sides;
+      : boundary_(boundary), touched_(std::move(touched)), beside_(boundary.faces.size()) {
+    for (int f = 0; f < int(boundary.faces.size()); ++f) {
+      for (const std::size_t i : {0, 1}) {
+        for (const int curve : boundary.faces[std::size_t(f)].scroll_curves[i]) {
+          for (const int other : boundary.curves[std::size_t(curve)].faces) {
+            if (other >= 0 && other != f) touch(beside_[std::size_t(other)], {f, 1U << i});
+          }
+        }
       }
     }
-    if (candidates.empty()) return std::nullopt;
-    const auto count = int(corners.size());
-    const Candidate& best = *std::max_element(
-        candidates.begin(), candidates.end(),
-        [&](const Candidate& a, const Candidate& b) { return rank(a, count) < rank(b, count); });
-    const bool complete = boundary_.unresolved.empty();
-    if (!complete && best.corners < count) return std::nullopt;
-    const HullFace& face = boundary_.faces[std::size_t(best.face)];
-    return FaceLabel{face.kind, face.source, best.face};
+  }
+
+  std::optional<FaceLabel> operator()(std::span<const int> corners,
+                                      const std::function<bool()>& bridges) const {
+    std::vector<Candidate> candidates;
+    for (const int corner : corners) count(touched_[std::size_t(corner)], candidates);
+    const auto all = int(corners.size());
+    const Candidate* best = highest(candidates, all);
+    if (best == nullptr) return std::nullopt;
+    if (best->corners < all) {
+      if (!boundary_.unresolved.empty()) return std::nullopt;
+      const std::vector<Candidate> scrolls = bridging(corners);
+      if (!scrolls.empty() && bridges()) {
+        candidates = scrolls;
+        best = highest(candidates, all);
+      }
+    }
+    const HullFace& face = boundary_.faces[std::size_t(best->face)];
+    return FaceLabel{face.kind, face.source, best->face};
   }
 
  private:
+  static constexpr unsigned both_sides = 3;
+
   struct Candidate {
     int face;
     int corners;
     unsigned sides;
   };
 
+  bool is_scroll(int face) const {
+    return boundary_.faces[std::size_t(face)].kind == FaceKind::scroll;
+  }
+
+  /// One more corner of all these.
+  static void count(const TouchedFaces& faces, std::vector<Candidate>& candidates) {
+    for (const TouchedFace& f : faces) {
+      const auto same = [&](const Candidate& c) { return c.face == f.face; };
+      auto c = std::find_if(candidates.begin(), candidates.end(), same);
+      if (c == candidates.end()) c = candidates.insert(c, {f.face, 0, 0});
+      ++c->corners;
+      c->sides |= f.sides;
+    }
+  }
+
+  /// Scrolls both sides of which corners touch, or touch what is beside them.
+  std::vector<Candidate> bridging(std::span<const int> corners) const {
+    std::vector<Candidate> candidates;
+    for (const int corner : corners) {
+      TouchedFaces scrolls;
+      for (const TouchedFace& f : touched_[std::size_t(corner)]) {
+        if (is_scroll(f.face)) touch(scrolls, f);
+        for (const TouchedFace& scroll : beside_[std::size_t(f.face)]) touch(scrolls, scroll);
+      }
+      count(scrolls, candidates);
+    }
+    std::erase_if(candidates, [](const Candidate& c) { return c.sides != both_sides; });
+    return candidates;
+  }
+
+  const Candidate* highest(const std::vector<Candidate>& candidates, int all) const {
+    const auto best = std::max_element(
+        candidates.begin(), candidates.end(),
+        [&](const Candidate& a, const Candidate& b) { return rank(a, all) < rank(b, all); });
+    return best == candidates.end() ? nullptr : &*best;
+  }
+
   /// Corners all along one side of a scroll lie in the patch beside it; if one of several corners
   /// is farther inside the patch beyond, they span the scroll. What has a corner off the plane of a
   /// facet is no part of it.
   std::tuple<int, int, int> rank(const Candidate& c, int count) const {
-    constexpr unsigned both_sides = 3;
     const FaceKind kind = boundary_.faces[std::size_t(c.face)].kind;
     int preference = 1;
     if (kind == FaceKind::facet) preference = c.corners < count ? 0 : 3;
@@ -71,6 +117,7 @@ class BoundaryLabels {
 
   const HullBoundary& boundary_;
   std::vector<TouchedFaces> touched_;  // per sample
+  std::vector<TouchedFaces> beside_;   // per face: the scrolls beside it
 };
 
 /// Takes out those that the boundary reaches within the resolution, elsewhere.

@@ -15,9 +15,11 @@ namespace taut {
 ///
 /// Rulings are edges of the mesh. Its faces are labelled by the boundary: one belongs to the hull
 /// face in whose closure all its corners lie, among several to a facet, else to a scroll that it
-/// crosses, else to a patch; where there is none, to that in which most corners lie, among several
-/// to a scroll, else to a patch. Where the boundary is not complete, a face without any is labelled
-/// as by sampled_hull(), its hull face numbered after those of the boundary.
+/// crosses, else to a patch. Where a curve of the boundary is so near to another that the mesh does
+/// not tell them apart, there may be none: then to that in which most corners lie, or where its
+/// edges bridge a gap to a scroll on or beside both sides of which its corners lie. Where
+/// the boundary is not complete, a face without any is labelled as by sampled_hull(), its hull face
+/// numbered after those of the boundary.
 ///
 /// Support points that lie on no face of the boundary, and to whose height none of it reaches
 /// within the resolution, are added to `uncovered_samples`: what the boundary lacks.

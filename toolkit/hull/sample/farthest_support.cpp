@@ -6,6 +6,7 @@
 
 #include "taut/hull/polytope/certificate.h"
 #include "taut/hull/sample/sampled_start.h"
+#include "taut/hull/sample/vertex_facets.h"
 
 namespace taut {
 namespace {
@@ -110,45 +111,28 @@ void ConeSearch::search(int vertex, const std::vector<SeenPlane>& planes,
 
 }  // namespace
 
-std::vector<int> facets_about(const PointHull& polytope, int vertex, int facet) {
-  std::vector<int> facets;
-  int f = facet;
-  do {
-    facets.push_back(f);
-    const PointHull::Facet& own = polytope.facet(f);
-    const auto k =
-        std::size_t(std::find(own.vertex.begin(), own.vertex.end(), vertex) - own.vertex.begin());
-    f = own.neighbor[k];
-  } while (f != facet);
-  return facets;
-}
-
 FarthestSupport farthest_support(SupportQuery& query, const PointHull& polytope,
                                  const std::vector<dvec3>& frame_points,
                                  const std::function<SeenPlane(int facet)>& plane_of,
                                  const Progress& progress) {
-  std::vector<int> some_facet(polytope.points().size(), -1);
+  const VertexFacets facets(polytope);
   ConeSearch search(query, frame_points);
   for (std::size_t f = 0; f < polytope.facets().size(); ++f) {
     progress.check_rarely(f);
     if (!polytope.facets()[f].alive) continue;
-    for (const int v : polytope.facets()[f].vertex) {
-      some_facet[std::size_t(v)] = int(f);
-      search.see(v, plane_of(int(f)));
-    }
+    for (const int v : polytope.facets()[f].vertex) search.see(v, plane_of(int(f)));
   }
   const auto planes_about = [&](int v) {
     std::vector<SeenPlane> planes;
-    for (const int f : facets_about(polytope, v, some_facet[std::size_t(v)])) {
-      planes.push_back(plane_of(f));
-    }
+    for (const int f : facets.about(v)) planes.push_back(plane_of(f));
     return planes;
   };
   std::vector<std::pair<double, int>> wanted;
-  for (int v = 0; v < int(some_facet.size()); ++v) {
+  for (int v = 0; v < int(polytope.points().size()); ++v) {
     progress.check_rarely(std::size_t(v));
-    if (some_facet[std::size_t(v)] < 0) continue;
-    const double bound = search.bound(v, planes_about(v));
+    const std::vector<SeenPlane> planes = planes_about(v);
+    if (planes.empty()) continue;  // no vertex of the boundary any more
+    const double bound = search.bound(v, planes);
     if (search.may_be_farther(bound)) {
       wanted.emplace_back(-bound, v);
     } else {

@@ -43,7 +43,4 @@ FarthestSupport farthest_support(SupportQuery& query, const PointHull& polytope,
                                  const std::function<SeenPlane(int facet)>& plane_of,
                                  const Progress& progress);
 
-/// The facets about a vertex, in order, from one of them on. @pre the facet is alive and has it
-std::vector<int> facets_about(const PointHull& polytope, int vertex, int facet);
-
 }  // namespace taut

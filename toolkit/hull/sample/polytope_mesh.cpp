@@ -146,9 +146,15 @@ class GuessedLabels {
               *std::max_element(polytope.vertex_bounds.begin(), polytope.vertex_bounds.end())),
         edges_(mesh.n_edges(), Edge::unknown) {}
 
+  /// How many of the face's edges bridge gaps.
+  unsigned bridges(OpenMesh::FaceHandle f) {
+    unsigned count = 0;
+    for (const auto e : mesh_.fe_range(f)) count += bridging(e) ? 1 : 0;
+    return count;
+  }
+
   FaceLabel operator()(OpenMesh::FaceHandle f, bool flat) {
-    unsigned bridges = 0;
-    for (const auto e : mesh_.fe_range(f)) bridges += bridging(e) ? 1 : 0;
+    const unsigned bridges = this->bridges(f);
     int common = -2;
     int first = -1;
     for (const auto v : mesh_.fv_range(f)) {
@@ -235,7 +241,7 @@ HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
     }
     const std::vector<int>& corners = polygons.loops[std::size_t(f.idx())];
     std::optional<FaceLabel> label;
-    if (known.label) label = known.label(corners);
+    if (known.label) label = known.label(corners, [&] { return guess.bridges(f) > 0; });
     if (!label) {
       const int facet = polygons.facets[std::size_t(f.idx())];
       label = guess(f, polytope.gaps[std::size_t(facet)] <= flat_width);

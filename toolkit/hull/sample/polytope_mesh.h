@@ -27,8 +27,11 @@ struct FaceLabel {
 
 /// What is known of the faces of a polytope's mesh.
 struct KnownLabels {
-  /// The label of the face with these corners, points of the hull by number, if known.
-  std::function<std::optional<FaceLabel>(std::span<const int> corners)> label;
+  /// The label of the face with these corners, points of the hull by number, if known. `bridges`
+  /// tells whether one of its edges bridges a gap, as the samples tell.
+  std::function<std::optional<FaceLabel>(std::span<const int> corners,
+                                         const std::function<bool()>& bridges)>
+      label;
   /// Numbers of hull faces that `label` gives are below this.
   int count = 0;
 };

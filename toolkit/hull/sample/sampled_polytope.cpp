@@ -11,6 +11,7 @@
 #include "taut/hull/sample/farthest_support.h"
 #include "taut/hull/sample/narrow_cones.h"
 #include "taut/hull/sample/sampled_start.h"
+#include "taut/hull/sample/vertex_facets.h"
 
 namespace taut {
 namespace {
@@ -54,7 +55,13 @@ class Sampler {
   bool refine_narrow();
   bool repeats_vertex(const dvec3& point, int facet);
   bool insert(const Sample& sample, const dvec3& point, int facet);
+  InsertMiddle inserter() {
+    return [this](const EdgeConstraints::Middle& middle, int facet) {
+      return insert(middle.sample, middle.point, facet);
+    };
+  }
   bool bisect_hidden(const dvec3& point, int facet);
+  bool restore_edges();
   double gap(const dvec3& n, double h_bound, int vertex) const {
     return h_bound - glm::dot(n, frame_points_[std::size_t(vertex)]) + gap_rounding;
   }
@@ -97,6 +104,7 @@ void Sampler::begin(std::vector<Sample> samples, const std::vector<dvec3>& point
     all.push_back(scaled(p));
   }
   hull_.add(all, options_.progress);
+  restore_edges();
 }
 
 /// Certifies, vertex by vertex, how far the true hull may lie outside (certificate.h).
@@ -162,14 +170,8 @@ void Sampler::look_closer() {
 /// False if it is not above the polytope.
 bool Sampler::insert_farthest() {
   if (farthest_.vertex < 0) return false;
-  const auto& facets = hull_.facets();
-  const auto has_vertex = [&](const PointHull::Facet& facet) {
-    return facet.alive && std::find(facet.vertex.begin(), facet.vertex.end(), farthest_.vertex) !=
-                              facet.vertex.end();
-  };
-  const auto first = std::find_if(facets.begin(), facets.end(), has_vertex);
   const dvec3 point = scene_.frame().to_model(farthest_.plane.point);
-  for (const int f : facets_about(hull_, farthest_.vertex, int(first - facets.begin()))) {
+  for (const int f : VertexFacets(hull_).about(farthest_.vertex)) {
     if (insert({farthest_.plane.n, farthest_.plane.contact}, point, f)) return true;
   }
   return false;
@@ -230,26 +232,15 @@ bool Sampler::insert(const Sample& sample, const dvec3& point, int facet) {
 
 /// Bisects an edge that is to stay and that the point would hide. False if there is none.
 bool Sampler::bisect_hidden(const dvec3& point, int facet) {
-  const std::vector<int>& visible = hull_.visible(scaled(point), facet);
-  for (const int f : visible) {
-    const PointHull::Facet& own = hull_.facet(f);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = own.vertex[k];
-      const int b = own.vertex[(k + 1) % 3];
-      const int other = own.neighbor[k];
-      if (a > b || std::find(visible.begin(), visible.end(), other) == visible.end()) continue;
-      const std::optional<EdgeConstraints::Middle> middle = constraints_->middle(a, b);
-      if (!middle) continue;
-      const auto number = int(hull_.points().size());
-      if (!insert(middle->sample, middle->point, f) &&
-          !insert(middle->sample, middle->point, other)) {
-        return false;
-      }
-      constraints_->bisect(a, b, number);
-      return true;
-    }
-  }
-  return false;
+  if (constraints_ == nullptr) return false;
+  return bisect_between(hull_, hull_.visible(scaled(point), facet), *constraints_, inserter());
+}
+
+/// Bisects edges that are wanted and hidden. False if there are none.
+bool Sampler::restore_edges() {
+  if (constraints_ == nullptr) return false;
+  return restore_wanted(hull_, *constraints_, scene_.frame().scale, most_points(), inserter(),
+                        options_.progress);
 }
 
 /// Inserts the support points of directions in narrow cones that keep a vertex from its tolerance.
@@ -268,7 +259,7 @@ bool Sampler::refine_narrow() {
         return hull_.facet(f).alive && !hull_.visible(scaled(point), f).empty();
       });
       if (facet == known.facets.end()) continue;
-      const bool bisected = constraints_ != nullptr && bisect_hidden(point, *facet);
+      const bool bisected = bisect_hidden(point, *facet);
       if (bisected || insert({asked.n, asked.support.contact}, point, *facet)) inserted = true;
     }
   }
@@ -313,7 +304,7 @@ bool Sampler::refine() {
     if (!plane.known || plane.n != c.n) continue;
     // No point is beyond a sliver.
     const int facet = planes_.has_lost_facet(plane) ? c.facet : plane.facet;
-    const bool bisected = constraints_ != nullptr && bisect_hidden(plane.point, facet);
+    const bool bisected = bisect_hidden(plane.point, facet);
     if (bisected || insert({plane.n, plane.contact}, plane.point, facet)) inserted = true;
   }
   return inserted;
@@ -360,7 +351,8 @@ const char* Sampler::refine_to_tolerance() {
     bound_vertices();
     if (options_.vertex_budget) look_closer();
     options_.progress.update("sample", share_done());
-    if (bound_ <= tolerance_) return nullptr;
+    if (bound_ <= tolerance_ && !restore_edges()) return nullptr;
+    if (bound_ <= tolerance_) continue;
     if (hull_.points().size() >= most) return failure(vertex_limit_met);
     if (!refine() && !planes_.take_slivers_seriously()) return failure(tolerance_too_fine);
   }

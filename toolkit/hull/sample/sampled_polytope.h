@@ -9,24 +9,9 @@
 #include "taut/hull/result/hull_options.h"
 #include "taut/hull/result/hull_statistics.h"
 #include "taut/hull/result/sample.h"
+#include "taut/hull/sample/edge_constraints.h"
 
 namespace taut {
-
-/// Edges of a polytope that are to stay, like chords of curves, whole or bisected.
-class EdgeConstraints {
- public:
-  /// A point that bisects an edge.
-  struct Middle {
-    Sample sample;  ///< its direction and contact
-    dvec3 point;    ///< in model coordinates
-  };
-
-  virtual ~EdgeConstraints() = default;
-  /// A point of the hull between two points, by number, if these are the ends of such an edge.
-  virtual std::optional<Middle> middle(int a, int b) const = 0;
-  /// The middle was inserted, with this number.
-  virtual void bisect(int a, int b, int middle) = 0;
-};
 
 /// The convex hull of support points of a scene, with the certificate of its distance from the
 /// scene's hull (certificate.h).
@@ -51,7 +36,8 @@ struct SampledPolytope {
 /// Grows the hull of samples by support points, until its distance from the scene's hull is
 /// certified to be within the tolerance (in model units), or as far as the budget of vertices goes,
 /// where the tolerance may be 0: none. The samples, no more than that, keep their numbers. Before a
-/// point hides an edge that is to stay, the edge's middle is inserted.
+/// point hides an edge that is to stay, the edge's middle is inserted, and so are in the end those
+/// of wanted edges that others hide, until all are there or have no middle.
 ///
 /// Where a limit of the progress is met once a distance is certified, the polytope is the one that
 /// is there, with that distance.
