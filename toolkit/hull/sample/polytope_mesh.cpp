@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "taut/core/parallel.h"
 #include "taut/core/stopwatch.h"
 #include "taut/core/tolerances.h"
 #include "taut/hull/sample/vertex_normals.h"
@@ -11,6 +12,8 @@ namespace {
 
 /// Faces that are labelled between two looks at the progress.
 constexpr int faces_per_update = 256;
+/// Vertices whose normals one thread finds at a time.
+constexpr std::size_t vertices_per_range = 256;
 
 /// Steps of the projection of an edge's middle onto the surface; chords are short against the
 /// curvature, so few are enough, and a miss only makes an edge bridging.
@@ -116,12 +119,28 @@ class SurfaceWalk {
   double distance_bound_;
 };
 
-void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
-                    const std::vector<double>& bounds, const std::vector<int>& point_of,
-                    HullMesh& mesh, const Progress& progress) {
-  VertexNormals normals(scene, progress.stop);
+/// Per vertex of the mesh, a direction in which it supports the scene.
+std::vector<dvec3> vertex_normals(const Scene& scene, const HullOptions& options,
+                                  const std::vector<Sample>& samples,
+                                  const std::vector<int>& point_of, const HullMesh& mesh) {
+  std::vector<dvec3> normals(point_of.size());
+  parallel_for(normals.size(), vertices_per_range, options.threads,
+               [&](std::size_t begin, std::size_t end) {
+                 VertexNormals find(scene, options.progress.stop);
+                 for (std::size_t v = begin; v < end; ++v) {
+                   const Sample& sample = samples[std::size_t(point_of[v])];
+                   normals[v] = find(mesh, OpenMesh::VertexHandle(int(v)), sample);
+                 }
+               });
+  return normals;
+}
+
+void label_vertices(const Scene& scene, const HullOptions& options,
+                    const std::vector<Sample>& samples, const std::vector<double>& bounds,
+                    const std::vector<int>& point_of, HullMesh& mesh) {
+  const std::vector<dvec3> normals = vertex_normals(scene, options, samples, point_of, mesh);
   for (const auto v : mesh.vertices()) {
-    progress.check();
+    options.progress.check();
     const auto p = std::size_t(point_of[std::size_t(v.idx())]);
     const SourceContact c = scene.source(samples[p].contact);
     auto& data = mesh.data(v);
@@ -129,7 +148,7 @@ void label_vertices(const Scene& scene, const std::vector<Sample>& samples,
     data.u = c.u;
     data.v = c.v;
     data.quality = float_above(bounds[p]);
-    const dvec3 n = normals(mesh, v, samples[p]);
+    const dvec3& n = normals[std::size_t(v.idx())];
     mesh.set_normal(v, {n.x, n.y, n.z});
   }
 }
@@ -228,12 +247,13 @@ void number_hull_faces(HullMesh& mesh, int count, const Progress& progress) {
 }
 
 /// The mesh of a polytope with the origins of its vertices and faces.
-HullMesh labelled_mesh(const Scene& scene, const SampledPolytope& polytope,
-                       const KnownLabels& known, const Progress& progress) {
+HullMesh labelled_mesh(const Scene& scene, const HullOptions& options,
+                       const SampledPolytope& polytope, const KnownLabels& known) {
+  const Progress& progress = options.progress;
   const PointHull::Polygons polygons = polytope.hull.merged_polygons(progress);
   std::vector<int> point_of;  // per mesh vertex
   HullMesh mesh = bare_mesh(polytope.hull, scene.frame().scale, polygons, point_of, progress);
-  label_vertices(scene, polytope.samples, polytope.vertex_bounds, point_of, mesh, progress);
+  label_vertices(scene, options, polytope.samples, polytope.vertex_bounds, point_of, mesh);
   GuessedLabels guess(scene, polytope, mesh, point_of);
   for (const auto f : mesh.faces()) {
     if (f.idx() % faces_per_update == 0) {
@@ -282,7 +302,7 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   options.progress.update("mesh", 0);
   Hull hull;
   hull.kind = HullKind::solid;
-  hull.mesh = labelled_mesh(scene, polytope, known, options.progress);
+  hull.mesh = labelled_mesh(scene, options, polytope, known);
   hull.distance_bound = polytope.distance_bound;
   hull.resolution = resolution_for(options, scene.model(), scene.diagonal());
   hull.statistics = polytope.statistics;
