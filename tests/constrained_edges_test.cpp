@@ -25,7 +25,7 @@ struct ScrollChords {
     return {0, piece, own.rulings[to_size(ruling)]};
   }
   ConstrainedEdges edges(const std::vector<CurveChord>& chords, double least) const {
-    return {geometry, known.boundary, faces, chords, least};
+    return {geometry, known.boundary, faces, chords, {least, least}};
   }
 };
 
@@ -79,6 +79,19 @@ TEST(ConstrainedEdges, PiecesEndInMiddles) {
   EXPECT_LT(quarters(0, 2), 1);
   EXPECT_GT(quarters(2, 1), 1);
   EXPECT_LT(quarters(2, 1), 1 + 2.0 / 16);
+}
+
+/// Of several ends of pieces it is the one nearest to the middle.
+TEST(ConstrainedEdges, PiecesEndNearMiddles) {
+  const ScrollChords scroll;
+  const ConstrainedEdges later =
+      scroll.edges({{0, 1, 0, scroll.place(0, 4), scroll.place(2, 15)}}, 1e-6);
+  ASSERT_TRUE(later.middle(0, 1));
+  expect_on_circle(*later.middle(0, 1), 0, 2);
+  const ConstrainedEdges earlier =
+      scroll.edges({{0, 1, 1, scroll.place(0, 1), scroll.place(2, 12)}}, 1e-6);
+  ASSERT_TRUE(earlier.middle(0, 1));
+  expect_on_circle(*earlier.middle(0, 1), 1, 1);
 }
 
 /// At the end of a piece other curves may begin: of chords from there parts are as long as a power

@@ -116,6 +116,7 @@ struct EquatorChords : EdgeConstraints {
   std::vector<std::pair<int, int>> wanted() const override {
     return {chords.begin(), chords.end()};
   }
+  double narrow() const override { return strip; }
   void bisect(int a, int b, int middle) override {
     EXPECT_EQ(chords.erase(std::minmax(a, b)), 1U);
     points[middle] = between(a, b);
@@ -126,6 +127,7 @@ struct EquatorChords : EdgeConstraints {
   SceneFrame frame;
   std::map<int, dvec3> points;
   std::set<std::pair<int, int>> chords;
+  double strip = 0;
 };
 
 bool are_edges(const SampledPolytope& polytope, const std::set<std::pair<int, int>>& wanted) {
@@ -139,9 +141,7 @@ bool are_edges(const SampledPolytope& polytope, const std::set<std::pair<int, in
 }
 
 /// An octahedron, and points so near to its equator that they hide its sides.
-TEST(SampledPolytope, RestoresEdgesThatAreHiddenFromTheStart) {
-  StartedPolytope ball(sphere(1));
-  EquatorChords equator(ball.scene);
+void start_with_hidden_equator(StartedPolytope& ball, EquatorChords& equator) {
   ball.start.samples.clear();
   ball.start.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (int k = 0; k < 16; ++k) {
@@ -156,11 +156,28 @@ TEST(SampledPolytope, RestoresEdgesThatAreHiddenFromTheStart) {
     equator.points[k] = ball.start.points[to_size(k)];
     equator.chords.insert(std::minmax(k, (k + 1) % 4));
   }
+}
+
+TEST(SampledPolytope, RestoresEdgesThatAreHiddenFromTheStart) {
+  StartedPolytope ball(sphere(1));
+  EquatorChords equator(ball.scene);
+  start_with_hidden_equator(ball, equator);
   const SampledPolytope polytope = ball.at(1e-2, 100000, &equator);
   EXPECT_EQ(polytope.failure, nullptr);
   EXPECT_TRUE(are_edges(polytope, equator.chords));
   EXPECT_GT(equator.chords.size(), 16U);
   EXPECT_LT(equator.chords.size(), 512U);
+}
+
+/// Chords of two curves so near to each other take turns; no finer ones would tell them apart.
+TEST(SampledPolytope, EdgesMayBeHiddenByWhatIsNear) {
+  StartedPolytope ball(sphere(1));
+  EquatorChords equator(ball.scene);
+  start_with_hidden_equator(ball, equator);
+  equator.strip = 0.5;
+  const SampledPolytope polytope = ball.at(1e-2, 100000, &equator);
+  EXPECT_EQ(polytope.failure, nullptr);
+  EXPECT_EQ(equator.chords.size(), 4U);
 }
 
 /// From an octahedron on.

@@ -169,9 +169,10 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   const ContactFaces faces(geometry, *boundary);
   const double width =
       std::max(width_share * tolerance, scene.frame().length_to_model(meaningful_width(scene)));
+  const SampleSpacing spacing = {tolerance, width};
   SupportQuery query(scene, options.progress.stop);
-  BoundarySamples start = start_of(geometry, *boundary, faces, {tolerance, width}, query, options);
-  ConstrainedEdges chords(geometry, *boundary, faces, start.chords, width);
+  BoundarySamples start = start_of(geometry, *boundary, faces, spacing, query, options);
+  ConstrainedEdges chords(geometry, *boundary, faces, start.chords, spacing);
   SampledPolytope polytope =
       sampled_polytope(scene, options, tolerance, std::move(start.samples), start.points, &chords);
   if (polytope.limit) options.progress.stop.lift_limits();

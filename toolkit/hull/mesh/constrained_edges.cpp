@@ -23,12 +23,13 @@ double form_length(const Ruling& a, const Ruling& b, int contact) {
 
 ConstrainedEdges::ConstrainedEdges(const ContactGeometry& geometry, const HullBoundary& boundary,
                                    const ContactFaces& faces, const std::vector<CurveChord>& chords,
-                                   double least)
+                                   const SampleSpacing& spacing)
     : geometry_(geometry),
       boundary_(boundary),
       faces_(faces),
       system_(geometry),
-      least_(least * geometry.scene().frame().scale) {
+      spacing_(spacing),
+      least_(spacing.width * geometry.scene().frame().scale) {
   for (const CurveChord& chord : chords) add(chord);
 }
 
@@ -72,22 +73,32 @@ std::optional<ArcPlace> ConstrainedEdges::within(const CurveChord& chord, int pi
   return ArcPlace{arc, piece, *middle};
 }
 
-/// Of a chord across pieces, where one of these ends, unless that is one of the chord's ends
-/// already. None if no exact ruling is found there.
+/// Of a chord across pieces, where one of these ends, the nearest to its middle, unless all do at
+/// the chord's ends. None if no exact ruling is found there.
 std::optional<ArcPlace> ConstrainedEdges::middle_of(const CurveChord& chord) const {
   const ArcPlace& from = chord.from;
   const ArcPlace& to = chord.to;
   const std::vector<ArcPiece>& pieces = boundary_.arcs[std::size_t(from.arc)].pieces;
-  const auto begin = [&](int p) {
-    return p == from.piece ? from.ruling : pieces[std::size_t(p)].rulings.front();
+  const auto i = std::size_t(chord.contact);
+  const auto end_of = [&](int p) -> const Ruling& {
+    return p == to.piece ? to.ruling : pieces[std::size_t(p)].rulings.back();
   };
-  for (int p = from.piece; p < to.piece; ++p) {
-    const Ruling& end = pieces[std::size_t(p)].rulings.back();
-    if (near(end, from.ruling, chord.contact)) continue;
-    if (!near(end, to.ruling, chord.contact)) return ArcPlace{from.arc, p, end};
-    return within(chord, p, begin(p), end);
+  int first = from.piece;  // that leads away from the chord's beginning
+  while (first < to.piece && near(end_of(first), from.ruling, chord.contact)) ++first;
+  int best = -1;
+  double least = infinity;
+  for (int p = first; p < to.piece && !near(end_of(p), to.ruling, chord.contact); ++p) {
+    const dvec3& x = end_of(p).point[i];
+    const double farther =
+        std::max(glm::distance(from.ruling.point[i], x), glm::distance(x, to.ruling.point[i]));
+    if (!(farther < least)) continue;
+    least = farther;
+    best = p;
   }
-  return within(chord, to.piece, begin(to.piece), to.ruling);
+  if (best >= 0) return ArcPlace{from.arc, best, end_of(best)};
+  const Ruling& begin =
+      first == from.piece ? from.ruling : pieces[std::size_t(first)].rulings.front();
+  return within(chord, first, begin, end_of(first));
 }
 
 std::optional<EdgeConstraints::Middle> ConstrainedEdges::middle(int a, int b) const {

@@ -19,14 +19,17 @@ namespace taut {
 /// halved.
 class ConstrainedEdges : public EdgeConstraints {
  public:
-  /// Chords no longer than `least` (in model units) are not bisected. All but the chords must
-  /// outlive it.
+  /// Chords no longer than the spacing's width are not bisected. All but the chords and the spacing
+  /// must outlive it.
   ConstrainedEdges(const ContactGeometry& geometry, const HullBoundary& boundary,
-                   const ContactFaces& faces, const std::vector<CurveChord>& chords, double least);
+                   const ContactFaces& faces, const std::vector<CurveChord>& chords,
+                   const SampleSpacing& spacing);
 
   std::optional<Middle> middle(int a, int b) const override;
   /// Those inside of patches; along edges samples of other curves may stand between.
   std::vector<std::pair<int, int>> wanted() const override;
+  /// The gap of the spacing.
+  double narrow() const override { return spacing_.gap; }
   void bisect(int a, int b, int middle) override;
   /// The faces beside middles that were inserted, by their numbers.
   const std::map<int, TouchedFaces>& inserted() const { return inserted_; }
@@ -50,7 +53,8 @@ class ConstrainedEdges : public EdgeConstraints {
   const HullBoundary& boundary_;
   const ContactFaces& faces_;
   ContactSystem system_;
-  double least_;  // in the scene's frame
+  SampleSpacing spacing_;
+  double least_;  // the width, in the scene's frame
   std::map<std::pair<int, int>, CurveChord> chords_;
   std::map<int, TouchedFaces> inserted_;
 };

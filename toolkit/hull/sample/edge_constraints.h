@@ -25,6 +25,9 @@ class EdgeConstraints {
   virtual std::optional<Middle> middle(int a, int b) const = 0;
   /// The ends of those that are to be edges in the end.
   virtual std::vector<std::pair<int, int>> wanted() const = 0;
+  /// What comes so near to one of them may hide it, in model units: strips as narrow, between two
+  /// curves, do not matter.
+  virtual double narrow() const { return 0; }
   /// The middle was inserted, with this number.
   virtual void bisect(int a, int b, int middle) = 0;
 };
@@ -37,8 +40,9 @@ using InsertMiddle = std::function<bool(const EdgeConstraints::Middle& middle, i
 bool bisect_between(const PointHull& polytope, const std::vector<int>& facets,
                     EdgeConstraints& constraints, const InsertMiddle& insert);
 
-/// Bisects wanted edges that are none, until all are, have no middle or there are `most` points.
-/// False if no point could be inserted. @throws Cancelled
+/// Bisects wanted edges that are none, until all are, have no middle or are hidden by what is near
+/// there, or there are `most` points. `scale`: of the polytope, to model coordinates. False if no
+/// point could be inserted. @throws Cancelled
 bool restore_wanted(const PointHull& polytope, EdgeConstraints& constraints, double scale,
                     std::size_t most, const InsertMiddle& insert, const Progress& progress);
 
