@@ -327,7 +327,7 @@ void BoundarySampler::add_beside(const ContactJet& jet, const dvec3& n, const dv
   const dvec3 beside = unit(n + step * across);
   const Support s = query_(beside, hint);
   const Contact contact = geometry_.canonical(s.contact);
-  all_.samples.push_back({beside, contact});
+  all_.samples.push_back({beside, contact, true});
   all_.points.push_back(frame_.to_model(s.point));
   all_.faces.push_back(faces_.touched(contact));
   clear_.push_back(clear_share * frame_.length_to_model(glm::distance(s.point, jet.x)));

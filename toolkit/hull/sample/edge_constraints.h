@@ -16,8 +16,8 @@ class EdgeConstraints {
  public:
   /// A point that bisects an edge.
   struct Middle {
-    Sample sample;
-    dvec3 point;  ///< in model coordinates
+    Sample sample;  ///< its direction and contact
+    dvec3 point;    ///< in model coordinates
   };
 
   virtual ~EdgeConstraints() = default;

@@ -172,7 +172,7 @@ bool Sampler::insert_farthest() {
   if (farthest_.vertex < 0) return false;
   const dvec3 point = scene_.frame().to_model(farthest_.plane.point);
   for (const int f : VertexFacets(hull_).about(farthest_.vertex)) {
-    if (insert({farthest_.plane.n, farthest_.plane.contact}, point, f)) return true;
+    if (insert({farthest_.plane.n, farthest_.plane.contact, true}, point, f)) return true;
   }
   return false;
 }
@@ -260,7 +260,8 @@ bool Sampler::refine_narrow() {
       });
       if (facet == known.facets.end()) continue;
       const bool bisected = bisect_hidden(point, *facet);
-      if (bisected || insert({asked.n, asked.support.contact}, point, *facet)) inserted = true;
+      if (bisected || insert({asked.n, asked.support.contact, true}, point, *facet))
+        inserted = true;
     }
   }
   return inserted;
@@ -305,7 +306,7 @@ bool Sampler::refine() {
     // No point is beyond a sliver.
     const int facet = planes_.has_lost_facet(plane) ? c.facet : plane.facet;
     const bool bisected = bisect_hidden(plane.point, facet);
-    if (bisected || insert({plane.n, plane.contact}, plane.point, facet)) inserted = true;
+    if (bisected || insert({plane.n, plane.contact, true}, plane.point, facet)) inserted = true;
   }
   return inserted;
 }

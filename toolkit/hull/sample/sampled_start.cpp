@@ -23,7 +23,7 @@ void add(const Scene& scene, SupportQuery& query, const std::vector<dvec3>& dire
         std::any_of(start.frame_points.begin(), start.frame_points.end(),
                     [&](const dvec3& other) { return glm::distance(other, frame_point) < width; });
     if (near_another) continue;
-    start.samples.push_back({n, s.contact});
+    start.samples.push_back({n, s.contact, true});
     start.points.push_back(point);
     start.frame_points.push_back(frame_point);
   }

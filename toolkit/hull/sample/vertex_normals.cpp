@@ -61,6 +61,7 @@ dvec3 VertexNormals::mean(const HullMesh& mesh, OpenMesh::VertexHandle v, const 
 /// A direction n supports at x if n . (y - x) <= 0 for all points y of the model, of which the
 /// highest ones are found one after the other.
 dvec3 VertexNormals::turned(const dvec3& x, const Sample& sample) {
+  if (sample.answered) return sample.n;
   dvec3 n = sample.n;
   dvec3 best = n;
   double least = infinity;
