@@ -22,14 +22,13 @@ struct SecondOrderBound {
   double along_v;
 };
 
-/// Taylor's bound about (u, v) over the unit square:
-///     g(x) <= g + gu du + gv dv + (uu_max du^2 + 2 uv_abs |du dv| + vv_max dv^2) / 2,
-/// with the mixed term shared out by 2 |du dv| <= r du^2 + dv^2 / r, so that the two directions
-/// separate and each is maximised exactly. Where both curvatures are negative, r = sqrt(uu_max /
-/// vv_max) keeps them so exactly if uv_abs^2 < uu_max vv_max; where one is, the largest r that
-/// keeps it so leaves the other the least.
+/// Curvatures along u and v with a part each of the mixed one: for all (du, dv)
+///     uu_max du^2 + 2 uv_abs |du dv| + vv_max dv^2 <= u du^2 + v dv^2,
+/// by 2 |du dv| <= r du^2 + dv^2 / r. Where both curvatures are negative, r = sqrt(uu_max / vv_max)
+/// keeps them so exactly if uv_abs^2 < uu_max vv_max; where one is, the largest r that keeps it so
+/// leaves the other the least.
 struct SharedCurvature {
-  double u, v;
+  double u, v;  ///< of the two directions
   /// Upper bound of the two directions' shares over the unit square where slopes vanish.
   double loss() const { return 0.5 * (std::max(u, 0.0) + std::max(v, 0.0)); }
 };
@@ -48,6 +47,10 @@ inline SharedCurvature shared_curvature(const NetCurvature& c) {
   return {c.uu_max + c.uv_abs * r, c.vv_max + c.uv_abs / r};
 }
 
+/// Taylor's bound about (u, v) over the unit square:
+///     g(x) <= g + gu du + gv dv + (uu_max du^2 + 2 uv_abs |du dv| + vv_max dv^2) / 2,
+/// with the mixed term shared out, so that the two directions separate and each is maximised
+/// exactly.
 inline SecondOrderBound second_order_bound(const NetJet& jet, const NetCurvature& c, double u,
                                            double v) {
   const SharedCurvature shared = shared_curvature(c);

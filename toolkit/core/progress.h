@@ -30,6 +30,16 @@ struct Progress {
   void warning(std::string_view code, std::string_view text) const {
     if (warn) warn(code, text);
   }
+  /// For an operation that is a part of a step: its shares from 0 to 1 are the step's from `begin`
+  /// to `end`.
+  Progress part(double begin, double end) const {
+    Progress part = *this;
+    if (!report) return part;
+    part.report = [whole = report, begin, end](std::string_view step, double share) {
+      whole(step, begin + share * (end - begin));
+    };
+    return part;
+  }
   /// @throws Cancelled if stopping was asked for, LimitMet if a limit is met
   void check() const { stop.check(); }
   /// The same at a few of the steps, by number, of what takes nanoseconds each.

@@ -38,6 +38,9 @@ constexpr long finer_map_times = 2;
 /// How many times the resolution what is deep may be expected to be by one.
 constexpr double finer_depths = 4;
 
+/// Share of the step that it takes to close a boundary, about; the rest bounds its depths.
+constexpr double closed_share = 0.5;
+
 /// Spots that could not be resolved beyond which it does not help to know more.
 constexpr std::size_t few_open_spots = 16;
 
@@ -56,6 +59,7 @@ DirectionMap map_of(const ContactGeometry& geometry, double resolution, long can
   own.candidate_limit = candidates;
   own.threads = options.threads;
   own.stop = options.progress.stop;
+  own.report = [&](double share) { options.progress.update("cull", share); };
   DirectionMap map = direction_map(geometry, own);
   statistics.map_cells += map.statistics.cells;
   statistics.map_candidates += map.statistics.candidates;
@@ -86,12 +90,14 @@ HullBoundary solved_with(double place_depths, const ContactGeometry& geometry,
   options.progress.update("trace", 1);
   options.progress.update("stitch", 0);
   SupportQuery query(geometry.scene(), options.progress.stop);
-  HullBoundary boundary = stitch(geometry, query, std::move(graph));
+  HullBoundary boundary =
+      stitch(geometry, query, std::move(graph), options.progress.part(0, closed_share));
   boundary.gap = directions.resolution;
   // What is not closed is not known to anything.
   if (boundary.unresolved.empty()) {
     query.leave_out_lines(tie_share * rho);
-    find_tolerant_places(ContactSystem(geometry), query, boundary, rho);
+    find_tolerant_places(ContactSystem(geometry), query, boundary, rho,
+                         options.progress.part(closed_share, 1));
     label_ruled_faces(geometry, boundary);
   }
   statistics.seconds_stitch += watch.lap();

@@ -36,6 +36,9 @@ constexpr std::size_t most_around = 256;
 /// Levels after which a region is left as it is: it halves at least every other one.
 constexpr int level_limit = 96;
 
+/// Factor by which bounds fall from level to level, about.
+constexpr double falls_a_level = 4;
+
 /// Sides shorter than this many join tolerances may be taken for points once they are split.
 constexpr double shortest_side = 16;
 
@@ -212,6 +215,7 @@ class Refinement {
   void emit(std::size_t cell, bool may_touch = true);
   void count_irregular();
   void go_down();
+  void report(double share_of_level) const;
   LimitSurface finish();
 
   const LimitOptions& options_;
@@ -230,9 +234,17 @@ class Refinement {
   std::vector<SurfaceTriangle> triangles_;
 };
 
+/// Levels that it takes at least are all that is known: each brings what remains nearer to what
+/// stands for it by a factor.
+void Refinement::report(double share_of_level) const {
+  const double levels =
+      std::clamp(-std::log(options_.accuracy) / std::log(falls_a_level), 1.0, double(level_limit));
+  options_.progress.update("refine", std::min((depth_ + share_of_level) / levels, 1.0));
+}
+
 LimitSurface Refinement::run() {
   while (!level_.cells().empty()) {
-    options_.progress.check();
+    report(0);
     patches_ = level_.patches(options_.progress);
     take_regular();
     if (depth_ == 0) count_irregular();
@@ -242,7 +254,9 @@ LimitSurface Refinement::run() {
     if (refined_.empty()) break;
     go_down();
   }
-  return finish();
+  LimitSurface surface = finish();
+  options_.progress.update("refine", 1);
+  return surface;
 }
 
 void Refinement::emit(std::size_t cell, bool may_touch) {
@@ -324,6 +338,7 @@ void Refinement::sort_out() {
   for (std::size_t k = 0; k < order.size(); ++k) {
     region.push_back(touching[order[k]]);
     if (k + 1 < order.size() && set[order[k + 1]] == set[order[k]]) continue;
+    report(double(k) / double(order.size()));
     finish_or_refine(region);
     region.clear();
   }

@@ -12,7 +12,7 @@ struct LimitOptions {
   /// What the stand-ins of small neighbourhoods may change the support function by, as a fraction
   /// of the diagonal of the cage's box.
   double accuracy = 1e-9;
-  Progress progress;
+  Progress progress;  ///< of the step "refine"
 };
 
 /// The limit surface of a control cage as patches.

@@ -437,7 +437,8 @@ Patch::OffRuled off_ruled(const Patch& own, double bent, double size) {
   const double square_u = square_of_lines(patch, Direction::u);
   const double square_v = square_of_lines(patch, Direction::v);
   Patch::OffRuled result;
-  const double from_plane = distance_from_plane(patch);
+  // The inside may be on one side of the plane, the border on the other.
+  const double from_plane = 2 * distance_from_plane(patch);
   if (was_straight(std::min(square_u, square_v), from_plane) && !is_folded(patch)) {
     result.u = result.v = from_plane;
     return result;

@@ -135,10 +135,11 @@ double square_of_lines(const BezierPatch& patch, Direction direction) {
   return sum / (patch.degree_v + 1);
 }
 
-/// Where normals n are at angles to the lines' direction e of sine |n . e| <= s, the curve on the
-/// patch that goes as e does, but for what e has along n, leaves the line through any of its points
-/// by s times the way to there, and ends on the border; so the point is no farther from the segment
-/// between its ends than s times the patch's extent.
+/// Where normals n are at angles to the lines' direction e of sine |n . e| <= s < 1, the curve on
+/// the patch that goes as e does, but for what e has along n, ends on the border, and leaves the
+/// line through any of its points by no more than s / sqrt(1 - s^2) times the way along it. So the
+/// point is no farther from the segment between its ends, on both sides, than half of that times
+/// the patch's extent.
 NearCylinder near_cylinder(const BezierPatch& patch) {
   NearCylinder result;
   if (!is_polynomial(patch.points)) return result;
@@ -159,7 +160,9 @@ NearCylinder near_cylinder(const BezierPatch& patch) {
   }
   result.length = extent.upper - extent.lower;
   if (least > 0) result.turned = along / least;
-  result.distance = result.turned * result.length;
+  if (!(result.turned < 1)) return result;
+  result.distance =
+      0.5 * result.length * result.turned / std::sqrt(1 - result.turned * result.turned);
   return result;
 }
 

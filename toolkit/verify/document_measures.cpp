@@ -199,17 +199,19 @@ DocumentMeasures MeasureSums::run(const Progress& progress) {
   const auto share = [&](std::size_t i) { return sums_.error[i] / std::abs(sums_.value[i]); };
   const std::array<double, term_count>& value = sums_.value;
   DocumentMeasures measures;
-  measures.volume = unit_ * unit_ * unit_ * value[volume];
+  const bool is_planar = geometry_.hull().dimension == 2;
+  // What lies in a plane encloses nothing, and is as wide, in the mean, as a quarter of its outline
+  // is long.
+  measures.volume = is_planar ? 0 : unit_ * unit_ * unit_ * value[volume];
   measures.area = unit_ * unit_ * value[area];
   measures.vector_area = unit_ * unit_ * dvec3(value[area_x], value[area_y], value[area_z]);
   measures.vector_area_bound = unit_ * unit_ * open_;
   measures.volume_bound = unit_ * unit_ * unit_ * between_;
-  // The other side of a planar hull turns about the outline as well.
-  const double sides = geometry_.hull().dimension == 2 ? 2 : 1;
-  measures.mean_width = sides * unit_ * value[curvature] / (2 * std::numbers::pi);
-  measures.volume_error = share(volume);
+  measures.mean_width = is_planar ? unit_ * value[outline_length] / 4
+                                  : unit_ * value[curvature] / (2 * std::numbers::pi);
+  measures.volume_error = is_planar ? 0 : share(volume);
   measures.area_error = share(area);
-  measures.mean_width_error = share(curvature);
+  measures.mean_width_error = share(is_planar ? outline_length : curvature);
   measures.vector_area_error =
       (sums_.error[area_x] + sums_.error[area_y] + sums_.error[area_z]) / std::abs(value[area]);
   return measures;

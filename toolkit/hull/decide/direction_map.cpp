@@ -1,6 +1,7 @@
 #include "taut/hull/decide/direction_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <iterator>
 #include <map>
@@ -136,6 +137,7 @@ class MapMaker {
           take(std::move(looked_at[k]));
         }
       }
+      if (options_.report) options_.report(std::min(decided_, 1.0));
     }
   }
 
@@ -167,6 +169,7 @@ class MapMaker {
 
   void add(MapCell&& cell) {
     ++map_.statistics.of_kind[std::size_t(cell.kind)];
+    decided_ += std::ldexp(1.0 / 6, -2 * cell.level);
     map_.cells.push_back(std::move(cell));
   }
 
@@ -229,6 +232,7 @@ class MapMaker {
   DirectionMap map_;
   std::map<int, Node> nodes_;  // by cell
   std::deque<OpenCell> waiting_;
+  double decided_ = 0;  // share of the cube; cells that are split once more count again
 };
 
 }  // namespace

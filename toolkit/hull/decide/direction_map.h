@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "taut/bounds/contact_geometry.h"
@@ -64,6 +65,9 @@ struct DirectionMapOptions {
   long candidate_limit = 1'000'000'000;  ///< see level_limit
   int threads = 0;                       ///< 0: as many as the machine has
   Stop stop;                             ///< makes it throw Cancelled
+  /// Called now and then with the share of the sphere of directions that is decided, which never
+  /// falls; by the thread that calls the operation.
+  std::function<void(double share)> report = {};
 };
 
 /// Splits cells, level by level, until each is decided or a limit is reached.

@@ -99,8 +99,10 @@ class ArcFinder {
 
   void find_rulings() {
     known_.rulings.clear();
+    const auto count = double(known_.graph.arcs.size());
     for (const MapGraph::Arc& arc : known_.graph.arcs) {
-      progress_.check();
+      done_ = std::max(done_, double(known_.rulings.size()) / count);
+      progress_.update("trace", done_);
       std::vector<Ruling>& own = known_.rulings.emplace_back();
       std::vector<bool> told;  // of each
       for (const MapCrossing& crossing : arc.crossings) {
@@ -317,6 +319,7 @@ class ArcFinder {
   const Progress& progress_;
   TopParts top_parts_;
   KnownArcs known_;
+  double done_ = 0;
   using CrossingKey =
       std::tuple<std::array<long long, 3>, std::array<long long, 3>, int, std::array<int, 2>>;
   std::map<CrossingKey, Ruling> rulings_;

@@ -22,7 +22,7 @@ struct KnownArcs {
 
 /// Finds them. Beside where an arc ends for want of resolution cells may tell contacts apart that
 /// are one within it: arcs with an end of that kind, nowhere along which more than the resolution
-/// is between the two contacts, are left out. @throws Cancelled
+/// is between the two contacts, are left out. Reports the step "trace". @throws Cancelled
 KnownArcs known_arcs(const RulingSearch& search, const Progress& progress = {});
 
 /// Makes one of the two arcs that end in a node, which has none then; the other one keeps its

@@ -40,6 +40,9 @@ constexpr double corner_share = 0.5;
 constexpr int divisions_limit = 1000;
 constexpr int divisions_limit_each = 4;
 
+/// Share of the step that it takes to find the arcs that are known, about.
+constexpr double known_share = 0.5;
+
 /// Places between two on an edge at which it is seen whether it touches a plane.
 constexpr int places_along = 4;
 /// Slope that rounding may leave where an exact plane touches.
@@ -100,7 +103,7 @@ class GraphSolver {
 
  private:
   static KnownArcs with_ears_cut(const RulingSearch& search, const Progress& progress) {
-    KnownArcs known = known_arcs(search, progress);
+    KnownArcs known = known_arcs(search, progress.part(0, known_share));
     cut_ears(search, known);
     return known;
   }
@@ -447,7 +450,8 @@ class GraphSolver {
   }
 
   void solve(std::size_t k) {
-    progress_.check();
+    const double solved = double(k) / double(known_.graph.arcs.size());
+    progress_.update("trace", known_share + (1 - known_share) * solved);
     const MapGraph::Arc& told = known_.graph.arcs[k];
     std::vector<Ruling> known = known_.rulings[k];
     if (known.empty()) return graph_.arcs.push_back({});  // it is part of another one

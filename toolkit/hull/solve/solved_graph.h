@@ -14,6 +14,7 @@ inline constexpr double most_place_depths = 8;
 /// tells that arcs pass from cell to cell their rulings are found by bracketed Newton's method, and
 /// others between; where arcs meet, their common plane; where one ends, its free end. Places on
 /// edges that are no farther from each other than `place_depths` units of the resolution are one.
+/// Reports the step "trace".
 /// @pre the map is of the geometry @throws Cancelled
 SeparatingGraph solved_graph(const ContactGeometry& geometry, SupportQuery& query,
                              const DirectionMap& map, const Progress& progress = {},

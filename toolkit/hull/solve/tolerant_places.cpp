@@ -191,15 +191,20 @@ bool is_rounded(const Scene& scene, double resolution) {
 }
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
-                          double resolution) {
+                          double resolution, const Progress& progress) {
+  const auto all = double(boundary.arcs.size() + boundary.faces.size());
+  std::size_t done = 0;
+  const auto report = [&] { progress.update("stitch", double(done++) / all); };
   const DepthBounds bounds(system.geometry().tie(), resolution);
   TolerantPlaces found(system, query, bounds);
   RegionDepths regions(system, query, bounds);
   for (SeparatingArc& arc : boundary.arcs) {
+    report();
     for (ArcPiece& piece : arc.pieces) piece.tolerant = found.of(piece);
   }
   bound_joints(boundary, system.geometry().tie());
   for (HullFace& face : boundary.faces) {
+    report();
     if (face.kind == FaceKind::facet && !face.contacts.empty()) {
       face.tolerant = std::max(face.tolerant, found.of(face));
     }

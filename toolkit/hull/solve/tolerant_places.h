@@ -1,6 +1,7 @@
 #pragma once
 
 #include "taut/bounds/support_query.h"
+#include "taut/core/progress.h"
 #include "taut/hull/contact/contact_system.h"
 #include "taut/hull/result/hull_boundary.h"
 
@@ -18,8 +19,9 @@ bool is_rounded(const Scene& scene, double resolution);
 /// within their deviation. Points that are off their contacts, and by which pieces miss each other,
 /// count as well. Where no rulings are found between two, they are known to the resolution, in the
 /// scene's frame; where contacts are farther than that from where the planes touch, or rulings turn
-/// back, to what heights tie. These are bounds as far as such places tell. @throws Cancelled
+/// back, to what heights tie. These are bounds as far as such places tell. Reports the step
+/// "stitch". @throws Cancelled
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
-                          double resolution);
+                          double resolution, const Progress& progress = {});
 
 }  // namespace taut

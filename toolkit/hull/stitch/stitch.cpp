@@ -1,6 +1,7 @@
 #include "taut/hull/stitch/stitch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -58,7 +59,7 @@ class Stitcher {
         rounded_(is_rounded(geometry.scene(), graph_.depth)),
         same_end_(std::max(rounded_ ? rounded_curve_end : same_curve_end, graph_.depth)) {}
 
-  HullBoundary run();
+  HullBoundary run(const Progress& progress);
 
  private:
   static HullBoundary begin(const ContactGeometry& geometry, const SeparatingGraph& graph) {
@@ -93,6 +94,7 @@ class Stitcher {
   };
   std::vector<Cut> cuts() const;
   std::vector<dvec3> corners_of_scrolls() const;
+  void find_corners() { corners_ = corners_of_scrolls(); }
   void make_rulings();
   void make_scroll_curves();
   int curve_of(int stretch) const { return stretches_.curve_of(stretch); }
@@ -584,26 +586,25 @@ void Stitcher::take_arcs() {
   }
 }
 
-HullBoundary Stitcher::run() {
-  make_patches();
-  make_scrolls();
-  make_facets();
-  corners_ = corners_of_scrolls();
-  make_joins();
-  make_creases();
-  make_rulings();
-  make_scroll_curves();
-  make_loops();
-  take_regions();
-  take_arcs();
+HullBoundary Stitcher::run(const Progress& progress) {
+  constexpr std::array stages = {
+      &Stitcher::make_patches, &Stitcher::make_scrolls,       &Stitcher::make_facets,
+      &Stitcher::find_corners, &Stitcher::make_joins,         &Stitcher::make_creases,
+      &Stitcher::make_rulings, &Stitcher::make_scroll_curves, &Stitcher::make_loops,
+      &Stitcher::take_regions, &Stitcher::take_arcs};
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    progress.update("stitch", double(k + 1) / double(stages.size() + 1));
+    (this->*stages[k])();
+  }
   check_closure(boundary_, same_end_);
   return std::move(boundary_);
 }
 
 }  // namespace
 
-HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph) {
-  return Stitcher(geometry, query, std::move(graph)).run();
+HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
+                    const Progress& progress) {
+  return Stitcher(geometry, query, std::move(graph)).run(progress);
 }
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include "taut/bounds/contact_geometry.h"
 #include "taut/bounds/support_query.h"
+#include "taut/core/progress.h"
 #include "taut/hull/result/hull_boundary.h"
 #include "taut/hull/solve/separating_graph.h"
 
@@ -12,6 +13,8 @@ namespace taut {
 /// HullBoundary::unresolved, after what the graph has there; a boundary without any is closed:
 /// every curve has two faces, and its Euler characteristic is that of the sphere. What lies below
 /// supporting planes by no more than the graph's depth and rounding may be on the hull.
-HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph);
+/// Reports the step "stitch".
+HullBoundary stitch(const ContactGeometry& geometry, SupportQuery& query, SeparatingGraph graph,
+                    const Progress& progress = {});
 
 }  // namespace taut
