@@ -27,6 +27,20 @@ TEST(VerifyPlanar, OneFaceWithItsCurvesPasses) {
   }
 }
 
+/// The outline of a thin body is everywhere near to what is in it; all that its numbers were
+/// rounded by counts across.
+TEST(VerifyPlanar, ThinOutlinesOfRoundedNumbersPass) {
+  const BezierCurve arc = {{{1.102868, 2.20126, 3.300446, 1},
+                            {1.109443, 2.204086, 3.301069, 1},
+                            {1.090982, 2.196219, 3.299762, 1},
+                            {1.104388, 2.201963, 3.300913, 1},
+                            {1.082755, 2.192619, 3.298573, 1}}};
+  const Sound sound = sound_hull({{}, {as_nurbs(arc)}, {{-8.048824, -1.737111, 2.406588}}});
+  EXPECT_EQ(sound.hull.dimension, 2);
+  const HullVerification v = verified(sound.hull, sound.scene);
+  EXPECT_TRUE(v.is_hull(exact)) << text_of(v);
+}
+
 /// The arc gives way to its chord; all else is as the chord asks.
 void cut_arc(HullDocument& h) {
   HullDocument::Face& face = h.faces.front();

@@ -408,8 +408,10 @@ void MeasureSums::add_facet(const Face& face) {
   whole.value[area] = along_normal(sides.value);
   whole.error[area] = sides.error[area_x] + sides.error[area_y] + sides.error[area_z];
   add_vector_area(whole, whole.value[area] * face.normal);
-  whole.value[curvature] = sides.value[curvature];
-  whole.error[curvature] = sides.error[curvature];
+  for (const std::size_t i : {curvature, outline_length}) {
+    whole.value[i] = sides.value[i];
+    whole.error[i] = sides.error[i];
+  }
   if (!face.boundary.empty()) {
     const double height = glm::dot(from_inside(face.boundary[0]), face.normal);
     whole.value[volume] = whole.value[area] * height / 3;
@@ -436,9 +438,13 @@ Terms MeasureSums::facet_side(const DirectedCurve& side, const dvec3& normal) {
   for (std::size_t k = 0; k < line.segments(); ++k) {
     const auto on_edge = edge_between(curve, line.point(k), line.point(k + 1));
     if (on_edge) {
+      const double sense =
+          on_edge->from < on_edge->to ? 1 : -1;  // a length falls with no parameter
       const auto along_edge = [&](double t) {
         const SourceJet j = geometry_.jet(curve.source, {on_edge->patch, dvec2(t, 0)});
-        return terms_at(placed(j.x), j.dx[0] / unit_);
+        Terms terms = terms_at(placed(j.x), j.dx[0] / unit_);
+        terms.value[outline_length] *= sense;
+        return terms;
       };
       integrate(along_edge, on_edge->from, on_edge->to, along_accuracy, sum);
       continue;
