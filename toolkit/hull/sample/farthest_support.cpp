@@ -99,7 +99,7 @@ void ConeSearch::search(int vertex, const std::vector<SeenPlane>& planes,
   for (int k = 0; k < most_bisections && may_be_farther(cones.front().bound); ++k) {
     progress.check();
     std::pop_heap(cones.begin(), cones.end(), lower);
-    const Cone largest = std::move(cones.back());
+    const Cone largest = cones.back();
     cones.pop_back();
     for (const Cone& half : bisected(vertex, largest)) {
       cones.push_back(half);
