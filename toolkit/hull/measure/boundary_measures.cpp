@@ -374,7 +374,9 @@ Vector vector_at(const SumValues& sum, std::size_t k) { return {sum[k], sum[k + 
 BoundaryMeasures measures_of(const SceneFrame& frame, const dvec3& origin, const SumValues& sum) {
   BoundaryMeasures result;
   const double unit_length = 1 / frame.scale;
-  result.volume = double(sum[volume]) * unit_length * unit_length * unit_length;
+  // Sums over sheets thinner than rounding may be negative.
+  result.volume =
+      std::max(double(sum[volume]), 0.0) * unit_length * unit_length * unit_length;
   result.area = double(sum[area]) * unit_length * unit_length;
   // Mean width = M / (2 pi) (Santalo 1976, chapter 13).
   result.mean_width = double(sum[curvature] / (2 * std::numbers::pi_v<long double>)) * unit_length;
@@ -405,7 +407,7 @@ MeasuredLengths lengths_of(const Scene& scene, const SumValues& sum, double laye
       glm::max(glm::abs(box.lower - measures.centroid), glm::abs(box.upper - measures.centroid));
   const dmat3& I = measures.inertia;
   MeasuredLengths lengths;
-  lengths.volume = double(sum[volume]);
+  lengths.volume = std::max(double(sum[volume]), 0.0);
   lengths.area = double(sum[area]);
   lengths.mean_width = frame.length_to_frame(measures.mean_width);
   lengths.layer = layer;
@@ -432,7 +434,6 @@ BoundaryMeasures measure(const Scene& scene, const ContactGeometry& geometry,
   }
   const double accuracy = result.accuracy;
   result.bounds = {accuracy, accuracy, accuracy, accuracy, accuracy};
-  if (!(sum[volume] > 0)) return result;
   const MeasureBounds of_places =
       measure_bounds(boundary, lengths_of(scene, sum, summation.layer(), result));
   result.bounds.volume += of_places.volume;

@@ -9,13 +9,13 @@ namespace taut {
 
 /// By how much measures of a boundary may differ from those of the true hull, at most.
 struct MeasureBounds {
-  /// Relative to what they bound.
+  /// Relative to what they bound; of no volume 1.
   double volume = 0;
   double area = 0;        ///< likewise
   double mean_width = 0;  ///< likewise
   /// Relative to the diagonal of the scene's box.
   double centroid = 0;
-  /// Of each entry, relative to the largest one on the diagonal.
+  /// Of each entry, relative to the largest one on the diagonal; of no volume 1.
   double inertia = 0;
 
   /// The largest of all.

@@ -32,7 +32,7 @@ MeasureBounds measure_bounds(const HullBoundary& boundary, const MeasuredLengths
   // and so no longer than d. Such points fill the layer, to first order, and no more than what
   // Steiner's formula has for D beyond that.
   const double between = lengths.layer + D * D * (2 * pi * w + 4 * pi / 3 * D);
-  bounds.volume = between / lengths.volume;
+  bounds.volume = lengths.volume > 0 ? between / lengths.volume : 1;
   // The hull of B and a ball of radius D contain K; Steiner's formula tells that body's area.
   // Ripples t <= D of B have an area of int |grad t|^2 / 2 <= D int |H|, no more than that again.
   bounds.area = folds * 4 * pi * D * (w + D) / lengths.area;
@@ -41,7 +41,8 @@ MeasureBounds measure_bounds(const HullBoundary& boundary, const MeasuredLengths
   bounds.mean_width = folds * 2 * D / w;
   // What is between has its own centroid no farther off than the radius.
   bounds.centroid = bounds.volume * lengths.radius / lengths.diagonal;
-  bounds.inertia = between * lengths.radius * lengths.radius / lengths.inertia;
+  const double inertia = between * lengths.radius * lengths.radius;
+  bounds.inertia = lengths.inertia > 0 ? inertia / lengths.inertia : 1;
   return bounds;
 }
 

@@ -64,6 +64,26 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
   return goes_on ? std::optional(s) : std::nullopt;
 }
 
+/// The other contact, of the same edge, is no farther from the tangent in the one than so much.
+bool is_straight_on(const ContactGeometry& geometry, const Contact& c, const Contact& other,
+                    double depth) {
+  if (c.kind != SourceKind::edge) return true;
+  const ContactJet j = geometry.jet(c);
+  const dvec3 way = geometry.point(other) - j.x;
+  return glm::length(glm::cross(way, unit(j.dx[0]))) <= depth;
+}
+
+/// How far a facet's outline is from its corner k if that is left out.
+double off_outline(const ContactGeometry& geometry, std::size_t k, const FacetContacts& facet) {
+  const std::size_t count = facet.points.size();
+  const std::size_t before = (k + count - 1) % count;
+  const dvec3& x = facet.points[k];
+  const dvec3& next = facet.points[(k + 1) % count];
+  if (!facet.is_curved(before)) return distance_to_segment(x, facet.points[before], next);
+  const ContactJet j = geometry.jet(facet.sides[before].at(facet.sides[before].to));
+  return glm::length(glm::cross(next - x, unit(j.dx[0])));
+}
+
 /// No farther from the segment between its ends.
 bool is_near_own_segment(const std::vector<dvec4>& points, double distance) {
   const dvec3 a = euclidean(points.front());
@@ -75,28 +95,34 @@ bool is_near_own_segment(const std::vector<dvec4>& points, double distance) {
 
 }  // namespace
 
-void move_to_ends(const ContactGeometry& geometry, double distance, FacetContacts& facet) {
+void move_to_ends(const ContactGeometry& geometry, double depth, double distance,
+                  FacetContacts& facet) {
   if (facet.sides.empty()) return;
+  const auto moved = [&](const Contact& c) {
+    const Contact end = moved_to_border(geometry, c, distance);
+    return is_straight_on(geometry, c, end, depth) ? end : c;
+  };
   for (EdgeStretch& s : facet.sides) {
     if (s.piece < 0) continue;
-    s.from = moved_to_border(geometry, s.at(s.from), distance).u;
-    s.to = moved_to_border(geometry, s.at(s.to), distance).u;
+    s.from = moved(s.at(s.from)).u;
+    s.to = moved(s.at(s.to)).u;
   }
   for (std::size_t k = 0; k < facet.contacts.size(); ++k) {
     Contact& c = facet.contacts[k];
-    c = facet.is_curved(k) ? facet.sides[k].at(facet.sides[k].from)
-                           : moved_to_border(geometry, c, distance);
+    c = facet.is_curved(k) ? facet.sides[k].at(facet.sides[k].from) : moved(c);
     facet.points[k] = geometry.point(c);
   }
 }
 
-void unite_corners(double distance, FacetContacts& facet) {
+void unite_corners(const ContactGeometry& geometry, double depth, double distance,
+                   FacetContacts& facet) {
   if (facet.sides.empty()) return;
   // A corner with a curved side behind it stays, as that begins there.
   for (std::size_t k = 0; k < facet.contacts.size() && facet.contacts.size() > 2;) {
     const std::size_t next = (k + 1) % facet.contacts.size();
     const bool is_one =
-        !facet.is_curved(k) && glm::distance(facet.points[k], facet.points[next]) <= distance;
+        !facet.is_curved(k) && glm::distance(facet.points[k], facet.points[next]) <= distance &&
+        off_outline(geometry, k, facet) <= depth;
     if (is_one) {
       erase(k, facet);
     } else {

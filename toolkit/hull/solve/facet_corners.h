@@ -8,13 +8,16 @@
 
 namespace taut {
 
-/// Corners of a facet, and ends of its curved sides, that are no farther from an end of an edge are
-/// there: where rounding leaves curved sides level but for their ends.
-void move_to_ends(const ContactGeometry& geometry, double distance, FacetContacts& facet);
+/// Corners of a facet, and ends of its curved sides, that are no farther than `distance` from an
+/// end of an edge are there, if that goes on as straight to within `depth`: where rounding leaves
+/// curved sides level but for their ends.
+void move_to_ends(const ContactGeometry& geometry, double depth, double distance,
+                  FacetContacts& facet);
 
-/// Corners of a facet with curved sides no farther apart than so much, with a straight side between
-/// them, become one.
-void unite_corners(double distance, FacetContacts& facet);
+/// Corners of a facet with curved sides no farther apart than `distance`, with a straight side
+/// between them, become one if that moves the outline by no more than `depth`.
+void unite_corners(const ContactGeometry& geometry, double depth, double distance,
+                   FacetContacts& facet);
 
 /// Straight sides across dents of an edge, along which the facet's outline runs beside them, run
 /// along it, too, where it is nowhere farther from them than so much.

@@ -79,7 +79,8 @@ class PieceSearch {
     }
   }
 
-  /// Makes the pieces anew, and turns n into their plane.
+  /// Makes the pieces anew, and turns n into their plane: where short pieces tell less of it than n
+  /// did, only if they are less deep then.
   void gather(LevelPieces& found, double depth) const {
     const double least = query_(found.n).h - depth;
     found.pieces.clear();
@@ -95,13 +96,23 @@ class PieceSearch {
     }
     if (points.empty()) return;
     points.insert(points.end(), more_.begin(), more_.end());
-    found.n = fitted(points, found.n);
-    const double top = query_(found.n, found.pieces.front()).h;
-    found.off = 0;
-    for (const dvec3& x : points) found.off = std::max(found.off, top - glm::dot(x, found.n));
+    const dvec3 turned = fitted(points, found.n);
+    found.off = deepest(points, found.n);
+    if (const double off = deepest(points, turned); off <= found.off) {
+      found.n = turned;
+      found.off = off;
+    }
   }
 
  private:
+  /// Of points below the supporting plane across n.
+  double deepest(const std::vector<dvec3>& points, const dvec3& n) const {
+    const double h = query_(n).h;
+    double off = 0;
+    for (const dvec3& x : points) off = std::max(off, h - glm::dot(x, n));
+    return off;
+  }
+
   const ContactGeometry& geometry_;
   SupportQuery& query_;
   const std::vector<dvec3>& more_;

@@ -197,8 +197,9 @@ class GraphSolver {
     auto found = facet_contacts(geometry_, query_, level.n, corners, level.pieces,
                                 is_rounded ? map_.resolution : 0);
     if (!found || !found->is_facet()) return std::nullopt;
-    if (is_rounded) move_to_ends(geometry_, map_.contact_extent(), *found);
-    unite_corners(is_rounded ? map_.contact_extent() : map_.resolution, *found);
+    const double depth = map_.resolution;
+    if (is_rounded) move_to_ends(geometry_, depth, map_.contact_extent(), *found);
+    unite_corners(geometry_, depth, is_rounded ? map_.contact_extent() : depth, *found);
     fill_dents(geometry_, map_.resolution, *found);
     FacetNode facet{level.n, found->contacts, found->points, found->sides, {}};
     facet.slots.assign(facet.contacts.size(), {});
