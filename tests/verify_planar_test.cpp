@@ -41,6 +41,16 @@ TEST(VerifyPlanar, ThinOutlinesOfRoundedNumbersPass) {
   EXPECT_TRUE(v.is_hull(exact)) << text_of(v);
 }
 
+/// What rounding makes of planar curves: normals turn by half a turn about short stretches of them.
+TEST(VerifyPlanar, SheetsThatRoundingMakesPass) {
+  const BezierCurve bow = {
+      {{-0.4618, 2.5859, -0.8102, 1}, {-0.3281, 3.9617, 0.0246, 1}, {-0.1715, 2.9964, 0.157, 1}}};
+  const Sound sound = sound_hull({{}, {as_nurbs(bow)}, {{-1.4408, 5.1373, -2.7806}}});
+  EXPECT_EQ(sound.hull.dimension, 3);
+  const HullVerification v = verified(sound.hull, sound.scene);
+  EXPECT_TRUE(v.is_hull(exact)) << text_of(v);
+}
+
 /// The arc gives way to its chord; all else is as the chord asks.
 void cut_arc(HullDocument& h) {
   HullDocument::Face& face = h.faces.front();

@@ -314,7 +314,7 @@ void Summation::add_exact(const Stretch& at, const RulingsBetween& between) {
     const auto exact = is_smoother ? std::nullopt : between(s);
     add_ruling(at, exact ? *exact : between.interpolated(s), weight, sample);
   };
-  integrate<6>(f, tolerances, 0, 1, sums_);
+  integrate<6>(f, tolerances, 0, 1, sums_, at.traces->empty() ? single_halvings : 0);
 }
 
 /// Whether the stretch runs along an edge, or along a seam at which another face ends: contacts
@@ -375,8 +375,7 @@ BoundaryMeasures measures_of(const SceneFrame& frame, const dvec3& origin, const
   BoundaryMeasures result;
   const double unit_length = 1 / frame.scale;
   // Sums over sheets thinner than rounding may be negative.
-  result.volume =
-      std::max(double(sum[volume]), 0.0) * unit_length * unit_length * unit_length;
+  result.volume = std::max(double(sum[volume]), 0.0) * unit_length * unit_length * unit_length;
   result.area = double(sum[area]) * unit_length * unit_length;
   // Mean width = M / (2 pi) (Santalo 1976, chapter 13).
   result.mean_width = double(sum[curvature] / (2 * std::numbers::pi_v<long double>)) * unit_length;

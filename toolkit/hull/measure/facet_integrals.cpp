@@ -26,7 +26,7 @@ void add_side(const ContactGeometry& geometry, const HullFace& face, const dvec3
     }
     sample[curvature] -= sense * crease(j.x - crease_origin, sense * j.dx[0], face.n);
   };
-  integrate<16>(f, tolerances, side.from, side.to, sums);
+  integrate<16>(f, tolerances, side.from, side.to, sums, single_halvings);
 }
 
 /// A plane polygon, by the tetrahedra over a fan of triangles with the interior point as tip: the

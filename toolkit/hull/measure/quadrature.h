@@ -70,24 +70,17 @@ struct Integrals {
   }
 };
 
-/// Adds the integrals over [a, b] of the components of a vector function to `sum`.
-///
-/// By Gauss-Legendre rules with n nodes, halving the interval until the error is within tolerance.
-/// The error is that of the rule's aliases, the coefficients of degrees from 2 n on, extrapolated
-/// geometrically from the four highest ones that the samples determine (null rules: Berntsen and
-/// Espelid 1991): exact enough for analytic functions, and no more samples are needed.
-///
-/// `f(x, weight, sample)` fills the sample; `weight` is what it will count with.
-/// `tolerance(magnitude)` gives the absolute tolerances of the components from the rule's sums of
-/// their absolute values. Halving ends where it no longer helps: the error is then noise of the
-/// samples.
+/// Halvings beyond 2^-5 of the whole: of integrals that are not nested, so many that singularities
+/// narrower than the thinnest of models are resolved. Where they are nested, cost would grow with
+/// the square.
+constexpr int single_halvings = 64;
+
+/// An interval of integrate() that is halved so often; `before`: how many times its tolerance the
+/// error of the one that it is half of was. Takes halvings from those that are left.
 template <int n, std::size_t count, class Function, class Tolerance>
-void integrate(const Function& f, const Tolerance& tolerance, double a, double b,
-               Integrals<count>& sum, int depth = 0,
-               double before = std::numeric_limits<double>::infinity()) {
-  // A singularity within an interval of 2^-5 of the whole is left at the accuracy reached there:
-  // integrals are nested, and cost would grow with the square.
-  constexpr int depth_limit = 5;
+void integrate_part(const Function& f, const Tolerance& tolerance, double a, double b,
+                    Integrals<count>& sum, int& halvings, int depth, double before) {
+  constexpr int usual_depth = 5;
   // An error so many times its tolerance is not noise.
   constexpr double noise_limit = 4096;
 
@@ -120,7 +113,8 @@ void integrate(const Function& f, const Tolerance& tolerance, double a, double b
     }
   }
   const bool noise = depth >= 1 && excess > before / 2 && excess < noise_limit;
-  if (!(excess > 1) || depth == depth_limit || noise) {
+  const bool is_last = depth >= usual_depth && halvings <= 0;
+  if (!(excess > 1) || is_last || noise) {
     for (std::size_t c = 0; c < count; ++c) {
       long double total = 0;
       for (std::size_t i = 0; i < std::size_t(n); ++i) {
@@ -131,9 +125,28 @@ void integrate(const Function& f, const Tolerance& tolerance, double a, double b
     }
     return;
   }
+  if (depth >= usual_depth) --halvings;
   const double middle = 0.5 * a + 0.5 * b;
-  integrate<n>(f, tolerance, a, middle, sum, depth + 1, excess);
-  integrate<n>(f, tolerance, middle, b, sum, depth + 1, excess);
+  integrate_part<n>(f, tolerance, a, middle, sum, halvings, depth + 1, excess);
+  integrate_part<n>(f, tolerance, middle, b, sum, halvings, depth + 1, excess);
+}
+
+/// Adds the integrals over [a, b] of the components of a vector function to `sum`.
+///
+/// By Gauss-Legendre rules with n nodes, halving the interval until the error is within tolerance.
+/// The error is that of the rule's aliases, the coefficients of degrees from 2 n on, extrapolated
+/// geometrically from the four highest ones that the samples determine (null rules: Berntsen and
+/// Espelid 1991): exact enough for analytic functions, and no more samples are needed.
+///
+/// `f(x, weight, sample)` fills the sample; `weight` is what it will count with.
+/// `tolerance(magnitude)` gives the absolute tolerances of the components from the rule's sums of
+/// their absolute values. Halving ends where it no longer helps: the error is then noise of the
+/// samples. A singularity within an interval of 2^-5 of the whole is left at the accuracy reached
+/// there, but for so many halvings beyond that in all.
+template <int n, std::size_t count, class Function, class Tolerance>
+void integrate(const Function& f, const Tolerance& tolerance, double a, double b,
+               Integrals<count>& sum, int halvings = 0) {
+  integrate_part<n>(f, tolerance, a, b, sum, halvings, 0, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace taut
