@@ -63,6 +63,7 @@ class FlatBoundary {
 
   void collect();
   Contact on_piece(int curve, double t) const;
+  std::vector<dvec3> planar_curve(const Contact& piece) const;
   void set_polygon(FlatSide& side) const;
   void take(const PlanarHull& hull);
   void simplify();
@@ -120,12 +121,14 @@ Contact FlatBoundary::on_piece(int curve, double t) const {
   return c;
 }
 
-void FlatBoundary::set_polygon(FlatSide& side) const {
+std::vector<dvec3> FlatBoundary::planar_curve(const Contact& piece) const {
   std::vector<dvec3> curve;
-  for (const dvec4& p : geometry_.curve(side.along.at(0)).points) {
-    curve.emplace_back(in_plane(dvec3(p)), p.w);
-  }
-  side.polygon = part_polygon(curve, side.along.from, side.along.to);
+  for (const dvec4& p : geometry_.curve(piece).points) curve.emplace_back(in_plane(dvec3(p)), p.w);
+  return curve;
+}
+
+void FlatBoundary::set_polygon(FlatSide& side) const {
+  side.polygon = part_polygon(planar_curve(side.along.at(0)), side.along.from, side.along.to);
 }
 
 void FlatBoundary::take(const PlanarHull& hull) {
@@ -196,10 +199,16 @@ std::optional<double> FlatBoundary::dent(const FlatSide& before, const FlatSide&
   const double begin = after.along.to > after.along.from ? 0 : 1;
   const dvec2 a = in_plane(geometry_.point(before.along.at(end)));
   const dvec2 b = in_plane(geometry_.point(after.along.at(begin)));
-  const double depth = std::max(distance_to_segment(a, across.x, after.x),
-                                distance_to_segment(b, across.x, after.x));
-  if (glm::distance(a, b) > geometry_.tie() || depth > width_) return std::nullopt;
-  return depth;
+  if (glm::distance(a, b) > geometry_.tie()) return std::nullopt;
+  double depth = 0;
+  const auto see = [&](const EdgeStretch& along, double from, double to) {
+    for (const dvec2& x : part_polygon(planar_curve(along.at(0)), from, to)) {
+      depth = std::max(depth, distance_to_segment(x, across.x, after.x));
+    }
+  };
+  see(before.along, before.along.to, end);
+  see(after.along, begin, after.along.from);
+  return depth <= width_ ? std::optional(depth) : std::nullopt;
 }
 
 /// Pieces of edges are followed to where they join.
@@ -333,10 +342,7 @@ std::optional<HullBoundary> FlatBoundary::make() {
   std::vector<dvec2> points;
   for (const Contact& c : corners_) points.push_back(in_plane(geometry_.point(c)));
   std::vector<std::vector<dvec3>> curves;
-  for (const Contact& c : pieces_) {
-    std::vector<dvec3>& curve = curves.emplace_back();
-    for (const dvec4& p : geometry_.curve(c).points) curve.emplace_back(in_plane(dvec3(p)), p.w);
-  }
+  for (const Contact& c : pieces_) curves.push_back(planar_curve(c));
   take(planar_hull(points, curves, geometry_.stop()));
   if (sides_.empty()) return std::nullopt;
   simplify();
