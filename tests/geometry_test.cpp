@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <vector>
 
 namespace taut {
 namespace {
@@ -30,6 +33,27 @@ TEST(Geometry, NormalsOfSliversArePerpendicularToThem) {
   EXPECT_LT(std::abs(glm::dot(n, c - a)), 1e-14);
   EXPECT_EQ(plane_normal({a, b, a}), dvec3(0.0));
   EXPECT_EQ(plane_normal({{0, 0, 7}, {4, 0, 7}, {4, 1, 7}, {0, 1, 7}}), dvec3(0, 0, 1));
+}
+
+/// What corners are off a plane by, as they are where coordinates round, counts no more than thirty
+/// times, whatever the polygon's width and the number of its sides.
+TEST(Geometry, NormalsOfPolygonsThatAreNotQuitePlane) {
+  constexpr double off = 1e-11;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> share(-1, 1);
+  double worst = 0;
+  for (const double width : {1.0, 1e-3, 1e-6}) {
+    for (const int count : {3, 4, 5, 20, 1000}) {
+      std::vector<dvec3> points;
+      for (int k = 0; k < count; ++k) {
+        const double angle = 2 * std::numbers::pi * k / count;
+        points.emplace_back(std::cos(angle), width * std::sin(angle), off * share(random));
+      }
+      const dvec3 n = plane_normal(points);
+      for (const dvec3& p : points) worst = std::max(worst, std::abs(glm::dot(p - points[0], n)));
+    }
+  }
+  EXPECT_LT(worst, 30 * off);
 }
 
 /// Over a sliver between two faces angles add up to that without it, whatever its normal.

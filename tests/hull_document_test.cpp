@@ -335,6 +335,28 @@ TEST(HullDocument, OfPolyhedralHulls) {
   }
 }
 
+/// Corners near to each other and one that is far from them, all far from the origin: they are in
+/// the plane that the document tells, but for the rounding of their coordinates.
+TEST(HullDocument, PlanesOfThinPolygonsFarOff) {
+  Random random(5);
+  const dvec3 n = random_direction(random);
+  const auto [e, g] = tangent_frame(n);
+  const dvec3 center = 4e5 * random_direction(random);
+  std::vector<dvec3> points = {center};
+  for (int k = 0; k < 8; ++k) {
+    const dvec2 d(uniform(random, 0, 0.04), uniform(random, 0, 0.04));
+    points.push_back(center + (10 + d.x) * e + d.y * g);
+  }
+  Model model;
+  const HullDocument made = hull_document(model, hull_of(points, model).mesh);
+  ASSERT_EQ(made.dimension, 2);
+  const HullDocument::Face& face = made.faces.front();
+  const double size = std::abs(center.x) + std::abs(center.y) + std::abs(center.z);
+  for (const dvec3& p : face.boundary) {
+    EXPECT_LE(std::abs(glm::dot(p - face.boundary[0], face.normal)), coordinate_rounding * size);
+  }
+}
+
 /// Only where there is something to tell, in model units.
 TEST(HullDocument, FacesKeepTheirTolerance) {
   KnownBoundary known = cylinder_boundary();

@@ -56,9 +56,8 @@ dvec3 polygon_normal(const std::vector<dvec3>& points) {
 dvec3 plane_normal(const std::vector<dvec3>& points) {
   const dvec3 normal = polygon_normal(points);
   dvec3 longest(0.0);
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const dvec3 side = points[(k + 1) % points.size()] - points[k];
-    if (glm::length(side) > glm::length(longest)) longest = side;
+  for (const dvec3& p : points) {
+    if (glm::length(p - points[0]) > glm::length(longest)) longest = p - points[0];
   }
   const dvec3 along = unit(longest);
   return unit(normal - glm::dot(normal, along) * along);

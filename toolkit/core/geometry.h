@@ -75,8 +75,14 @@ double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b);
 /// method); zero where it has no area.
 dvec3 polygon_normal(const std::vector<dvec3>& points);
 
-/// The unit normal of a plane polygon, from whose tip it is counter-clockwise, perpendicular to its
-/// longest side: as that of a sliver is not where points round. Zero where it has no area.
+/// The unit normal of a plane polygon, from whose tip it is counter-clockwise, perpendicular to the
+/// longest chord from its first point: as that of a sliver is not where points round. Zero where it
+/// has no area.
+///
+/// Of a convex polygon whose points are off some plane by up to d, they are off this one's by no
+/// more than 30 d, rounding of the result apart: d turns the sum of the triangles' areas by no more
+/// than 4 d / length and 4 d / width of the polygon, which makes 10 d of its heights, and twice
+/// that to get from there to the chord, which is half as long as it or more.
 dvec3 plane_normal(const std::vector<dvec3>& points);
 
 /// The angle by which the normals m and n of the faces to the left and right of an edge of a convex

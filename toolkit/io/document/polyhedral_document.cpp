@@ -6,6 +6,17 @@
 #include "taut/hull/result/hull_sources.h"
 
 namespace taut {
+namespace {
+
+/// By points of size one, the products of which neither overflow nor vanish.
+dvec3 facet_normal(const std::vector<dvec3>& boundary, double diagonal) {
+  std::vector<dvec3> points;
+  points.reserve(boundary.size());
+  for (const dvec3& p : boundary) points.push_back((p - boundary[0]) / diagonal);
+  return plane_normal(points);
+}
+
+}  // namespace
 
 HullDocument hull_document(const Model& model, const HullMesh& mesh,
                            const std::vector<std::string>& files) {
@@ -31,12 +42,7 @@ HullDocument hull_document(const Model& model, const HullMesh& mesh,
       face.boundary.push_back(position(mesh, v));
       face.contacts.push_back({sources.place(mesh.data(v).source), {}, position(mesh, v)});
     }
-    dvec3 area(0.0);
-    for (std::size_t k = 1; k + 1 < face.boundary.size(); ++k) {
-      area += glm::cross(unit(face.boundary[k] - face.boundary[0]),
-                         face.boundary[k + 1] - face.boundary[0]);
-    }
-    face.normal = unit(area);
+    face.normal = facet_normal(face.boundary, document.diagonal);
     face.offset = -std::numeric_limits<double>::infinity();
     for (const dvec3& p : face.boundary) {
       face.offset = std::max(face.offset, glm::dot(face.normal, p));
