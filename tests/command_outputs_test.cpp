@@ -49,14 +49,40 @@ TEST_F(Outputs, ThatTheHullCannotFillDoNotKeepOthersBack) {
   EXPECT_TRUE(fs::exists(path("a.ply")) && !fs::exists(path("a.stl")));
 }
 
+TEST_F(Outputs, OfASegmentOfCurvesTellItsCountsAndMeasures) {
+  const std::string line =
+      plant("line.obj", "v 0 0 0\nv 1 2 2\ncstype bezier\ndeg 1\ncurv 0 1 1 2\nparm u 0 1\nend\n");
+  const Result result = run("hull " + line + " -o s.hull.json --report r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json hull = nlohmann::json::parse(taut_test::content(path("r.json")))["hull"];
+  EXPECT_EQ(hull["facets"], 0);
+  EXPECT_EQ(hull["curves"], 1);
+  EXPECT_EQ(hull["area"], 0.0);
+  EXPECT_NEAR(hull["mean_width"], 1.5, 1e-11);
+  EXPECT_LE(hull["measures_accuracy"], 1e-11);
+  EXPECT_EQ(run("verify s.hull.json " + line).exit_code, 0);
+}
+
 TEST_F(Outputs, ExitWithTheCodeOfTheWorst) {
   const Result result =
       run("hull " + teapot_ + " --max-vertices 60 --relative 1e-6 -o a.ply -o missing/b.ply");
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_EQ(result.err.find("taut: missing/b.ply"), result.err.rfind("taut: ")) << result.err;
-  EXPECT_NE(result.err.find("was not reached with as many vertices as are allowed"),
-            std::string::npos)
-      << result.err;
+  EXPECT_NE(result.err.find(" was not reached with 60 vertices"), std::string::npos) << result.err;
+}
+
+TEST_F(Outputs, OfABudgetTellWhatWasAskedForAndWhatIsWritten) {
+  for (const char* method : {"precise", "sampled", "envelope"}) {
+    const Result result = run("hull " + teapot_ + " --method " + method +
+                              " --max-vertices 60 --tolerance 2e-5 -o a.ply");
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_NE(result.err.find("the tolerance was not reached with 60 vertices: the hull written "
+                              "is within 0."),
+              std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find(" of the true one, 2e-05 was asked for"), std::string::npos)
+        << result.err;
+  }
 }
 
 TEST_F(Outputs, NameTheLayersOfAProject) {

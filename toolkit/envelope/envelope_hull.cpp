@@ -199,7 +199,7 @@ SampledPolytope ImagePolytope::run() {
     refine(last);
   } catch (const LimitMet& met) {
     if (!last) throw;
-    last->failure = nullptr;
+    last->failure.reset();
     last->limit = met.what();
   }
   if (last->limit) options_.progress.stop.lift_limits();
@@ -218,14 +218,14 @@ void ImagePolytope::refine(std::optional<SampledPolytope>& last) {
     if (last->limit || last->distance_bound <= tolerance_) return;
     last->failure = images_too_coarse;
     const auto full = std::size_t(options_.vertex_budget.value_or(options_.max_vertices));
-    if (samples_.size() >= full) last->failure = vertex_limit_met;
+    if (samples_.size() >= full) last->failure = vertex_limit_met(full);
     bool added = false;
     const std::size_t most = most_samples();
     for (const Sample& sample : seen_above(*last, wanted_facets(*last))) {
       if (samples_.size() < most) added = add(sample) || added;
     }
     if (added) continue;
-    if (tolerance_ == 0) last->failure = nullptr;
+    if (tolerance_ == 0) last->failure.reset();
     return;
   }
 }

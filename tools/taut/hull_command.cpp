@@ -192,12 +192,13 @@ std::optional<std::string> failure_of_floats(const Report& report) {
          "; .ply holds doubles";
 }
 
-/// What a run that ends too early throws, with what was written and how far off that is.
-[[noreturn]] void fail(const Outcome& outcome, bool written, double bound) {
+/// What a run that ends too early throws, with what was written, how far off that is, and how near
+/// it was to be (`wanted`, 0: none).
+[[noreturn]] void fail(const Outcome& outcome, bool written, double bound, double wanted) {
   const std::string text = *outcome.failure + ": the hull " + (written ? "written" : "found") +
                            " is within " + number(bound, 3) + " of the true one";
   if (outcome.met_limit) throw LimitExceeded(text);
-  throw NotConverged(text, bound);
+  throw NotConverged(wanted > 0 ? text + ", " + number(wanted, 3) + " was asked for" : text, bound);
 }
 
 /// The failures of outputs, one line each, after which the run fails: the last is thrown.
@@ -246,7 +247,8 @@ ExitCode run_within_limits(const HullArguments& arguments, const OutputPlaces& p
   print_result(arguments, report, written, console);
   const bool is_whole = written.failures.empty();
   if (outcome.failure && is_whole) {
-    fail(outcome, written.any_hull, report.mesh.distance_bound + worst_rounding(report).rounding);
+    fail(outcome, written.any_hull, report.mesh.distance_bound + worst_rounding(report).rounding,
+         wanted);
   }
   if (outcome.failure) console.error(*outcome.failure);
   fail_if_not_written(written.failures, console);

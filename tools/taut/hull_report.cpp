@@ -109,6 +109,19 @@ void add_measures(Input& input, const HullBoundary& boundary, Console& console,
                    "its distance");
 }
 
+/// Of a hull that is its mesh: that of points and polygons, a segment, or a point. How far its two
+/// ends may be from those of the model's segment is a share of its length.
+void add_mesh_as_hull(const Hull& hull, Report::ExactHull& exact) {
+  // The two sides of a planar hull are one facet.
+  exact.counts = {0, 0, hull.kind == HullKind::planar ? 1 : 0, int(hull.mesh.n_edges()), 0};
+  exact.tolerant = Report::ExactHull::Tolerant{};
+  exact.measures = mesh_measures(hull);
+  exact.mean_width = mean_width(hull.mesh);
+  if (hull.kind != HullKind::segment) return;
+  const double length = 2 * *exact.mean_width;
+  if (length > 0) exact.measures_accuracy = 2 * *exact.gap_bound / length;
+}
+
 /// What is known of the exact hull: its faces and, if no limit is met meanwhile, its measures.
 Report::ExactHull exact_hull(Input& input, Outcome& outcome, const std::string& method,
                              Console& console) {
@@ -132,12 +145,8 @@ Report::ExactHull exact_hull(Input& input, Outcome& outcome, const std::string& 
         outcome.meet(std::string(met.what()) + " before the hull was measured");
       }
     }
-  } else if (input.model().polyhedral() && method == "precise") {
-    // The two sides of a planar hull are one facet.
-    exact.counts = {0, 0, hull.kind == HullKind::planar ? 1 : 0, int(hull.mesh.n_edges()), 0};
-    exact.tolerant = Report::ExactHull::Tolerant{};
-    exact.measures = mesh_measures(hull);
-    exact.mean_width = mean_width(hull.mesh);
+  } else if (method == "precise" && (input.model().polyhedral() || hull.dimension() < 2)) {
+    add_mesh_as_hull(hull, exact);
   }
   return exact;
 }

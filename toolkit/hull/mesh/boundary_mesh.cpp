@@ -197,7 +197,7 @@ Hull boundary_mesh(const Scene& scene, const ContactGeometry& geometry,
   }
   const BoundaryLabels labels(*boundary, std::move(start.faces));
   polytope.statistics.seconds_sample = 0;
-  const char* const failure = std::exchange(polytope.failure, nullptr);
+  const std::optional<std::string> failure = std::exchange(polytope.failure, std::nullopt);
   const std::optional<std::string> limit = std::exchange(polytope.limit, std::nullopt);
   Hull hull = polytope_hull(scene, options, polytope, {labels, int(boundary->faces.size())});
   hull.boundary = std::move(boundary);

@@ -279,7 +279,7 @@ Hull FlatSampler::refine() {
     // Samples that do not change the outline bring nothing more.
     if (full || start_.points.size() == before || outline(view) == corners) {
       if (tolerance_ == 0) return make_hull(HullKind::planar, corners);
-      throw HullNotConverged(full ? vertex_limit_met : tolerance_too_fine,
+      throw HullNotConverged(full ? vertex_limit_met(most) : tolerance_too_fine,
                              make_hull(HullKind::planar, corners));
     }
   }

@@ -312,9 +312,10 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
   return hull;
 }
 
-void throw_if_failed(Hull& hull, const char* failure, const std::optional<std::string>& limit) {
+void throw_if_failed(Hull& hull, const std::optional<std::string>& failure,
+                     const std::optional<std::string>& limit) {
   if (limit) throw HullLimitExceeded(*limit, std::move(hull));
-  if (failure != nullptr) throw HullNotConverged(failure, std::move(hull));
+  if (failure) throw HullNotConverged(*failure, std::move(hull));
 }
 
 }  // namespace taut

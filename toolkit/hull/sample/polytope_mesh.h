@@ -51,6 +51,7 @@ Hull polytope_hull(const Scene& scene, const HullOptions& options, const Sampled
                    const KnownLabels& known = {});
 
 /// @throws HullNotConverged with the hull for a failure, HullLimitExceeded for a limit
-void throw_if_failed(Hull& hull, const char* failure, const std::optional<std::string>& limit);
+void throw_if_failed(Hull& hull, const std::optional<std::string>& failure,
+                     const std::optional<std::string>& limit);
 
 }  // namespace taut

@@ -53,7 +53,7 @@ Hull facetted_hull(const Scene& scene, const HullOptions& asked) {
   SupportQuery query(scene, options.progress.stop);
   SampledPolytope polytope = polytope_from(scene, options, tolerance_for(options, scene.diagonal()),
                                            sampled_start(scene, query), query);
-  const char* const failure = std::exchange(polytope.failure, nullptr);
+  const std::optional<std::string> failure = std::exchange(polytope.failure, std::nullopt);
   const std::optional<std::string> limit = std::exchange(polytope.limit, std::nullopt);
   Hull hull = polytope_hull(scene, options, polytope);
   hull.boundary = std::make_shared<const HullBoundary>(

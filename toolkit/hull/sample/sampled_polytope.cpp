@@ -72,7 +72,7 @@ class Sampler {
   double distance_bound(double gap, int vertex) const {
     return taut::distance_bound(gap, vertex_depths_[std::size_t(vertex)]);
   }
-  const char* refine_to_tolerance();
+  std::optional<std::string> refine_to_tolerance();
   SampledPolytope result();
   SampledPolytope unfinished_result();
 
@@ -327,7 +327,7 @@ SampledPolytope Sampler::result() {
   statistics_.support_queries += narrow_.query().queries();
   statistics_.newton_iterations += narrow_.query().newton_iterations();
   return {std::move(hull_), std::move(samples_), std::move(gaps), std::move(bounds), bound,
-          nullptr,          std::nullopt,        statistics_};
+          std::nullopt,     std::nullopt,        statistics_};
 }
 
 /// The polytope as it stands somewhere in a round: planes and bounds are not those of all of it,
@@ -344,17 +344,19 @@ SampledPolytope Sampler::unfinished_result() {
 }
 
 /// Why the tolerance is not reached, none if it is, or there is none but a budget.
-const char* Sampler::refine_to_tolerance() {
-  const auto failure = [&](const char* reason) { return tolerance_ > 0 ? reason : nullptr; };
+std::optional<std::string> Sampler::refine_to_tolerance() {
+  const auto failure = [&](std::string reason) {
+    return tolerance_ > 0 ? std::optional(std::move(reason)) : std::nullopt;
+  };
   const auto most = std::size_t(options_.vertex_budget.value_or(options_.max_vertices));
   for (;;) {
     planes_.find(samples_, statistics_);
     bound_vertices();
     if (options_.vertex_budget) look_closer();
     options_.progress.update("sample", share_done());
-    if (bound_ <= tolerance_ && !restore_edges()) return nullptr;
+    if (bound_ <= tolerance_ && !restore_edges()) return std::nullopt;
     if (bound_ <= tolerance_) continue;
-    if (hull_.points().size() >= most) return failure(vertex_limit_met);
+    if (hull_.points().size() >= most) return failure(vertex_limit_met(most));
     if (!refine() && !planes_.take_slivers_seriously()) return failure(tolerance_too_fine);
   }
 }
@@ -365,9 +367,9 @@ SampledPolytope Sampler::run(std::vector<Sample> samples, const std::vector<dvec
   begin(std::move(samples), points);
   SampledPolytope polytope = [&] {
     try {
-      const char* const failure = refine_to_tolerance();
+      std::optional<std::string> failure = refine_to_tolerance();
       SampledPolytope whole = result();
-      whole.failure = failure;
+      whole.failure = std::move(failure);
       return whole;
     } catch (const LimitMet& met) {
       if (!certified_) throw;

@@ -27,7 +27,7 @@ struct SampledPolytope {
   /// Proven bound of the distance from the scene's hull, in model units, rounding included.
   double distance_bound = 0;
   /// Why the tolerance is not reached, if so.
-  const char* failure = nullptr;
+  std::optional<std::string> failure;
   /// The limit that was met before it was (Limits::text), if so.
   std::optional<std::string> limit;
   HullStatistics statistics;  ///< what it took

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "taut/core/tolerances.h"
@@ -171,6 +172,10 @@ double vertex_rounding(const Scene& scene) {
   const dvec3 largest = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
   return rounding_unit * (largest.x + largest.y + largest.z) +
          scene.frame().length_to_model(gap_rounding);
+}
+
+std::string vertex_limit_met(std::size_t vertices) {
+  return "the tolerance was not reached with " + std::to_string(vertices) + " vertices";
 }
 
 }  // namespace taut

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "taut/bounds/support_query.h"
@@ -49,8 +51,7 @@ double vertex_rounding(const Scene& scene);
 inline constexpr double gap_rounding = 16 * rounding_unit;
 
 /// Why a tolerance is not reached.
-inline constexpr const char* vertex_limit_met =
-    "the tolerance was not reached with as many vertices as are allowed";
+std::string vertex_limit_met(std::size_t vertices);
 inline constexpr const char* tolerance_too_fine =
     "the tolerance is below what double precision can certify here";
 inline constexpr const char* flat_within_more =
