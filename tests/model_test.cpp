@@ -1341,5 +1341,26 @@ TEST(Model, ControlBox) {
   EXPECT_EQ(part.control_box().upper, dvec3(1, 2, 5));
 }
 
+/// Of many patches; of a few it tells nothing.
+TEST(Model, ConnectTellsTheShareThatIsDone) {
+  for (const int rows : {2, 40}) {
+    Part part;
+    for (int k = 0; k < rows * rows; ++k) {
+      part.add_surface(square(dvec3(k % rows, k / rows, 0), dvec3(1, 0, 0), dvec3(0, 1, 0)),
+                       "tile");
+    }
+    std::vector<double> shares;
+    Progress progress;
+    progress.report = [&](std::string_view step, double share) {
+      EXPECT_EQ(step, "connect");
+      shares.push_back(share);
+    };
+    part.connect(smooth_join_angle, progress);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.size() > 10, rows == 40);
+    for (const double share : shares) EXPECT_TRUE(share > 0 && share < 1);
+  }
+}
+
 }  // namespace
 }  // namespace taut

@@ -7,6 +7,7 @@
 #include "taut/core/error.h"
 #include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/connect_progress.h"
 #include "taut/surface/flatness.h"
 #include "taut/surface/join_smoothness.h"
 #include "taut/surface/model.h"
@@ -81,7 +82,7 @@ class Connector {
     joins_ = match_sides(patches_, sides_, box_, tolerance_, progress_);
     smooth_.reserve(joins_.size());
     for (const Join& join : joins_) {
-      progress_.check();
+      report_connect(progress_, smooth_.size(), joins_.size());
       smooth_.push_back(smoothness_.is_smooth(join));
     }
     identify_points();
@@ -462,8 +463,9 @@ Patch::OffRuled off_ruled(const Patch& own, double bent, double size) {
 /// straight lines and planes.
 void find_rulings(std::vector<Patch>& patches, const Box& box, double bent,
                   const Progress& progress) {
-  for (Patch& patch : patches) {
-    progress.check();
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    Patch& patch = patches[k];
+    report_connect(progress, k, patches.size());
     const bool plane = is_plane(patch.bezier) && !is_folded(patch.bezier);
     patch.ruled_u = plane || is_ruled(patch.bezier, Direction::u);
     patch.ruled_v = plane || is_ruled(patch.bezier, Direction::v);
@@ -486,16 +488,21 @@ void Part::connect(double smooth_angle, const Progress& progress) {
                                     coarsest_resolution / grid_resolution * diagonal(box_));
   // What points may be off lines and planes of others.
   const double bent = cover_share * grid_resolution * half_step;
-  find_rulings(patches_, box_, bent, progress);
+  // What the steps take of cages, about.
+  constexpr double ruled_share = 0.25;
+  constexpr double crests_share = 0.75;
+  find_rulings(patches_, box_, bent, progress.part(0, ruled_share));
   // Patches of cages are computed, whatever the cages' points were rounded to: their borders meet.
   const bool meet = !cages_.empty();
   const double apart = meet ? 0 : bent;
-  split_crests(faces_, patches_, box_, apart, meet ? 0 : 2 * half_step, progress);
+  split_crests(faces_, patches_, box_, apart, meet ? 0 : 2 * half_step,
+               progress.part(ruled_share, crests_share));
   split_junctions(faces_, patches_, box_, apart, progress);
   find_repeated_patches(patches_, box_, meet ? 0 : copies_apart_limit * grid_resolution * half_step,
                         progress);
+  const Progress rest = progress.part(crests_share, 1);
   Connector connector(patches_, pieces_, edges_, vertices_, box_, join_tolerance(box_, apart),
-                      smooth_angle, meet ? 0 : 2 * half_step, bent, progress);
+                      smooth_angle, meet ? 0 : 2 * half_step, bent, rest);
   connector.run();
   seam_vertex_count_ = connector.seam_vertex_count();
   join_gap_ = connector.join_gap();

@@ -6,6 +6,7 @@
 
 #include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
+#include "taut/surface/connect_progress.h"
 #include "taut/surface/crests.h"
 #include "taut/surface/flatness.h"
 #include "taut/surface/nearest_parameter.h"
@@ -139,7 +140,7 @@ std::vector<Cut> RowSplitter::find_crests(double grid) const {
   std::vector<Cut> result;
   const std::vector<dvec3> points = corner_points(patches_);
   for (int p = 0; p < to_int(patches_.size()); ++p) {
-    progress_.check();
+    report_connect(progress_, to_size(p), patches_.size());
     const Patch& patch = patches_[to_size(p)];
     if (patch.may_be_ruled()) continue;
     for (const Direction direction : {Direction::u, Direction::v}) {
