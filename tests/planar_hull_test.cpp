@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <stop_token>
 #include <thread>
 #include <utility>
@@ -14,6 +15,8 @@
 #include "models.h"
 #include "taut/core/error.h"
 #include "taut/core/stopwatch.h"
+#include "taut/hull/planar/planar_arcs.h"
+#include "taut/hull/planar/planar_tree.h"
 
 namespace taut {
 namespace {
@@ -435,6 +438,54 @@ TEST(PlanarHull, HundredsOfCurves) {
     curves.push_back(circular(center, log_uniform(random, 1e-3, 0.3), a, a + 1.5));
   }
   expect_hull(planar_hull({}, curves), {}, curves, 20);
+}
+
+/// Circles all around another one: each has a straight side to the next.
+TEST(PlanarHull, ThousandsOfCircles) {
+  constexpr int count = 2000;
+  Curves curves;
+  for (int k = 0; k < count; ++k) {
+    add_circle(curves, direction_at(2 * pi * (k + 0.3) / count), 1e-4);
+  }
+  const PlanarHull hull = planar_hull({}, curves);
+  EXPECT_TRUE(hull.verified);
+  EXPECT_EQ(std::count_if(hull.sides.begin(), hull.sides.end(),
+                          [](const OutlineSide& s) { return s.along < 0; }),
+            count);
+}
+
+/// All that reaches above a height is visited, and little else.
+TEST(PlanarTree, VisitsWhatReachesAboveAHeight) {
+  constexpr int count = 4096;
+  std::vector<PlanarTree::Entry> entries;
+  for (int k = 0; k < count; ++k) {
+    const dvec2 x = direction_at(2 * pi * k / count);
+    entries.push_back({k, PlanarBox({0.999 * x, x})});
+  }
+  const PlanarTree tree(entries);
+  for (const double angle : {0.1, 1.7, 3.3, 5.9}) {
+    const dvec2 n = direction_at(angle);
+    std::vector<int> seen;
+    tree.visit(n, 0.99, [&](int k) {
+      seen.push_back(k);
+      return 0.99;
+    });
+    std::sort(seen.begin(), seen.end());
+    std::vector<int> expected;
+    for (const PlanarTree::Entry& e : entries) {
+      if (e.box.height(n) > 0.99) expected.push_back(e.number);
+    }
+    EXPECT_EQ(seen, expected);
+    int visited = 0;
+    double highest = -2;
+    tree.visit(n, highest, [&](int k) {
+      ++visited;
+      return highest = std::max(highest, glm::dot(n, direction_at(2 * pi * k / count)));
+    });
+    EXPECT_NEAR(highest, 1, 1e-6);
+    EXPECT_LT(visited, 64);
+  }
+  PlanarTree().visit({1, 0}, -1, [](int) -> double { throw std::logic_error("there is none"); });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
@@ -18,6 +19,10 @@ constexpr double end_distance = 1e-9;
 /// What the outline's heights, and those of support queries above them, differ by as they round.
 constexpr double rounding_of_heights = planar_slack + support_slack;
 
+/// Directions about a corner that are asked differ by no more: what is no higher than d in two of
+/// them is no farther from the corner, between them, than d over the cosine of half of it.
+constexpr double most_turn = std::numbers::pi / 6;
+
 /// Segments of a stretch of an edge within a piece, and tangents of it that are checked.
 constexpr int stretch_points = 8;
 
@@ -29,13 +34,22 @@ struct FlatSide {
   std::vector<dvec2> polygon;  ///< its control points
 
   bool is_curved() const { return along.piece >= 0; }
+  /// The place so many of stretch_points along.
+  Contact at(int i) const {
+    return along.at(Interval{along.from, along.to}.at(double(i) / stretch_points));
+  }
+};
+
+/// A supporting line of the outline, and where it touches that.
+struct Tangent {
+  dvec2 n;  ///< unit, outward
+  dvec2 x;
+  Contact at;
+  bool begins = false;  ///< the first one of a side
 };
 
 double distance_to_segment(const dvec2& x, const dvec2& a, const dvec2& b) {
-  const dvec2 d = b - a;
-  const double square = glm::dot(d, d);
-  const double t = square > 0 ? std::clamp(glm::dot(x - a, d) / square, 0.0, 1.0) : 0;
-  return glm::distance(x, a + t * d);
+  return taut::distance_to_segment(dvec3(x, 0), dvec3(a, 0), dvec3(b, 0));
 }
 
 /// Makes the boundary.
@@ -73,8 +87,10 @@ class FlatBoundary {
   std::optional<double> dent(const FlatSide& before, const FlatSide& across,
                              const FlatSide& after) const;
   void see_corners();
+  std::vector<Tangent> tangents() const;
+  bool supports(const Tangent& tangent);
+  bool supports_between(const Tangent& from, const Tangent& to);
   bool supports();
-  bool supports(const dvec2& outward, double height, const Contact& hint);
 
   HullFace facet() const;
   void add_curves(HullBoundary& boundary) const;
@@ -105,9 +121,8 @@ void FlatBoundary::collect() {
     }
     for (int k = 0; k < int(part.pieces().size()); ++k) {
       const Contact piece{i, SourceKind::edge, k, 0, 0};
-      const bool is_edge = part.pieces()[to_size(k)].edge >= 0;
-      if (!is_edge || geometry_.is_repeated(piece) || geometry_.is_straight(piece)) continue;
-      pieces_.push_back(piece);
+      if (part.pieces()[to_size(k)].edge < 0 || geometry_.is_repeated(piece)) continue;
+      if (!geometry_.is_straight(piece)) pieces_.push_back(piece);
     }
   }
 }
@@ -234,12 +249,6 @@ void FlatBoundary::close_dents() {
   }
 }
 
-bool FlatBoundary::supports(const dvec2& outward, double height, const Contact& hint) {
-  const double rise = query_(unit(in_space(outward)), hint).h_bound - height;
-  off_ = std::max(off_, rise);
-  return rise <= rho_ + geometry_.tie();
-}
-
 /// Curved sides begin and end in their corners, but for elements that are one.
 void FlatBoundary::see_corners() {
   for (std::size_t k = 0; k < sides_.size(); ++k) {
@@ -253,26 +262,53 @@ void FlatBoundary::see_corners() {
   }
 }
 
-/// Nothing is beyond a side by more than the resolution.
-bool FlatBoundary::supports() {
+/// Of all sides, counter-clockwise.
+std::vector<Tangent> FlatBoundary::tangents() const {
+  std::vector<Tangent> result;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     const FlatSide& side = sides_[k];
-    const dvec2& to = sides_[next(k)].x;
     if (!side.is_curved()) {
-      const dvec2 outward_from = outward(side.x, to);
-      if (!supports(outward_from, glm::dot(side.x, outward_from), side.corner)) return false;
+      result.push_back({outward(side.x, sides_[next(k)].x), side.x, side.corner, true});
       continue;
     }
     const double sense = side.along.to > side.along.from ? 1 : -1;
     for (int i = 0; i <= stretch_points; ++i) {
-      const double t = Interval{side.along.from, side.along.to}.at(double(i) / stretch_points);
-      const ContactJet jet = geometry_.jet(side.along.at(t));
-      const dvec2 x = in_plane(jet.x);
+      const ContactJet jet = geometry_.jet(side.at(i));
       const dvec2 along = sense * in_plane(jet.dx[0]);
       if (!(glm::length(along) > 0)) continue;
-      const dvec2 n = outward(dvec2(0), along);
-      if (!supports(n, glm::dot(x, n), side.along.at(t))) return false;
+      result.push_back({outward(dvec2(0), along), in_plane(jet.x), side.at(i), i == 0});
     }
+  }
+  return result;
+}
+
+/// Nothing is beyond a tangent by more than the resolution.
+bool FlatBoundary::supports(const Tangent& tangent) {
+  const double rise =
+      query_(unit(in_space(tangent.n)), tangent.at).h_bound - glm::dot(tangent.x, tangent.n);
+  const double off = rise > rounding_of_heights ? rise / std::cos(0.5 * most_turn) : rise;
+  off_ = std::max(off_, off);
+  return off <= rho_ + geometry_.tie();
+}
+
+/// Nor is it, between two of them, beyond the corner in which the second one begins.
+bool FlatBoundary::supports_between(const Tangent& from, const Tangent& to) {
+  double turn = std::atan2(cross(from.n, to.n), glm::dot(from.n, to.n));
+  // Those of both sides of a sharp tip are half a turn but for rounding.
+  if (turn < -0.5 * std::numbers::pi) turn += 2 * std::numbers::pi;
+  const double start = std::atan2(from.n.y, from.n.x);
+  const int parts = int(std::ceil(turn / most_turn));
+  for (int i = 1; i < parts; ++i) {
+    if (!supports({direction_at(start + turn * i / parts), to.x, to.at})) return false;
+  }
+  return true;
+}
+
+bool FlatBoundary::supports() {
+  const std::vector<Tangent> all = tangents();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Tangent& last = all[(k > 0 ? k : all.size()) - 1];
+    if (!supports(all[k]) || (all[k].begins && !supports_between(last, all[k]))) return false;
   }
   return true;
 }
@@ -284,8 +320,8 @@ HullFace FlatBoundary::facet() const {
   face.n = extent_.n;
   face.offset = extent_.middle + extent_.half_width;
   face.tolerant = std::max(2 * extent_.half_width, off_ > rounding_of_heights ? off_ : 0);
-  const bool is_curved = std::any_of(sides_.begin(), sides_.end(),
-                                     [](const FlatSide& side) { return side.is_curved(); });
+  const auto curved = [](const FlatSide& side) { return side.is_curved(); };
+  const bool is_curved = std::any_of(sides_.begin(), sides_.end(), curved);
   for (const FlatSide& side : sides_) {
     face.contacts.push_back(side.corner);
     face.points.push_back(geometry_.point(side.corner));
@@ -304,10 +340,8 @@ int FlatBoundary::source_of(const FlatSide& side) const {
 std::vector<dvec3> FlatBoundary::points_along(std::size_t k) const {
   const FlatSide& side = sides_[k];
   std::vector<dvec3> points = {geometry_.point(side.corner)};
-  for (int i = 1; side.is_curved() && i < stretch_points; ++i) {
-    const double t = Interval{side.along.from, side.along.to}.at(double(i) / stretch_points);
-    points.push_back(geometry_.point(side.along.at(t)));
-  }
+  for (int i = 1; side.is_curved() && i < stretch_points; ++i)
+    points.push_back(geometry_.point(side.at(i)));
   points.push_back(geometry_.point(sides_[next(k)].corner));
   return points;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace taut {
 namespace {
@@ -15,7 +16,11 @@ constexpr double joint_reach = 1e-3;
 
 OutlineChain::OutlineChain(const PlanarArcs& arcs, std::span<const dvec2> points,
                            const std::vector<Touch>& touches)
-    : arcs_(arcs), points_(points) {
+    : arcs_(arcs), points_(points), points_by_x_(points.size()) {
+  std::iota(points_by_x_.begin(), points_by_x_.end(), 0);
+  std::stable_sort(points_by_x_.begin(), points_by_x_.end(), [&](int a, int b) {
+    return points[std::size_t(a)].x < points[std::size_t(b)].x;
+  });
   collect(touches);
   for (std::size_t k = 0; k < chain_.size(); ++k) connect(k);
   for (Stretch& s : chain_) s.corner = has_no_length(s);
@@ -244,6 +249,19 @@ void OutlineChain::drop_collinear() {
   }
 }
 
+/// The point of the lowest number that is the same corner.
+std::optional<int> OutlineChain::point_at(const dvec2& x) const {
+  const auto begins_before = [&](int k, double least) { return points_[std::size_t(k)].x < least; };
+  auto k = std::lower_bound(points_by_x_.begin(), points_by_x_.end(), x.x - 2 * same_corner,
+                            begins_before);
+  std::optional<int> lowest;
+  for (; k != points_by_x_.end() && points_[std::size_t(*k)].x <= x.x + 2 * same_corner; ++k) {
+    const bool same = glm::distance(points_[std::size_t(*k)], x) <= same_corner;
+    if (same && (!lowest || *k < *lowest)) lowest = *k;
+  }
+  return lowest;
+}
+
 OutlineSide OutlineChain::corner_of(const Stretch& s, bool end) const {
   arcs_.check_stop();
   OutlineSide side;
@@ -251,15 +269,12 @@ OutlineSide OutlineChain::corner_of(const Stretch& s, bool end) const {
   side.curve = s.curve;
   side.t = end ? s.to : s.from;
   side.x = end ? s.end : s.start;
-  if (s.corner) {
-    const auto same = [&](const dvec2& p) { return glm::distance(p, side.x) <= same_corner; };
-    const auto point = std::find_if(points_.begin(), points_.end(), same);
-    if (point != points_.end()) {
-      side.point = int(point - points_.begin());
-      side.curve = -1;
-      side.t = 0;
-      side.x = *point;
-    }
+  if (!s.corner) return side;
+  if (const std::optional<int> point = point_at(side.x)) {
+    side.point = *point;
+    side.curve = -1;
+    side.t = 0;
+    side.x = points_[std::size_t(*point)];
   }
   return side;
 }

@@ -58,10 +58,12 @@ class OutlineChain {
   void drop_doubles();
   bool is_between(std::size_t k) const;
   bool supports(const dvec2& n, const dvec2& x) const;
+  std::optional<int> point_at(const dvec2& x) const;
   OutlineSide corner_of(const Stretch& s, bool end) const;
 
   const PlanarArcs& arcs_;
   std::span<const dvec2> points_;
+  std::vector<int> points_by_x_;
   std::vector<Stretch> chain_;
 };
 

@@ -129,6 +129,14 @@ PlanarArcs::PlanarArcs(std::span<const dvec2> points, std::span<const std::vecto
     active_.push_back(int(k));
     element_of_arc_.resize(std::size_t(elements_[k].last_arc) + 1, int(k));
   }
+  make_tree();
+}
+
+void PlanarArcs::make_tree() {
+  std::vector<PlanarTree::Entry> entries;
+  entries.reserve(active_.size());
+  for (const int k : active_) entries.push_back({k, PlanarBox(elements_[std::size_t(k)].polygon)});
+  tree_ = PlanarTree(std::move(entries));
 }
 
 void PlanarArcs::add_curve(int number) {
@@ -238,14 +246,15 @@ ArcPoint PlanarArcs::support(const dvec2& n, int preferred) const {
     highest = glm::dot(own.x, n) + planar_slack;
   }
   ArcPoint best = own;
-  for (const int k : active_) {
+  tree_.visit(n, highest, [&](int k) {
     const Element& element = elements_[std::size_t(k)];
-    if (height(element.polygon, n) <= highest) continue;
+    if (height(element.polygon, n) <= highest) return highest;
     const ArcPoint p = element_support(element, n, highest);
-    if (p.arc < 0) continue;
+    if (p.arc < 0) return highest;
     best = p;
     highest = glm::dot(p.x, n);
-  }
+    return highest;
+  });
   return best;
 }
 
@@ -264,18 +273,21 @@ void PlanarArcs::leave_out_inside(const std::vector<dvec2>& polygon) {
     const std::vector<dvec2>& control = elements_[std::size_t(k)].polygon;
     return std::all_of(control.begin(), control.end(), inside);
   });
+  make_tree();
 }
 
 std::vector<int> PlanarArcs::beyond(const dvec2& n, double least) const {
   stop_.check();
   std::vector<int> result;
-  for (const int k : active_) {
+  tree_.visit(n, least, [&](int k) {
     const Element& element = elements_[std::size_t(k)];
-    if (height(element.polygon, n) <= least) continue;
+    if (height(element.polygon, n) <= least) return least;
     for (int arc = element.first_arc; arc <= element.last_arc; ++arc) {
       if (height((*this)[arc].polygon, n) > least) result.push_back(arc);
     }
-  }
+    return least;
+  });
+  std::sort(result.begin(), result.end());
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "taut/core/geometry.h"
 #include "taut/core/stop.h"
+#include "taut/hull/planar/planar_tree.h"
 
 namespace taut {
 
@@ -89,6 +90,7 @@ class PlanarArcs {
   };
 
   void add_curve(int number);
+  void make_tree();
   void cut(int number, const std::vector<dvec3>& part, Interval t, int depth);
   ArcPoint element_support(const Element& element, const dvec2& n, double above) const;
   ArcPoint tangent_point(int arc, const dvec2& n) const;
@@ -98,7 +100,8 @@ class PlanarArcs {
   std::vector<ConvexArc> arcs_;
   std::vector<Element> elements_;
   std::vector<int> element_of_arc_;
-  std::vector<int> active_;
+  std::vector<int> active_;  ///< those that the support of all is sought among
+  PlanarTree tree_;          ///< of these
 };
 
 /// Heights that differ by less are taken for equal, with coordinates of size about one.
