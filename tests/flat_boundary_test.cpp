@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "models.h"
@@ -83,11 +84,7 @@ TEST(FlatBoundary, FlatPatches) {
   expect_flat(square + shifted(square, {4, 0, 0}), {24, 22, 4});
 }
 
-/// The hull of points along a curve, which lie in z = 0.
-KnownFlat hull_of_points(const BezierCurve& curve) {
-  constexpr int count = 20000;
-  std::vector<dvec2> points;
-  for (int k = 0; k <= count; ++k) points.emplace_back(point(curve, double(k) / count));
+KnownFlat hull_of_points(std::vector<dvec2> points) {
   std::sort(points.begin(), points.end(),
             [](const dvec2& a, const dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
   KnownFlat known;
@@ -106,6 +103,26 @@ KnownFlat hull_of_points(const BezierCurve& curve) {
     if (turn == 0) std::reverse(points.begin(), points.end());
   }
   return known;
+}
+
+/// The hull of points along a curve, which lie in z = 0.
+KnownFlat hull_of_points(const BezierCurve& curve) {
+  constexpr int count = 20000;
+  std::vector<dvec2> points;
+  for (int k = 0; k <= count; ++k) points.emplace_back(point(curve, double(k) / count));
+  return hull_of_points(std::move(points));
+}
+
+/// Likewise of a patch.
+KnownFlat hull_of_points(const BezierPatch& patch) {
+  constexpr int count = 400;
+  std::vector<dvec2> points;
+  for (int i = 0; i <= count; ++i) {
+    for (int j = 0; j <= count; ++j) {
+      points.emplace_back(point(patch, double(i) / count, double(j) / count));
+    }
+  }
+  return hull_of_points(std::move(points));
 }
 
 /// Curves that bend both ways and touch their hull in several places and with their ends.
@@ -168,17 +185,20 @@ TEST(FlatBoundary, ToleranceBelowTheResolutionIsNotConverged) {
   }
 }
 
-/// A patch that folds over beyond its border has no edge there.
-TEST(FlatBoundary, FoldsHaveNone) {
+/// A patch that folds over beyond its border has no edge there: the outline goes along the fold.
+TEST(FlatBoundary, FoldsAreFollowed) {
   BezierPatch patch{2, 2, {}};
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) patch.points.emplace_back(i, j, 0, 1);
   }
   patch.at(1, 1).x = 8;
-  const Scene scene = make_scene(of_patch(patch));
-  const Hull hull = precise_hull(scene, {.relative = 1e-3, .threads = 1, .progress = {}});
-  EXPECT_EQ(hull.kind, HullKind::planar);
-  EXPECT_EQ(hull.boundary, nullptr);
+  const Hull hull =
+      expect_flat(mapped(of_patch(patch), skew_rotation()), hull_of_points(patch), 1e-5);
+  const HullFace& face = hull.boundary->faces.front();
+  EXPECT_GT(face.tolerant, 0);
+  EXPECT_LE(hull.boundary->frame.length_to_model(face.tolerant), hull.resolution.rho);
+  EXPECT_TRUE(std::any_of(face.contacts.begin(), face.contacts.end(),
+                          [](const Contact& c) { return c.kind == SourceKind::face; }));
 }
 
 }  // namespace

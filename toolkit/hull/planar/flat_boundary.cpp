@@ -23,6 +23,9 @@ constexpr double rounding_of_heights = planar_slack + support_slack;
 /// them is no farther from the corner, between them, than d over the cosine of half of it.
 constexpr double most_turn = std::numbers::pi / 6;
 
+/// Places of faces beyond which an outline is not followed.
+constexpr std::size_t most_corners = 1 << 17;
+
 /// Segments of a stretch of an edge within a piece, and tangents of it that are checked.
 constexpr int stretch_points = 8;
 
@@ -88,9 +91,11 @@ class FlatBoundary {
                              const FlatSide& after) const;
   void see_corners();
   std::vector<Tangent> tangents() const;
-  bool supports(const Tangent& tangent);
-  bool supports_between(const Tangent& from, const Tangent& to);
-  bool supports();
+  void ask(const Tangent& tangent);
+  void ask_between(const Tangent& from, const Tangent& to);
+  void ask_all();
+  bool has_area() const;
+  bool find_sides(const std::vector<std::vector<dvec3>>& curves, bool with_faces);
 
   HullFace facet() const;
   void add_curves(HullBoundary& boundary) const;
@@ -102,9 +107,10 @@ class FlatBoundary {
   FlatExtent extent_;
   std::array<dvec3, 2> frame_;
   double rho_;
-  double width_;    ///< what may be left out
-  double off_ = 0;  ///< how far the outline is from the hull's
-  std::vector<Contact> corners_;
+  double width_;                  ///< what may be left out
+  double off_ = 0;                ///< how far the outline is from the hull's
+  std::vector<Contact> corners_;  ///< places that may be corners
+  std::vector<Contact> beyond_;   ///< places beyond the outline
   std::vector<Contact> pieces_;
   std::vector<FlatSide> sides_;
 };
@@ -282,35 +288,33 @@ std::vector<Tangent> FlatBoundary::tangents() const {
   return result;
 }
 
-/// Nothing is beyond a tangent by more than the resolution.
-bool FlatBoundary::supports(const Tangent& tangent) {
-  const double rise =
-      query_(unit(in_space(tangent.n)), tangent.at).h_bound - glm::dot(tangent.x, tangent.n);
+/// How far the model is beyond a tangent, and where, if that is more than the resolution.
+void FlatBoundary::ask(const Tangent& tangent) {
+  const Support top = query_(unit(in_space(tangent.n)), tangent.at);
+  const double rise = top.h_bound - glm::dot(tangent.x, tangent.n);
   const double off = rise > rounding_of_heights ? rise / std::cos(0.5 * most_turn) : rise;
   off_ = std::max(off_, off);
-  return off <= rho_ + geometry_.tie();
+  if (off > rho_ + geometry_.tie()) beyond_.push_back(top.contact);
 }
 
-/// Nor is it, between two of them, beyond the corner in which the second one begins.
-bool FlatBoundary::supports_between(const Tangent& from, const Tangent& to) {
+/// And, between two of them, beyond the corner in which the second one begins.
+void FlatBoundary::ask_between(const Tangent& from, const Tangent& to) {
   double turn = std::atan2(cross(from.n, to.n), glm::dot(from.n, to.n));
   // Those of both sides of a sharp tip are half a turn but for rounding.
   if (turn < -0.5 * std::numbers::pi) turn += 2 * std::numbers::pi;
   const double start = std::atan2(from.n.y, from.n.x);
   const int parts = int(std::ceil(turn / most_turn));
   for (int i = 1; i < parts; ++i) {
-    if (!supports({direction_at(start + turn * i / parts), to.x, to.at})) return false;
+    ask({direction_at(start + turn * i / parts), to.x, to.at});
   }
-  return true;
 }
 
-bool FlatBoundary::supports() {
+void FlatBoundary::ask_all() {
   const std::vector<Tangent> all = tangents();
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const Tangent& last = all[(k > 0 ? k : all.size()) - 1];
-    if (!supports(all[k]) || (all[k].begins && !supports_between(last, all[k]))) return false;
+    ask(all[k]);
+    if (all[k].begins) ask_between(all[(k > 0 ? k : all.size()) - 1], all[k]);
   }
-  return true;
 }
 
 /// The side that is seen from along n.
@@ -371,19 +375,39 @@ void FlatBoundary::add_curves(HullBoundary& boundary) const {
   }
 }
 
+bool FlatBoundary::has_area() const {
+  return sides_.size() > 2 ||
+         (!sides_.empty() && (sides_.front().is_curved() || sides_.back().is_curved()));
+}
+
+/// Of the places and curves, and what is beyond them; false without an area. Of places of faces
+/// none is left out: they are as far apart as the resolution asks for.
+bool FlatBoundary::find_sides(const std::vector<std::vector<dvec3>>& curves, bool with_faces) {
+  std::vector<dvec2> points;
+  points.reserve(corners_.size());
+  for (const Contact& c : corners_) points.push_back(in_plane(geometry_.point(c)));
+  sides_.clear();
+  beyond_.clear();
+  off_ = 0;
+  take(planar_hull(points, curves, geometry_.stop()));
+  if (!sides_.empty() && !with_faces) simplify();
+  close_dents();
+  if (!has_area()) return false;
+  ask_all();
+  return true;
+}
+
 std::optional<HullBoundary> FlatBoundary::make() {
   collect();
-  std::vector<dvec2> points;
-  for (const Contact& c : corners_) points.push_back(in_plane(geometry_.point(c)));
   std::vector<std::vector<dvec3>> curves;
+  curves.reserve(pieces_.size());
   for (const Contact& c : pieces_) curves.push_back(planar_curve(c));
-  take(planar_hull(points, curves, geometry_.stop()));
-  if (sides_.empty()) return std::nullopt;
-  simplify();
-  close_dents();
-  const bool has_area =
-      sides_.size() > 2 || sides_.front().is_curved() || sides_.back().is_curved();
-  if (!has_area || !supports()) return std::nullopt;
+  if (!find_sides(curves, false)) return std::nullopt;
+  // Faces that fold reach beyond their borders.
+  while (!beyond_.empty()) {
+    corners_.insert(corners_.end(), beyond_.begin(), beyond_.end());
+    if (corners_.size() > most_corners || !find_sides(curves, true)) return std::nullopt;
+  }
   see_corners();
   HullBoundary boundary;
   boundary.frame = geometry_.scene().frame();

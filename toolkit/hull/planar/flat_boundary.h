@@ -24,8 +24,10 @@ struct FlatExtent {
 /// the facet is tolerant by the scene's width, and by how far its outline is from the
 /// hull's.
 ///
-/// None where the outline is not one of edges and vertices, to within rho: that of faces that fold
-/// over beyond their borders.
+/// Where faces fold over beyond their borders, the outline goes through places of these that are so
+/// near to each other that none is beyond it by more than rho.
+///
+/// None where that takes more than some hundred thousand places, or there is no area.
 /// @pre the scene reaches no farther than rho across the plane
 std::optional<HullBoundary> flat_boundary(const ContactGeometry& geometry, SupportQuery& query,
                                           const FlatExtent& extent, double rho);
