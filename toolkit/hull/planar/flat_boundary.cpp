@@ -7,6 +7,7 @@
 
 #include "taut/core/integers.h"
 #include "taut/core/tolerances.h"
+#include "taut/hull/planar/flat_side.h"
 #include "taut/hull/planar/planar_arcs.h"
 #include "taut/hull/planar/planar_hull.h"
 
@@ -25,23 +26,6 @@ constexpr double most_turn = std::numbers::pi / 6;
 
 /// Places of faces beyond which an outline is not followed.
 constexpr std::size_t most_corners = 1 << 17;
-
-/// Segments of a stretch of an edge within a piece, and tangents of it that are checked.
-constexpr int stretch_points = 8;
-
-/// A side of the outline and the corner in which it begins.
-struct FlatSide {
-  Contact corner;
-  dvec2 x = dvec2(0);
-  EdgeStretch along;           ///< none where it is straight
-  std::vector<dvec2> polygon;  ///< its control points
-
-  bool is_curved() const { return along.piece >= 0; }
-  /// The place so many of stretch_points along.
-  Contact at(int i) const {
-    return along.at(Interval{along.from, along.to}.at(double(i) / stretch_points));
-  }
-};
 
 /// A supporting line of the outline, and where it touches that.
 struct Tangent {
@@ -98,9 +82,6 @@ class FlatBoundary {
   bool find_sides(const std::vector<std::vector<dvec3>>& curves, bool with_faces);
 
   HullFace facet() const;
-  void add_curves(HullBoundary& boundary) const;
-  std::vector<dvec3> points_along(std::size_t k) const;
-  int source_of(const FlatSide& side) const;
 
   const ContactGeometry& geometry_;
   SupportQuery& query_;
@@ -334,47 +315,6 @@ HullFace FlatBoundary::facet() const {
   return face;
 }
 
-int FlatBoundary::source_of(const FlatSide& side) const {
-  if (!side.is_curved()) return -1;
-  const Contact c = side.along.at(0);
-  const int edge = geometry_.piece(c).edge;
-  return geometry_.scene().model().source_id({SourceKind::edge, c.instance, edge});
-}
-
-std::vector<dvec3> FlatBoundary::points_along(std::size_t k) const {
-  const FlatSide& side = sides_[k];
-  std::vector<dvec3> points = {geometry_.point(side.corner)};
-  for (int i = 1; side.is_curved() && i < stretch_points; ++i)
-    points.push_back(geometry_.point(side.at(i)));
-  points.push_back(geometry_.point(sides_[next(k)].corner));
-  return points;
-}
-
-/// Consecutive stretches of one edge are one curve.
-void FlatBoundary::add_curves(HullBoundary& boundary) const {
-  const std::size_t count = sides_.size();
-  const auto goes_on = [&](std::size_t k) {
-    const int source = source_of(sides_[k % count]);
-    return source >= 0 && source == source_of(sides_[(k + count - 1) % count]);
-  };
-  std::size_t first = 0;
-  while (first < count && goes_on(first)) ++first;
-  const bool closed = first == count;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t k = (first + i) % count;
-    if (i == 0 || !goes_on(k)) {
-      HullCurve& curve = boundary.curves.emplace_back();
-      curve.source = source_of(sides_[k]);
-      curve.kind = curve.source >= 0 ? HullCurveKind::edge : HullCurveKind::ruling;
-      curve.faces = {0, -1};
-      curve.closed = closed;
-    }
-    std::vector<dvec3>& points = boundary.curves.back().points;
-    const std::vector<dvec3> own = points_along(k);
-    points.insert(points.end(), own.begin() + (points.empty() ? 0 : 1), own.end());
-  }
-}
-
 bool FlatBoundary::has_area() const {
   return sides_.size() > 2 ||
          (!sides_.empty() && (sides_.front().is_curved() || sides_.back().is_curved()));
@@ -413,7 +353,7 @@ std::optional<HullBoundary> FlatBoundary::make() {
   boundary.frame = geometry_.scene().frame();
   boundary.dimension = 2;
   boundary.faces = {facet()};
-  add_curves(boundary);
+  boundary.curves = flat_curves(geometry_, sides_);
   boundary.gap = boundary.faces.front().tolerant > 0 ? rho_ : 0;
   return boundary;
 }
