@@ -92,6 +92,20 @@ TEST(VertexBudget, IsKeptWithNearlyTheDistanceOfGreedyInsertion) {
   }
 }
 
+TEST(VertexBudget, IsNeverWorseThanASmallerOne) {
+  const Shape flat = mapped({{}, {shapes::twisted_cubic()}, {}}, dmat3(1, 0, 0, 0, 1, 0, 0, 0, 0));
+  for (const Shape& shape : {shapes::torus(2, 0.5), shapes::box(1, 2, 3), flat}) {
+    const Scene scene = make_scene(shape);
+    double before = infinity;
+    for (int budget = 4; budget <= 50; ++budget) {
+      const Hull hull =
+          sampled_hull(scene, {.threads = 1, .vertex_budget = budget, .progress = {}});
+      EXPECT_LE(hull.distance_bound, before) << budget;
+      before = hull.distance_bound;
+    }
+  }
+}
+
 TEST(VertexBudget, OfThePreciseHullLeavesItsBoundaryExact) {
   const Scene scene = make_scene(budget_shapes()[1]);
   const Hull hull = convex_hull(scene, {.threads = 1, .vertex_budget = 30, .progress = {}});

@@ -209,12 +209,15 @@ SampledPolytope ImagePolytope::run() {
 /// Until the last one is within the tolerance, or tells why it is not.
 void ImagePolytope::refine(std::optional<SampledPolytope>& last) {
   HullStatistics statistics;
+  double least = infinity;
   for (;;) {
     // Any distance ends the refinement by queries before it begins.
     last.emplace(sampled_polytope(content_.scene, options_, 2 * content_.scene.diagonal(), samples_,
                                   points_));
     last->statistics += statistics;
     statistics = last->statistics;
+    // It only grows.
+    least = last->distance_bound = std::min(last->distance_bound, least);
     if (last->limit || last->distance_bound <= tolerance_) return;
     last->failure = images_too_coarse;
     const auto full = std::size_t(options_.vertex_budget.value_or(options_.max_vertices));

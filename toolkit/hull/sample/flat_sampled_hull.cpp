@@ -150,7 +150,8 @@ void FlatSampler::certify(const std::vector<int>& corners) {
     largest = std::max(largest, bounds[k]);
   }
   bounds_ = std::move(bounds);
-  bound_ = largest;
+  // The outline only grows.
+  bound_ = certified_.empty() ? largest : std::min(bound_, largest);
   certified_ = corners;
 }
 

@@ -52,7 +52,7 @@ class Sampler {
   double share_done() const;
   void bound_narrow(int vertex, int facet, const std::vector<dvec3>& normals);
   bool refine();
-  bool refine_narrow();
+  bool refine_narrow(std::size_t most);
   bool repeats_vertex(const dvec3& point, int facet);
   bool insert(const Sample& sample, const dvec3& point, int facet);
   InsertMiddle inserter() {
@@ -243,11 +243,10 @@ bool Sampler::restore_edges() {
                         options_.progress);
 }
 
-/// Inserts the support points of directions in narrow cones that keep a vertex from its tolerance.
-/// False if none could be inserted.
-bool Sampler::refine_narrow() {
+/// Inserts the support points of directions in narrow cones that keep a vertex from its tolerance,
+/// up to so many points. False if none could be inserted.
+bool Sampler::refine_narrow(std::size_t most) {
   bool inserted = false;
-  const std::size_t most = most_points();
   for (const auto& [v, known] : narrow_vertices_) {
     for (const NarrowCones::Asked& asked : known.asked) {
       options_.progress.check();
@@ -296,7 +295,7 @@ bool Sampler::refine() {
   });
   const std::size_t most = most_points();
   bool inserted = options_.vertex_budget && insert_farthest();
-  inserted = refine_narrow() || inserted;
+  inserted = refine_narrow(most) || inserted;
   for (const Candidate& c : candidates) {
     options_.progress.check();
     if (hull_.points().size() >= most) break;
@@ -323,7 +322,8 @@ SampledPolytope Sampler::result() {
     const double bound = scene_.frame().length_to_model(distance_bound(vertex_gaps_[v], int(v)));
     bounds.push_back(std::min(bound, scene_.diagonal()));
   }
-  const double bound = std::max(scene_.frame().length_to_model(bound_), vertex_rounding(scene_));
+  const double bound =
+      std::max(scene_.frame().length_to_model(*certified_), vertex_rounding(scene_));
   statistics_.support_queries += narrow_.query().queries();
   statistics_.newton_iterations += narrow_.query().newton_iterations();
   return {std::move(hull_), std::move(samples_), std::move(gaps), std::move(bounds), bound,
