@@ -284,6 +284,20 @@ TEST(EnvelopeMap, KnowsTheStructureOfKnownHulls) {
   }
 }
 
+/// Curves of few pixels, which cross the equator or end at it.
+TEST(EnvelopeMap, CurvesOfManyPoints) {
+  Random random(3);
+  std::vector<dvec3> points;
+  for (int k = 0; k < 3000; ++k) points.push_back(random_direction(random));
+  const Scene scene = make_scene({{}, {}, points});
+  for (const int size : {64, 256}) {
+    for (const EnvelopeCurve& curve : trace_envelope(draw(scene, size)).curves) {
+      EXPECT_FALSE(curve.points.empty());
+      for (const EnvelopeCurvePoint& p : curve.points) EXPECT_NEAR(glm::length(p.n), 1, 1e-12);
+    }
+  }
+}
+
 TEST(EnvelopeMap, CurveOfTwoSpheresIsTheirCircle) {
   // Planes touch both where n.z = (r1 - r2) / d, the bigger sphere below.
   const Scene scene = make_scene(two_spheres(1, 0.5, 3));

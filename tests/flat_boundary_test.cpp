@@ -172,6 +172,16 @@ TEST(FlatBoundary, WithinTheResolution) {
             HullKind::solid);
 }
 
+/// What is off a plane by less than that it is flat, but by more than rounding.
+TEST(FlatBoundary, NextToRounding) {
+  const double off = 2e-12;
+  const Hull hull =
+      expect_flat(quad({0, 0, off}, {0, 3, -off}, {4, 0, -off}, {4, 3, off}), {12, 14, 4}, 1e-7);
+  const HullFace& face = hull.boundary->faces.front();
+  EXPECT_GE(hull.boundary->frame.length_to_model(face.tolerant), 2 * off);
+  EXPECT_LE(hull.boundary->frame.length_to_model(face.tolerant), 5 * off);
+}
+
 TEST(FlatBoundary, ToleranceBelowTheResolutionIsNotConverged) {
   const double off = 2e-8;
   const Scene scene = make_scene(quad({0, 0, off}, {0, 3, -off}, {4, 0, -off}, {4, 3, off}));
@@ -199,6 +209,40 @@ TEST(FlatBoundary, FoldsAreFollowed) {
   EXPECT_LE(hull.boundary->frame.length_to_model(face.tolerant), hull.resolution.rho);
   EXPECT_TRUE(std::any_of(face.contacts.begin(), face.contacts.end(),
                           [](const Contact& c) { return c.kind == SourceKind::face; }));
+}
+
+/// The outline turns around so sharply that its speed all but vanishes there.
+TEST(FlatBoundary, PerimetersOfThinEllipses) {
+  for (const double b : {1e-2, 1e-4}) {
+    const Shape ellipse = {{}, {circle({0, 0, 0}, {1, 0, 0}, {0, b, 0})}, {}};
+    // By arithmetic and geometric means (Gauss).
+    double a = 1, g = b, sum = 1 - (1 - b * b) / 2, power = 0.5;
+    while (a - g > 1e-16) {
+      const double c = (a - g) / 2;
+      power *= 2;
+      sum -= power * c * c;
+      const double mean = (a + g) / 2;
+      g = std::sqrt(a * g);
+      a = mean;
+    }
+    expect_flat(mapped(ellipse, skew_rotation()), {pi * b, 2 * pi * sum / a, 1}, 1e-11);
+  }
+}
+
+/// A face in the plane is told, though its parameters fold.
+TEST(FlatBoundary, LiesOnAFaceThatFolds) {
+  const Shape folded = quad({0, 0, 0}, {0, 3, 0}, {4, 3, 0}, {4, 0, 0}) +
+                       quad({0, 0, 0}, {0, 3, 0}, {4, 1, 0}, {1, 1, 0});
+  const Shape curved = of_patch(
+      {1,
+       2,
+       {{0, 0, 0, 1}, {3, 3, 0, 1}, {0, 2, 0, 1}, {2, 0, 0, 1}, {-1, 3, 0, 1}, {2, 2, 0, 1}}});
+  for (const Shape& shape : {folded, curved}) {
+    const Hull hull = precise_hull(make_scene(mapped(shape, skew_rotation())),
+                                   {.relative = 1e-3, .threads = 1, .progress = {}});
+    ASSERT_TRUE(hull.boundary);
+    EXPECT_EQ(hull.boundary->faces.front().source, 0);
+  }
 }
 
 }  // namespace

@@ -186,11 +186,9 @@ std::vector<Chain> ImageChains::run() {
   find_crossings();
   link_blocks();
   const auto inner_links = [&](const Crossing& c) {
-    int count = 0;
-    for (int k = 0; k < c.link_count; ++k) {
-      if (!crossings_[std::size_t(c.next[std::size_t(k)])].outside) ++count;
-    }
-    return count;
+    return std::count_if(c.next.begin(), c.next.end(), [&](int next) {
+      return next >= 0 && !crossings_[std::size_t(next)].outside;
+    });
   };
   std::vector<Chain> chains;
   for (const bool closed : {false, true}) {

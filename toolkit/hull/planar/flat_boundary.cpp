@@ -62,6 +62,7 @@ class FlatBoundary {
   dvec3 in_space(const dvec2& d) const { return d.x * frame_[0] + d.y * frame_[1]; }
   std::size_t next(std::size_t k) const { return (k + 1) % sides_.size(); }
 
+  void measure_across();
   void collect();
   Contact on_piece(int curve, double t) const;
   std::vector<dvec3> planar_curve(const Contact& piece) const;
@@ -95,6 +96,19 @@ class FlatBoundary {
   std::vector<Contact> pieces_;
   std::vector<FlatSide> sides_;
 };
+
+/// Of what is thinner than its plane is told apart by, but thicker than rounding makes it.
+void FlatBoundary::measure_across() {
+  if (extent_.half_width > 0) return;
+  const Scene& scene = geometry_.scene();
+  const dvec3 reach = glm::max(glm::abs(scene.box().lower), glm::abs(scene.box().upper));
+  const double of_coordinates = coordinate_rounding * (reach.x + reach.y + reach.z);
+  const double width = query_(extent_.n).h_bound + query_(-extent_.n).h_bound;
+  // Bounds in a scene of size two, at most.
+  constexpr double slack = 2 * 2 * support_slack;
+  if (width <= slack + scene.frame().length_to_frame(of_coordinates)) return;
+  extent_.half_width = 0.5 * width;
+}
 
 /// The model's vertices, and pieces of edges that are not straight.
 void FlatBoundary::collect() {
@@ -338,6 +352,7 @@ bool FlatBoundary::find_sides(const std::vector<std::vector<dvec3>>& curves, boo
 }
 
 std::optional<HullBoundary> FlatBoundary::make() {
+  measure_across();
   collect();
   std::vector<std::vector<dvec3>> curves;
   curves.reserve(pieces_.size());

@@ -25,27 +25,28 @@ int source_of(const ContactGeometry& geometry, const Contact& c) {
   return geometry.scene().model().source_id({SourceKind::face, c.instance, geometry.patch(c).face});
 }
 
-/// Whether the corners and the middle of the patch lie in the facet's plane.
+/// Whether the patch lies in the facet's plane: as many of its points do as its degrees ask for.
 bool is_in_plane(const ContactGeometry& geometry, Contact c, const HullFace& facet) {
   const double allowed = geometry.tie() + geometry.scene().frame().length_to_frame(geometry.bent());
-  for (const double u : {0.0, 0.5, 1.0}) {
-    for (const double v : {0.0, 0.5, 1.0}) {
-      c.u = u;
-      c.v = v;
+  const BezierPatch& bezier = geometry.patch(c).bezier;
+  for (int i = 0; i <= bezier.degree_u; ++i) {
+    for (int j = 0; j <= bezier.degree_v; ++j) {
+      c.u = double(i) / bezier.degree_u;
+      c.v = double(j) / bezier.degree_v;
       if (std::abs(glm::dot(geometry.point(c), facet.n) - facet.offset) > allowed) return false;
     }
   }
   return true;
 }
 
-/// Plane patches, those that are ruled in both parameters, on facets.
+/// Plane patches, which are ruled, on facets.
 void label_facets(const ContactGeometry& geometry, HullBoundary& boundary) {
   const Model& model = geometry.scene().model();
   for (const int i : geometry.scene().distinct_instances()) {
     const Part& part = model.parts()[std::size_t(model.instances()[std::size_t(i)].part)];
     for (int p = 0; p < int(part.patches().size()); ++p) {
       const Patch& patch = part.patches()[std::size_t(p)];
-      if (!geometry.lines(patch).both()) continue;
+      if (!geometry.lines(patch).both() && !patch.ruled()) continue;
       const Contact c{i, SourceKind::face, p, 0, 0};
       for (HullFace& face : boundary.faces) {
         if (face.kind != FaceKind::facet || face.source >= 0) continue;
