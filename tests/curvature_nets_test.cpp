@@ -215,5 +215,27 @@ TEST(CurvatureNets, TellNothingOfFlatPatches) {
   EXPECT_FALSE(form.surely_negative() || form.surely_positive() || form.surely_saddle());
 }
 
+TEST(CurvatureNets, WeightsThatAreAllTheSameCountForNothing) {
+  const BezierPatch bowl = {2,
+                            2,
+                            {{0, 0, 1, 1},
+                             {1, 0, 0, 1},
+                             {2, 0, 1, 1},
+                             {0, 1, 0, 1},
+                             {1, 1, -1, 1},
+                             {2, 1, 0, 1},
+                             {0, 2, 1, 1},
+                             {1, 2, 0, 1},
+                             {2, 2, 1, 1}}};
+  BezierPatch weighted = bowl;
+  for (dvec4& p : weighted.points) p *= 0.25;
+  const CurvatureNets nets(bowl, no_poles);
+  const CurvatureNets same(weighted, no_poles);
+  EXPECT_EQ(nets.definite_sign(), same.definite_sign());
+  EXPECT_GT(nets.shortfall_bound(-nets.definite_sign()), 0);
+  EXPECT_EQ(nets.shortfall_bound(-nets.definite_sign()),
+            same.shortfall_bound(-nets.definite_sign()));
+}
+
 }  // namespace
 }  // namespace taut

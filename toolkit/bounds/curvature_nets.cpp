@@ -52,14 +52,12 @@ bool divide(ScaledNet<Entry>& net, Side side, int power, double zero) {
   return true;
 }
 
-/// w Xab - wab X of a homogeneous patch, with derivatives `du` times along u and `dv` along v.
-ScaledNet<dvec3> second_derivative(const BezierPatch& patch, const std::vector<dvec4>& x, int du,
-                                   int dv) {
+/// Xab of a homogeneous patch, with derivatives `du` times along u and `dv` along v.
+ScaledNet<dvec4> derivative(const BezierPatch& patch, const std::vector<dvec4>& x, int du, int dv) {
   const int p = patch.degree_u;
   const int q = patch.degree_v;
   const NetShape shape{p - du, q - dv};
-  ScaledNet<dvec3> result({2 * p - du, 2 * q - dv});
-  if (shape.p < 0 || shape.q < 0) return ScaledNet<dvec3>({0, 0});
+  if (shape.p < 0 || shape.q < 0) return ScaledNet<dvec4>({0, 0});
   const double factor = (du == 2   ? p * (p - 1)
                          : du == 1 ? p
                                    : 1) *
@@ -72,10 +70,24 @@ ScaledNet<dvec3> second_derivative(const BezierPatch& patch, const std::vector<d
     if (dv == 2) return at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2);
     return at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j);
   };
-  const auto points = scaled<dvec4>({p, q}, at);
-  const auto derivative =
-      scaled<dvec4>(shape, [&](int i, int j) { return factor * difference(i, j); });
-  add_product(points, derivative, 0, 0, result,
+  return scaled<dvec4>(shape, [&](int i, int j) { return factor * difference(i, j); });
+}
+
+/// w Xab - wab X; of patches whose weights are all one and the same, Xab / w, of a lower degree.
+ScaledNet<dvec3> second_derivative(const BezierPatch& patch, const std::vector<dvec4>& x, int du,
+                                   int dv) {
+  const ScaledNet<dvec4> xab = derivative(patch, x, du, dv);
+  const int p = patch.degree_u;
+  const int q = patch.degree_v;
+  if (is_polynomial(patch.points)) {
+    ScaledNet<dvec3> result(xab.shape);
+    std::transform(xab.entries.begin(), xab.entries.end(), result.entries.begin(),
+                   [&](const dvec4& a) { return dvec3(a) / x.front().w; });
+    return result;
+  }
+  ScaledNet<dvec3> result({p + xab.shape.p, q + xab.shape.q});
+  const auto points = scaled<dvec4>({p, q}, [&](int i, int j) { return x[patch.index(i, j)]; });
+  add_product(points, xab, 0, 0, result,
               [](const dvec4& a, const dvec4& b) { return a.w * dvec3(b) - b.w * dvec3(a); });
   return result;
 }

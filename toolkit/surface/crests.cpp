@@ -28,11 +28,14 @@ struct Across {
     return glm::cross(j.Su, j.Sv);
   }
 
-  /// Sine of the angle between the normals at two places of the curve s, about the axis of which
-  /// it turns: zero at a crest, and of either sign in all coordinates beside most.
-  dvec3 turn(double s) const {
-    // Away from the borders, where patches collapse, and not at each other's mirror images.
-    return glm::cross(unit(normal(s, 0.21)), unit(normal(s, 0.73)));
+  /// The normal at one place of the curve s, away from the borders, where patches collapse.
+  dvec3 first_normal(double s) const { return unit(normal(s, 0.21)); }
+  /// Sine of the angle between it and the normal at another place, not at the first one's mirror
+  /// image, about the axis of which it turns: zero at a crest, and of either sign in all
+  /// coordinates beside most.
+  dvec3 turn(double s) const { return turn_from(first_normal(s), s); }
+  dvec3 turn_from(const dvec3& first, double s) const {
+    return glm::cross(first, unit(normal(s, 0.73)));
   }
 };
 
@@ -92,7 +95,8 @@ struct Turn {
 };
 
 Turn turn_at(const Across& across, double s) {
-  return {s, unit(across.normal(s, 0.21)), across.turn(s)};
+  const dvec3 n = across.first_normal(s);
+  return {s, n, across.turn_from(n, s)};
 }
 
 /// Largest turn of the normal between neighbours, as a cosine: signs may change and change back
