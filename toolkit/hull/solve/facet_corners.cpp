@@ -65,8 +65,8 @@ std::optional<EdgeStretch> across_dent(const ContactGeometry& geometry, const Ed
 }
 
 /// The other contact, of the same edge, is no farther from the tangent in the one than so much.
-bool is_straight_on(const ContactGeometry& geometry, const Contact& c, const Contact& other,
-                    double depth) {
+bool goes_straight_to(const ContactGeometry& geometry, const Contact& c, const Contact& other,
+                      double depth) {
   if (c.kind != SourceKind::edge) return true;
   const ContactJet j = geometry.jet(c);
   const dvec3 way = geometry.point(other) - j.x;
@@ -100,7 +100,7 @@ void move_to_ends(const ContactGeometry& geometry, double depth, double distance
   if (facet.sides.empty()) return;
   const auto moved = [&](const Contact& c) {
     const Contact end = moved_to_border(geometry, c, distance);
-    return is_straight_on(geometry, c, end, depth) ? end : c;
+    return goes_straight_to(geometry, c, end, depth) ? end : c;
   };
   for (EdgeStretch& s : facet.sides) {
     if (s.piece < 0) continue;
@@ -120,9 +120,9 @@ void unite_corners(const ContactGeometry& geometry, double depth, double distanc
   // A corner with a curved side behind it stays, as that begins there.
   for (std::size_t k = 0; k < facet.contacts.size() && facet.contacts.size() > 2;) {
     const std::size_t next = (k + 1) % facet.contacts.size();
-    const bool is_one =
-        !facet.is_curved(k) && glm::distance(facet.points[k], facet.points[next]) <= distance &&
-        off_outline(geometry, k, facet) <= depth;
+    const bool is_one = !facet.is_curved(k) &&
+                        glm::distance(facet.points[k], facet.points[next]) <= distance &&
+                        off_outline(geometry, k, facet) <= depth;
     if (is_one) {
       erase(k, facet);
     } else {
