@@ -89,9 +89,18 @@ Report::ExactHull::Tolerant tolerant_faces(const HullBoundary& boundary) {
   return tolerant;
 }
 
-/// Adds the measures of a boundary. @throws LimitMet
-void add_measures(Input& input, const HullBoundary& boundary, Console& console,
-                  Report::ExactHull& exact) {
+/// Why a boundary is not whole as far as its measures tell.
+std::optional<std::string> failure_of_measures(const BoundaryMeasures& measures) {
+  // What is known to the resolution only is so of what is whole, too.
+  const double of_places = measures.bounds.largest() - measures.accuracy;
+  if (measures.accuracy <= std::max(worst_accuracy, of_places)) return {};
+  return "faces of the exact hull are missing or do not meet: its measures are accurate to " +
+         number(measures.accuracy, 2) + " only";
+}
+
+/// Adds the measures of a boundary, and what they tell against it. @throws LimitMet
+void add_measures(Input& input, Outcome& outcome, Console& console, Report::ExactHull& exact) {
+  const HullBoundary& boundary = *outcome.exact().boundary;
   const Progress progress = console.progress();
   progress.update("measure", 0);
   const BoundaryMeasures measures =
@@ -100,13 +109,7 @@ void add_measures(Input& input, const HullBoundary& boundary, Console& console,
   exact.measures = measures;
   exact.mean_width = measures.mean_width;
   exact.measures_accuracy = measures.bounds.largest();
-  // What is known to the resolution only is so of what is whole, too.
-  const double of_places = measures.bounds.largest() - measures.accuracy;
-  if (measures.accuracy <= std::max(worst_accuracy, of_places)) return;
-  console.warn("inexact-measures",
-               "the measures of the exact hull are accurate to " + number(measures.accuracy, 2) +
-                   " only: faces of it may be missing or not meet; the mesh is whole and within "
-                   "its distance");
+  if (!outcome.failure) outcome.failure = failure_of_measures(measures);
 }
 
 /// Of a hull that is its mesh: that of points and polygons, a segment, or a point. How far its two
@@ -140,7 +143,7 @@ Report::ExactHull exact_hull(Input& input, Outcome& outcome, const std::string& 
       exact.mean_width = mean_width(hull.mesh);
     } else if (boundary.unresolved.empty()) {
       try {
-        add_measures(input, boundary, console, exact);
+        add_measures(input, outcome, console, exact);
       } catch (const LimitMet& met) {
         outcome.meet(std::string(met.what()) + " before the hull was measured");
       }
