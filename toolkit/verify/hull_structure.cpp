@@ -22,7 +22,7 @@ class CurveEnds {
   CurveEnds(const HullDocument& hull, double tolerance);
   /// The vertex in which the curve begins (0) or ends (1).
   int vertex(int curve, int end) const { return vertex_[2 * to_size(curve) + to_size(end)]; }
-  /// Begin and end are one vertex, and that is all there is of it.
+  /// Begin and end are one vertex, and that is all there is of it, to within its bound.
   bool is_point(int curve) const { return point_[to_size(curve)]; }
 
  private:
@@ -39,9 +39,6 @@ CurveEnds::CurveEnds(const HullDocument& hull, double tolerance) {
     ends.push_back(curve.points.back());
     reach.insert(reach.end(), 2, 0.5 * tolerance + bound_of(hull, curve));
     farthest = std::max(farthest, reach.back());
-    point_.push_back(std::all_of(curve.points.begin(), curve.points.end(), [&](const dvec3& p) {
-      return glm::distance(p, curve.points.front()) <= tolerance;
-    }));
   }
   // Ends of two curves that no face brings together are two, be they in one place: where parts of
   // the boundary touch in a point, between facets without area.
@@ -69,6 +66,14 @@ CurveEnds::CurveEnds(const HullDocument& hull, double tolerance) {
     }
   }
   for (int i = 0; i < int(ends.size()); ++i) vertex_.push_back(vertices.find(i));
+  for (int c = 0; c < int(hull.curves.size()); ++c) {
+    const std::vector<dvec3>& points = hull.curves[to_size(c)].points;
+    const double near = std::max(tolerance, 2 * reach[2 * to_size(c)]);
+    point_.push_back(vertex(c, 0) == vertex(c, 1) &&
+                     std::all_of(points.begin(), points.end(), [&](const dvec3& p) {
+                       return glm::distance(p, points.front()) <= near;
+                     }));
+  }
 }
 
 /// Checks one document.
