@@ -131,9 +131,16 @@ TEST(ArcPieces, ContactsThatComeBackToAPlaceOfAnEdgeStayThere) {
     return result;
   };
   std::vector<ArcPiece> pieces = {piece(1e-8), piece(1e-5)};
+  pieces[1].rulings.front() = pieces[0].rulings.back();
   tell_corners(pieces, 1e-7, 1e-3, 1e-8);
   for (const Ruling& r : pieces[0].rulings) EXPECT_EQ(r.contact[0].u, 0.25);
+  // What goes on does so from there.
+  EXPECT_EQ(pieces[1].rulings[0].contact[0].u, 0.25);
   EXPECT_EQ(pieces[1].rulings[1].contact[0].u, 0.25 + 1e-4);
+  // The last piece ends where the arc does.
+  std::vector<ArcPiece> last = {piece(1e-8)};
+  tell_corners(last, 1e-7, 1e-3, 1e-8);
+  EXPECT_EQ(last[0].rulings[1].contact[0].u, 0.25 + 1e-4);
   // At an end of it they may be a vertex's.
   std::vector<ArcPiece> at_end = {piece(0)};
   for (Ruling& r : at_end[0].rulings) r.contact[0].u -= 0.25;

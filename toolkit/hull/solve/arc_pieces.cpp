@@ -349,27 +349,34 @@ void drop_turns(std::vector<Ruling>& rulings, double extent) {
 }
 
 void tell_corners(std::vector<ArcPiece>& pieces, double place, double extent, double depth) {
-  for (ArcPiece& piece : pieces) {
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    std::vector<Ruling>& rulings = pieces[k].rulings;
+    Ruling* next = k + 1 < pieces.size() ? &pieces[k + 1].rulings.front() : nullptr;
     for (const std::size_t i : {0u, 1u}) {
-      const Contact corner = piece.rulings.front().contact[i];
-      const dvec3 end = piece.rulings.front().point[i];
-      const Contact& last = piece.rulings.back().contact[i];
-      const bool is_back = corner.kind == SourceKind::edge
-                               ? 0 < corner.u && corner.u < 1 &&
-                                     glm::distance(end, piece.rulings.back().point[i]) <= place
-                               : corner.u == last.u && corner.v == last.v;
-      const bool comes_back =
-          corner.kind != SourceKind::vertex && same_element(corner, last) && is_back;
+      const Contact corner = rulings.front().contact[i];
+      const dvec3 end = rulings.front().point[i];
+      const Contact last = rulings.back().contact[i];
+      const bool is_same = corner.u == last.u && corner.v == last.v;
+      // What goes on from a place beside goes on from there.
+      const bool is_beside = corner.kind == SourceKind::edge && next &&
+                             same_element(next->contact[i], last) &&
+                             glm::distance(end, rulings.back().point[i]) <= place;
+      const bool is_inside = corner.kind == SourceKind::face || (0 < corner.u && corner.u < 1);
+      const bool comes_back = corner.kind != SourceKind::vertex && is_inside &&
+                              same_element(corner, last) && (is_same || is_beside);
       const bool stays =
-          comes_back && std::all_of(piece.rulings.begin(), piece.rulings.end(), [&](const auto& r) {
+          comes_back && std::all_of(rulings.begin(), rulings.end(), [&](const auto& r) {
             return glm::distance(r.point[i], end) <= extent &&
                    glm::dot(r.point[i] - end, r.n) <= depth;
           });
       if (!stays) continue;
-      for (Ruling& r : piece.rulings) {
+      for (Ruling& r : rulings) {
         r.contact[i] = corner;
         r.point[i] = end;
       }
+      if (is_same) continue;
+      next->contact[i] = corner;
+      next->point[i] = end;
     }
   }
 }

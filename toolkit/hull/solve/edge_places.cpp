@@ -60,13 +60,12 @@ class EdgePlaces {
     for (auto& [line, places] : places_) {
       places.try_emplace(0.0, 0.0);
       places.try_emplace(1.0, 1.0);
-      const double speed = length(line);
       const std::set<double>& level = level_[line];
       const auto is_level = [&](double t) { return level.count(t) > 0; };
       // What has another place where it is needs none farther away.
-      const auto is_alone = [&, all = &places](double t) {
+      const auto is_alone = [&, &line = line, all = &places](double t) {
         return is_level(t) && std::none_of(all->begin(), all->end(), [&](const auto& p) {
-                 return !is_level(p.first) && std::abs(p.first - t) * speed <= distance_;
+                 return !is_level(p.first) && length(line, p.first, t) <= distance_;
                });
       };
       const auto& [instance, piece, patch, side] = line;
@@ -76,14 +75,14 @@ class EdgePlaces {
         auto last = std::next(first);
         for (auto before = first; last != places.end(); before = last++) {
           const bool wide = is_bent || is_alone(before->first) || is_alone(last->first);
-          const double gap = (last->first - before->first) * speed;
+          const double gap = length(line, before->first, last->first);
           if (gap > (wide ? level_distance_ : distance_)) break;
           if (gap > depth_ && bend(line, before->first, last->first) > depth_) break;
         }
         const auto exact =
             std::find_if(first, last, [&](const auto& p) { return !is_level(p.first); });
         const bool ends = std::prev(last)->first == 1;
-        const bool begins = first->first == 0 && !(ends && speed <= geometry_.tie());
+        const bool begins = first->first == 0 && !(ends && length(line, 0, 1) <= geometry_.tie());
         const double at = (exact == last ? first : exact)->first;
         for (; first != last; ++first) {
           const bool to_end = ends && (!begins || first->first > 0.5);
@@ -184,12 +183,13 @@ class EdgePlaces {
     return std::max(off(from), off(to));
   }
 
-  double length(const Line& line) const {
+  /// That of chords from one place to another.
+  double length(const Line& line, double from, double to) const {
     double sum = 0;
-    dvec3 before(0.0);
-    for (int k = 0; k <= chords; ++k) {
-      const dvec3 x = geometry_.point(at(line, double(k) / chords));
-      if (k > 0) sum += glm::distance(x, before);
+    dvec3 before = geometry_.point(at(line, from));
+    for (int k = 1; k <= chords; ++k) {
+      const dvec3 x = geometry_.point(at(line, std::lerp(from, to, double(k) / chords)));
+      sum += glm::distance(x, before);
       before = x;
     }
     return sum;
