@@ -96,6 +96,16 @@ TEST_F(Outputs, NameTheLayersOfAProject) {
   EXPECT_EQ(result.out.find("t-tolerant.ply"), std::string::npos);
 }
 
+TEST_F(Outputs, OfModelsAreTold) {
+  const std::string line = plant("line.xyz", "0 0 0\n1 0 0\n");
+  const Result told = run("info " + line + " -o line.taut.json");
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_TRUE(told.out.ends_with("\nwrote line.taut.json\n")) << told.out;
+  EXPECT_EQ(told.err, "");
+  EXPECT_EQ(run("info " + line + " -o line.taut.json --quiet").out.find("wrote"),
+            std::string::npos);
+}
+
 TEST_F(Outputs, StlKeepsTheToleranceAndPassesVerify) {
   // A sphere's octant far from the origin: floats there take a share of the tolerance.
   const std::string patch = plant(

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <numbers>
+#include <vector>
 
 #include "sound_hull.h"
 
@@ -62,6 +65,30 @@ void cut_arc(HullDocument& h) {
   }
   face.boundary.clear();
   for (const HullDocument::Contact& c : face.contacts) face.boundary.push_back(c.p);
+}
+
+/// Of many arcs, each of which is the farthest in some directions.
+TEST(VerifyPlanar, OutlinesOfManyArcsPassAndNoneMayBeCut) {
+  Shape ring;
+  constexpr int count = 12;
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count;
+    const dvec3 center(10 * std::cos(angle), 6 * std::sin(angle), 0);
+    ring.curves.push_back(circle(center, {1, 0, 0}, {0, 1, 0}));
+  }
+  const Sound sound = sound_hull(mapped(ring, skew_rotation()));
+  ASSERT_EQ(sound.hull.dimension, 2);
+  const HullVerification v = verified(sound.hull, sound.scene);
+  EXPECT_TRUE(v.is_hull(exact)) << text_of(v);
+  const std::vector<HullDocument::Side>& sides = sound.hull.faces.front().sides;
+  int arcs = 0;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    if (sides[k].source < 0 || arcs++ % 4 > 0) continue;
+    HullDocument cut = sound.hull;
+    cut.faces.front().sides[k] = {};
+    EXPECT_TRUE(failed(verified(cut, sound.scene)).contains("model_outside")) << k;
+  }
+  EXPECT_GE(arcs, count);
 }
 
 TEST(VerifyPlanar, FaultsAreFound) {

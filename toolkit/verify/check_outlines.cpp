@@ -522,12 +522,14 @@ void OutlineCheck::check_facet_sides(std::size_t f) {
     }
     sides.push_back(*side);
   }
-  // Neighbouring points lie along the same side, or the next one.
+  // Neighbouring points lie along the same side, or the next one. Where it is no farther off than
+  // what has been seen, others do not matter.
   std::size_t nearest = 0;
   for (const dvec3& p : points_of(face.outline)) {
     double off = std::numeric_limits<double>::infinity();
     const std::size_t first = nearest;
-    for (std::size_t i = 0; i < count && off > listed_; ++i) {
+    const double seen = std::max(listed_, off_ + bound_);
+    for (std::size_t i = 0; i < count && off > seen; ++i) {
       const std::size_t k = (first + i) % count;
       const double distance = closest_on_curve(geometry_.local(p), 0, 1, sides[k]).distance;
       if (!(distance < off)) continue;

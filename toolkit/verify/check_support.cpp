@@ -18,20 +18,44 @@ namespace {
 constexpr int side_places = 32;
 constexpr int side_halvings = 40;
 
-/// How far a side reaches in a direction, from its places: to its farthest point by bisection of
-/// the slope beside the farthest place.
-double side_reach(const DocumentGeometry& geometry, const HullDocument::Side& side,
-                  const dvec3& n) {
-  const auto jet_at = [&](double share) {
-    const double t = Interval{side.from[0], side.to[0]}.at(share);
-    const std::vector<SourcePlace> places = geometry.places(side.source, dvec2(t, 0));
-    return places.empty() ? SourceJet{} : geometry.jet(side.source, places.front());
-  };
-  const double sense = side.to[0] > side.from[0] ? 1 : -1;
+/// A side of a planar hull along one of the model's edges.
+class CurvedSide {
+ public:
+  CurvedSide(const DocumentGeometry& geometry, const HullDocument::Side& side)
+      : geometry_(geometry),
+        source_(side.source),
+        from_(side.from[0]),
+        to_(side.to[0]),
+        control_points_(geometry.control_points(side.source, {from_, to_})) {}
+
+  /// Whether it reaches farther than h in a direction; false is certain.
+  bool may_reach_beyond(double h, const dvec3& n) const {
+    return std::any_of(control_points_.begin(), control_points_.end(),
+                       [&](const dvec3& p) { return glm::dot(p, n) > h; });
+  }
+  double reach(const dvec3& n) const;
+
+ private:
+  SourceJet jet(double share) const {
+    const std::vector<SourcePlace> places =
+        geometry_.places(source_, dvec2(Interval{from_, to_}.at(share), 0));
+    return places.empty() ? SourceJet{} : geometry_.jet(source_, places.front());
+  }
+
+  const DocumentGeometry& geometry_;
+  int source_;
+  double from_, to_;
+  std::vector<dvec3> control_points_;
+};
+
+/// How far it reaches in a direction, from its places: to its farthest point by bisection of the
+/// slope beside the farthest place.
+double CurvedSide::reach(const dvec3& n) const {
+  const double sense = to_ > from_ ? 1 : -1;
   double best = -infinity;
   int at = 0;
   for (int i = 0; i <= side_places; ++i) {
-    const double h = glm::dot(jet_at(double(i) / side_places).x, n);
+    const double h = glm::dot(jet(double(i) / side_places).x, n);
     if (h > best) {
       best = h;
       at = i;
@@ -41,9 +65,9 @@ double side_reach(const DocumentGeometry& geometry, const HullDocument::Side& si
   double high = double(std::min(at + 1, side_places)) / side_places;
   for (int i = 0; i < side_halvings; ++i) {
     const double middle = 0.5 * (low + high);
-    const SourceJet jet = jet_at(middle);
-    best = std::max(best, glm::dot(jet.x, n));
-    (sense * glm::dot(jet.dx[0], n) > 0 ? low : high) = middle;
+    const SourceJet j = jet(middle);
+    best = std::max(best, glm::dot(j.x, n));
+    (sense * glm::dot(j.dx[0], n) > 0 ? low : high) = middle;
   }
   return best;
 }
@@ -87,6 +111,10 @@ std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int c
   if (geometry.hull().faces.empty()) return {};
   const HullDocument::Face& face = geometry.hull().faces.front();
   const std::array<dvec3, 2> frame = tangent_frame(unit(face.normal));
+  std::vector<CurvedSide> sides;
+  for (const HullDocument::Side& side : face.sides) {
+    if (side.from.size() == 1 && side.to.size() == 1) sides.emplace_back(geometry, side);
+  }
   std::vector<SupportClaim> claims(to_size(count));
   const auto claim_at = [&](std::size_t k) {
     const double angle = 2 * std::numbers::pi * double(k) / count;
@@ -95,10 +123,9 @@ std::vector<SupportClaim> outline_claims(const DocumentGeometry& geometry, int c
     for (const HullDocument::Contact& c : face.contacts) {
       claim.h = std::max(claim.h, glm::dot(geometry.local(c.p), claim.n));
     }
-    for (const HullDocument::Side& side : face.sides) {
-      options.progress.check();
-      if (side.from.size() != 1 || side.to.size() != 1) continue;
-      claim.h = std::max(claim.h, side_reach(geometry, side, claim.n));
+    options.progress.check();
+    for (const CurvedSide& side : sides) {
+      if (side.may_reach_beyond(claim.h, claim.n)) claim.h = std::max(claim.h, side.reach(claim.n));
     }
     return claim;
   };

@@ -1,5 +1,7 @@
 #include "taut/verify/document_geometry.h"
 
+#include <algorithm>
+
 #include "taut/core/integers.h"
 
 namespace taut {
@@ -86,6 +88,19 @@ SourceJet DocumentGeometry::jet(int place, const SourcePlace& at) const {
       return {2, j.S, {j.Su, j.Sv}, j.Suu, j.Suv, j.Svv};
     }
   }
+}
+
+std::vector<dvec3> DocumentGeometry::control_points(int edge, const Interval& parameters) const {
+  const double least = std::min(parameters.lower, parameters.upper);
+  const double most = std::max(parameters.lower, parameters.upper);
+  std::vector<dvec3> points;
+  const std::vector<HullDocument::Patch>& pieces = source(edge).patches;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Interval& domain = pieces[i].domain.front();
+    if (domain.upper < least || domain.lower > most) continue;
+    for (const dvec4& p : nets_[to_size(edge)][i].points) points.push_back(euclidean(p));
+  }
+  return points;
 }
 
 dvec3 DocumentGeometry::normal(int place, const SourcePlace& at, int sign) const {

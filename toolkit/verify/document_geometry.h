@@ -54,6 +54,9 @@ class DocumentGeometry {
   /// Of one of its patches, in the source's parameters.
   dvec2 domain_size(int source, int patch) const;
   SourceJet jet(int source, const SourcePlace& place) const;
+  /// Those of all pieces of an edge that meet the interval of its parameters, turned either way:
+  /// what is between lies in their convex hull.
+  std::vector<dvec3> control_points(int edge, const Interval& parameters) const;
   /// Unit normal along sign * (Su x Sv), by its limit where the patch degenerates; zero if none.
   dvec3 normal(int source, const SourcePlace& place, int sign) const;
 

@@ -276,7 +276,6 @@ void write_document(const InfoArguments& arguments, const Model& model, Console&
     return;
   }
   write_model(arguments.output, model);
-  console.note("wrote " + arguments.output);
 }
 
 ExitCode run(const InfoArguments& arguments, Console& console) {
@@ -314,6 +313,8 @@ ExitCode run(const InfoArguments& arguments, Console& console) {
   }
   for (const Contents& file : files) console.print(text_of(file, console.options().verbose));
   if (files.size() > 1) console.print("all together\n" + sizes_text(total(files)));
+  if (!output.empty() && !console.options().quiet)
+    console.print("wrote " + one_line(output) + "\n");
   return ExitCode::done;
 }
 
