@@ -1047,6 +1047,26 @@ TEST(DirectionMap, SameForAnyNumberOfThreads) {
   }
 }
 
+TEST(DirectionMap, TellsAShareThatRisesInSmallSteps) {
+  const Scene scene = make_scene(torus(2, 0.5));
+  for (const int threads : {1, 2}) {
+    std::vector<double> shares = {0};
+    taut::DirectionMapOptions options;
+    options.resolution = 1e-8;
+    options.threads = threads;
+    options.report = [&](double share) { shares.push_back(share); };
+    direction_map(ContactGeometry(scene), options);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_LT(shares.back(), 1);
+    double most = 0;
+    for (std::size_t k = 1; k < shares.size(); ++k) {
+      most = std::max(most, shares[k] - shares[k - 1]);
+    }
+    EXPECT_LT(threads == 1 ? most : 0, 0.06);
+    EXPECT_GT(shares.back(), 0.75);
+  }
+}
+
 TEST(DirectionMap, StopsOnAnyNumberOfThreads) {
   const Scene scene = make_scene(torus(2, 0.5));
   std::stop_source source;

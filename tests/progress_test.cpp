@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "cages.h"
 #include "models.h"
@@ -45,6 +46,37 @@ class Shares {
  private:
   std::map<std::string, std::vector<double>> shares_;
 };
+
+/// Keeps the shares that it is told.
+struct Listener {
+  Listener() {
+    progress.report = [this](std::string_view step, double share) {
+      steps.emplace_back(step);
+      shares.push_back(share);
+    };
+  }
+  Progress progress;
+  std::vector<std::string> steps;
+  std::vector<double> shares;
+};
+
+TEST(Progress, PartsAreSharesOfTheWhole) {
+  Listener listener;
+  const Progress part = listener.progress.part(0.5, 0.75);
+  for (const double share : {0.0, 0.5, 1.0}) part.update("cull", share);
+  EXPECT_EQ(listener.shares, (std::vector{0.5, 0.625, 0.75}));
+  EXPECT_EQ(listener.steps, (std::vector<std::string>(3, "cull")));
+}
+
+TEST(Progress, SharesOfWorkFollowItsSizes) {
+  Listener listener;
+  WorkProgress work(listener.progress, "stitch", 8);
+  for (const double size : {1, 5, 2, 1}) work.add(size);
+  EXPECT_EQ(listener.shares, (std::vector{0.125, 0.75, 1.0, 1.0}));
+  WorkProgress none(listener.progress, "stitch", 0);
+  none.add(0);
+  EXPECT_EQ(listener.shares.back(), 1);
+}
 
 TEST(Progress, OfAnExactHullRises) {
   Shares shares;

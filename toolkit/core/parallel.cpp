@@ -5,6 +5,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 
 namespace taut {
 
@@ -21,6 +23,18 @@ void parallel_for(std::size_t count, std::size_t grain, int threads,
   const int most = tbb::info::default_concurrency();
   tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, ranges, run); });
+}
+
+void parallel_for(std::size_t count, std::size_t grain, int threads,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body,
+                  const std::function<void(std::size_t done)>& report) {
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> done = 0;
+  parallel_for(count, grain, threads, [&](std::size_t begin, std::size_t end) {
+    body(begin, end);
+    const std::size_t now = done.fetch_add(end - begin) + (end - begin);
+    if (std::this_thread::get_id() == caller) report(now);
+  });
 }
 
 }  // namespace taut

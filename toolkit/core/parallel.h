@@ -14,4 +14,10 @@ namespace taut {
 void parallel_for(std::size_t count, std::size_t grain, int threads,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// The same. Tells how many of the indices are done, never fewer than before, after each range that
+/// the calling thread has done itself; what is thrown then counts as thrown by a body.
+void parallel_for(std::size_t count, std::size_t grain, int threads,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body,
+                  const std::function<void(std::size_t done)>& report);
+
 }  // namespace taut

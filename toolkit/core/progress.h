@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <string_view>
@@ -46,6 +47,27 @@ struct Progress {
   void check_rarely(std::size_t step) const {
     if (step % 4096 == 0) check();
   }
+};
+
+/// Tells the shares of a step that is made of pieces of work of different sizes, one after the
+/// other.
+class WorkProgress {
+ public:
+  /// `work`: of all pieces together. The progress must outlive it.
+  WorkProgress(const Progress& progress, std::string_view step, double work)
+      : progress_(progress), step_(step), work_(work) {}
+
+  /// A piece of work is done. @throws as Progress::update()
+  void add(double work) {
+    done_ += work;
+    progress_.update(step_, work_ > 0 ? std::min(done_ / work_, 1.0) : 1);
+  }
+
+ private:
+  const Progress& progress_;
+  std::string_view step_;
+  double work_;
+  double done_ = 0;
 };
 
 }  // namespace taut

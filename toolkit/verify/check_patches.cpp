@@ -1,11 +1,13 @@
 #include "taut/verify/check_patches.h"
 
+#include <algorithm>
 #include <random>
 
 #include "taut/bounds/support_query.h"
 #include "taut/core/integers.h"
 #include "taut/core/parallel.h"
 #include "taut/core/tolerances.h"
+#include "taut/verify/even_directions.h"
 #include "taut/verify/stated_bounds.h"
 
 namespace taut {
@@ -21,6 +23,9 @@ constexpr double beside = 3e-3;
 /// A surface's total curvature times the square of the scene's size, above which it is strictly
 /// convex: points of planar, developable and nearly such faces support outside of patches.
 constexpr double strict_curvature = 1e-6;
+
+/// Even directions in which the model's support points are asked, lest places far below are.
+constexpr int beacon_directions = 400;
 
 struct Sample {
   int source = -1;
@@ -59,10 +64,16 @@ class PatchCheck {
 
  private:
   void add_samples();
-  void add_box(int source, int patch, const dvec2& lower, const dvec2& upper);
+  void add_grid(int source, int patch, const dvec2& lower, const dvec2& upper);
+  void add_random(int source, int patch, const dvec2& lower, const dvec2& upper);
+  bool is_whole(int source, const RegionOutline& outline) const;
   void add_beside(const RegionOutline& outline);
   void add(int source, int patch, const dvec2& uv);
+  void find_beacons();
+  bool is_below_beacons(const dvec3& x, const dvec3& n) const;
   double gap(SupportQuery& query, const Sample& sample, int sign) const;
+  double gap_inside(SupportQuery& query, const Sample& sample) const;
+  double gap_outside(SupportQuery& query, const Sample& sample) const;
   bool is_nearly_ruled(const Sample& sample) const;
   bool strictly_convex(const SourceJet& j, const dvec3& n) const;
   std::string name(const Sample& sample) const;
@@ -79,6 +90,7 @@ class PatchCheck {
   HullFaults& faults_;
   std::mt19937_64 random_;
   std::vector<Sample> samples_;
+  std::vector<dvec3> beacons_;  ///< points of the model, relative to the document's origin
 };
 
 void PatchCheck::add(int source, int patch, const dvec2& uv) {
@@ -111,17 +123,28 @@ std::string PatchCheck::name(const Sample& sample) const {
          std::to_string(uv.y) + ")";
 }
 
-void PatchCheck::add_box(int source, int patch, const dvec2& lower, const dvec2& upper) {
+void PatchCheck::add_grid(int source, int patch, const dvec2& lower, const dvec2& upper) {
   for (int i = 0; i < grid; ++i) {
     for (int k = 0; k < grid; ++k) {
       add(source, patch, lower + (upper - lower) * dvec2((i + 0.5) / grid, (k + 0.5) / grid));
     }
   }
+}
+
+void PatchCheck::add_random(int source, int patch, const dvec2& lower, const dvec2& upper) {
   std::uniform_real_distribution<double> uniform;
   for (int i = 0; i < random_places; ++i) {
     const double u = uniform(random_);
     add(source, patch, lower + (upper - lower) * dvec2(u, uniform(random_)));
   }
+}
+
+/// The box about the outline is the patch's domain.
+bool PatchCheck::is_whole(int source, const RegionOutline& outline) const {
+  const std::vector<Interval>& domain =
+      geometry_.source(source).patches[to_size(outline.region->patch)].domain;
+  return outline.lower() == dvec2(domain[0].lower, domain[1].lower) &&
+         outline.upper() == dvec2(domain[0].upper, domain[1].upper);
 }
 
 void PatchCheck::add_beside(const RegionOutline& outline) {
@@ -150,16 +173,22 @@ void PatchCheck::add_samples() {
     const std::vector<HullDocument::Patch>& patches = hull.sources[to_size(s)].patches;
     for (int i = 0; i < int(patches.size()); ++i) {
       const std::vector<Interval>& domain = patches[to_size(i)].domain;
-      add_box(s, i, {domain[0].lower, domain[1].lower}, {domain[0].upper, domain[1].upper});
+      const dvec2 lower(domain[0].lower, domain[1].lower);
+      const dvec2 upper(domain[0].upper, domain[1].upper);
+      add_grid(s, i, lower, upper);
+      add_random(s, i, lower, upper);
     }
   }
   for (const RegionOutline& region : outlines_.regions()) {
     const int source = hull.faces[to_size(region.face)].source;
+    const int patch = region.region->patch;
     if (!(region.area() > 0)) {
       faults_.add("regions", "faces[" + std::to_string(region.face) +
                                  "]: a region lies to the right of its outline");
     }
-    add_box(source, region.region->patch, region.lower(), region.upper());
+    // The places of a whole patch's grid are there.
+    if (!is_whole(source, region)) add_grid(source, patch, region.lower(), region.upper());
+    add_random(source, patch, region.lower(), region.upper());
     add_beside(region);
   }
 }
@@ -192,29 +221,56 @@ bool PatchCheck::strictly_convex(const SourceJet& j, const dvec3& n) const {
   return L > 0 && (L * N - M * M) * size > strict_curvature * glm::dot(area, area);
 }
 
+void PatchCheck::find_beacons() {
+  SupportQuery query(scene_, options_.progress.stop);
+  for (const dvec3& n : even_directions(beacon_directions, options_.seed)) {
+    const Contact contact = query(n).contact;
+    beacons_.push_back(geometry_.local(scene_.point(contact)));
+  }
+}
+
+/// By more than what counts as on the hull.
+bool PatchCheck::is_below_beacons(const dvec3& x, const dvec3& n) const {
+  const double least = glm::dot(x, n) + 2 * support_slack * scene_.diagonal();
+  return std::any_of(beacons_.begin(), beacons_.end(),
+                     [&](const dvec3& p) { return glm::dot(p, n) > least; });
+}
+
+double PatchCheck::gap_inside(SupportQuery& query, const Sample& sample) const {
+  return gap(query, sample, outlines_.regions()[to_size(sample.region)].region->sign);
+}
+
+/// The smaller gap of both sides, or any that is not on the hull.
+double PatchCheck::gap_outside(SupportQuery& query, const Sample& sample) const {
+  double least = 1;
+  if (is_nearly_ruled(sample)) return least;
+  const SourceJet j = geometry_.jet(sample.source, sample.place);
+  for (const int sign : {-1, 1}) {
+    const dvec3 n = geometry_.normal(sample.source, sample.place, sign);
+    if (!strictly_convex(j, n) || is_below_beacons(j.x, unit(n))) continue;
+    least = std::min(least, gap(query, sample, sign));
+  }
+  return least;
+}
+
 double PatchCheck::run() {
   add_samples();
-  // Of places outside the smaller gap of both sides, of those inside the gap itself.
+  find_beacons();
   std::vector<double> gaps(samples_.size(), 0);
   constexpr std::size_t grain = 64;
-  parallel_for(samples_.size(), grain, options_.threads, [&](std::size_t begin, std::size_t end) {
-    options_.progress.check();
-    SupportQuery query(scene_, options_.progress.stop);
-    for (std::size_t i = begin; i < end; ++i) {
-      const Sample& sample = samples_[i];
-      if (sample.region >= 0) {
-        gaps[i] = gap(query, sample, outlines_.regions()[to_size(sample.region)].region->sign);
-        continue;
-      }
-      gaps[i] = 1;
-      if (is_nearly_ruled(sample)) continue;
-      const SourceJet j = geometry_.jet(sample.source, sample.place);
-      for (const int sign : {-1, 1}) {
-        const dvec3 n = geometry_.normal(sample.source, sample.place, sign);
-        if (strictly_convex(j, n)) gaps[i] = std::min(gaps[i], gap(query, sample, sign));
-      }
-    }
-  });
+  parallel_for(
+      samples_.size(), grain, options_.threads,
+      [&](std::size_t begin, std::size_t end) {
+        options_.progress.check();
+        SupportQuery query(scene_, options_.progress.stop);
+        for (std::size_t i = begin; i < end; ++i) {
+          const bool is_inside = samples_[i].region >= 0;
+          gaps[i] = is_inside ? gap_inside(query, samples_[i]) : gap_outside(query, samples_[i]);
+        }
+      },
+      [&](std::size_t done) {
+        options_.progress.update("verify", double(done) / double(samples_.size()));
+      });
   double worst = 0;
   // Where a face beside a patch is below the supporting planes, their curve is off the true outline
   // of the patch: from there to the curve its places fall below their planes, by what the face is

@@ -185,11 +185,16 @@ SupportGaps support_gaps(const std::vector<SupportClaim>& claims, const Scene& s
                          const VerifyOptions& options) {
   std::vector<SupportGaps> gaps(claims.size());
   constexpr std::size_t grain = 64;
-  parallel_for(claims.size(), grain, options.threads, [&](std::size_t begin, std::size_t end) {
-    options.progress.check();
-    ClaimJudge judge(scene, options.progress.stop);
-    for (std::size_t i = begin; i < end; ++i) gaps[i] = judge(claims[i]);
-  });
+  parallel_for(
+      claims.size(), grain, options.threads,
+      [&](std::size_t begin, std::size_t end) {
+        options.progress.check();
+        ClaimJudge judge(scene, options.progress.stop);
+        for (std::size_t i = begin; i < end; ++i) gaps[i] = judge(claims[i]);
+      },
+      [&](std::size_t done) {
+        options.progress.update("verify", double(done) / double(claims.size()));
+      });
   SupportGaps worst;
   for (const SupportGaps& gap : gaps) {
     raise(worst.above, gap.above);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "taut/core/integers.h"
+#include "taut/core/parallel.h"
 #include "taut/verify/closest_on_curve.h"
 #include "taut/verify/integral.h"
 #include "taut/verify/stated_bounds.h"
@@ -119,13 +120,18 @@ class MeasureSums {
     double to = 0;
   };
   MeasureSums(const DocumentGeometry& geometry, const DocumentOutlines& outlines, Fit fit);
-  DocumentMeasures run(const Progress& progress);
+  /// What regions have along sides of Bezier patches, whatever the fit.
+  Terms of_borders(const VerifyOptions& options) const;
+  /// All, with what they have along borders.
+  DocumentMeasures run(const Terms& borders, const Progress& progress);
   /// Something was interpolated of which a worse fit tells the error.
   bool interpolated() const { return interpolated_; }
 
  private:
-  void add_patch(const RegionOutline& outline);
-  void add_stretch(const RegionOutline& outline, const OutlineStretch& stretch);
+  /// Where integrals across a region begin.
+  double base_of(const RegionOutline& outline) const;
+  void add_fitted(const RegionOutline& outline);
+  Terms border_terms(const RegionOutline& outline) const;
   void add_free_stretch(const RegionOutline& outline, const OutlineStretch& stretch);
   void add_track(const RegionOutline& outline, const OutlineStretch& stretch);
   Terms region_terms(const RegionOutline& outline, const dvec2& t, const dvec2& dt) const;
@@ -152,7 +158,6 @@ class MeasureSums {
   const DocumentOutlines& outlines_;
   double unit_;
   dvec3 inside_ = dvec3(0.0);  ///< relative to the origin
-  double base_ = 0;            ///< where integrals across the region at hand begin
   Terms sums_;
   Fit fit_;
   bool interpolated_ = false;
@@ -185,10 +190,29 @@ MeasureSums::MeasureSums(const DocumentGeometry& geometry, const DocumentOutline
   if (count > 0) inside_ /= count;
 }
 
-DocumentMeasures MeasureSums::run(const Progress& progress) {
+Terms MeasureSums::of_borders(const VerifyOptions& options) const {
+  const std::vector<RegionOutline>& regions = outlines_.regions();
+  std::vector<Terms> terms(regions.size());
+  constexpr std::size_t grain = 16;
+  parallel_for(
+      regions.size(), grain, options.threads,
+      [&](std::size_t begin, std::size_t end) {
+        options.progress.check();
+        for (std::size_t k = begin; k < end; ++k) terms[k] = border_terms(regions[k]);
+      },
+      [&](std::size_t done) {
+        options.progress.update("verify", double(done) / double(regions.size()));
+      });
+  Terms sum;
+  for (const Terms& own : terms) sum.add(1, own);
+  return sum;
+}
+
+DocumentMeasures MeasureSums::run(const Terms& borders, const Progress& progress) {
+  sums_ = borders;
   for (const RegionOutline& region : outlines_.regions()) {
     progress.check();
-    add_patch(region);
+    add_fitted(region);
   }
   const std::vector<Face>& faces = geometry_.hull().faces;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -231,23 +255,35 @@ Terms MeasureSums::outline_terms(const dvec3& x, const dvec3& dx, const dvec3& n
   return terms;
 }
 
-void MeasureSums::add_patch(const RegionOutline& outline) {
+double MeasureSums::base_of(const RegionOutline& outline) const {
   const int source = geometry_.hull().faces[to_size(outline.face)].source;
   const Interval& u = geometry_.source(source).patches[to_size(outline.region->patch)].domain[0];
   const double middle = 0.5 * (outline.lower().x + outline.upper().x);
-  base_ = std::clamp((middle - u.lower) / (u.upper - u.lower), 0.0, 1.0);
+  return std::clamp((middle - u.lower) / (u.upper - u.lower), 0.0, 1.0);
+}
+
+void MeasureSums::add_fitted(const RegionOutline& outline) {
   for (const std::vector<OutlineStretch>& loop : outline.loops) {
-    for (const OutlineStretch& stretch : loop) add_stretch(outline, stretch);
+    for (const OutlineStretch& stretch : loop) {
+      if (stretch.kind == OutlineStretch::Kind::track) add_track(outline, stretch);
+      if (stretch.kind == OutlineStretch::Kind::free) add_free_stretch(outline, stretch);
+    }
   }
 }
 
-void MeasureSums::add_stretch(const RegionOutline& outline, const OutlineStretch& stretch) {
-  if (stretch.kind == OutlineStretch::Kind::track) return add_track(outline, stretch);
-  if (stretch.kind == OutlineStretch::Kind::free) return add_free_stretch(outline, stretch);
+Terms MeasureSums::border_terms(const RegionOutline& outline) const {
   const int source = geometry_.hull().faces[to_size(outline.face)].source;
-  const dvec2 from = geometry_.place(source, outline.region->patch, stretch.from);
-  const dvec2 side = geometry_.place(source, outline.region->patch, stretch.to) - from;
-  add(0, 1, [&](double s) { return region_terms(outline, from + s * side, side); });
+  Terms sum;
+  for (const std::vector<OutlineStretch>& loop : outline.loops) {
+    for (const OutlineStretch& stretch : loop) {
+      if (stretch.kind != OutlineStretch::Kind::border) continue;
+      const dvec2 from = geometry_.place(source, outline.region->patch, stretch.from);
+      const dvec2 side = geometry_.place(source, outline.region->patch, stretch.to) - from;
+      const auto terms_at = [&](double s) { return region_terms(outline, from + s * side, side); };
+      integrate(terms_at, 0, 1, along_accuracy, sum);
+    }
+  }
+  return sum;
 }
 
 /// Of which only the points are known.
@@ -314,7 +350,7 @@ Terms MeasureSums::region_terms(const RegionOutline& outline, const dvec2& t,
       [&](double u) {
         return patch_terms(geometry_.jet(source, {patch, dvec2(u, t.y)}), sign);
       },
-      base_, t.x, across_accuracy, across);
+      base_of(outline), t.x, across_accuracy, across);
   terms.add(dt.y, across);
   return terms;
 }
@@ -481,11 +517,13 @@ std::optional<MeasureSums::EdgePart> MeasureSums::edge_between(const HullDocumen
 }  // namespace
 
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                         const Progress& progress) {
+                         const VerifyOptions& options) {
   MeasureSums sums(geometry, outlines, Fit::best);
-  DocumentMeasures best = sums.run(progress);
+  const Terms borders = sums.of_borders(options);
+  DocumentMeasures best = sums.run(borders, options.progress);
   if (!sums.interpolated()) return best;
-  const DocumentMeasures worse = MeasureSums(geometry, outlines, Fit::worse).run(progress);
+  const DocumentMeasures worse =
+      MeasureSums(geometry, outlines, Fit::worse).run(borders, options.progress);
   // Where the curve is not as smooth as the polynomials suppose, both err by as much.
   constexpr double safety = 2;
   best.volume_error += safety * std::abs(worse.volume / best.volume - 1);

@@ -4,6 +4,7 @@
 
 #include "taut/core/progress.h"
 #include "taut/verify/region_outlines.h"
+#include "taut/verify/verify.h"
 
 namespace taut {
 
@@ -41,6 +42,6 @@ struct DocumentMeasures {
 /// Meaningless where faces are missing or contacts off their sources. @pre hull of dimension 2 or 3
 /// @throws Cancelled
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
-                         const Progress& progress = {});
+                         const VerifyOptions& options = {});
 
 }  // namespace taut

@@ -36,6 +36,13 @@ constexpr double mean_width_spread = 1;
 /// Directions in which the outline of a planar hull is compared with the model.
 constexpr int outline_directions = 720;
 
+/// Shares of the step at which the geometry that is listed, what it claims of the model, the
+/// measures and the patches are checked.
+constexpr double geometry_share = 0.1;
+constexpr double claimed_share = 0.3;
+constexpr double measured_share = 0.5;
+constexpr double patches_share = 0.9;
+
 /// All numbers of a document, to find one that is none.
 class FiniteNumbers {
  public:
@@ -122,6 +129,12 @@ class HullVerifier {
     for (const HullDocument::Face& face : hull_.faces) raise(length, face.tolerant);
     return length;
   }
+  /// For what is a part of the step.
+  VerifyOptions part(double begin, double end) const {
+    VerifyOptions own = options_;
+    own.progress = options_.progress.part(begin, end);
+    return own;
+  }
   double relative(double length) const {
     return std::abs(length) / (diagonal_ > 0 ? diagonal_ : 1);
   }
@@ -146,7 +159,7 @@ HullVerification HullVerifier::run() {
   check_structure();
   const bool same = check_sources(hull_, scene_, faults_, result_.off_model);
   if (finite) check_geometry();
-  options_.progress.update("verify", 0.1);
+  options_.progress.update("verify", geometry_share);
   result_.comparable = finite && same;
   if (result_.comparable) {
     check_faces();
@@ -296,9 +309,10 @@ void HullVerifier::check_geometry() {
 /// What needs the model's sources to be the document's.
 void HullVerifier::check_faces() {
   const DocumentOutlines outlines(geometry_);
-  check_support(listed_claims(geometry_));
-  check_support(claims_between(geometry_, outlines));
-  options_.progress.update("verify", 0.4);
+  std::vector<SupportClaim> claims = listed_claims(geometry_);
+  const std::vector<SupportClaim> between = claims_between(geometry_, outlines);
+  claims.insert(claims.end(), between.begin(), between.end());
+  check_support(claims);
   std::optional<DocumentMeasures> measures;
   if (hull_.dimension >= 2) {
     const double tolerance = (same_point + rounding_) * diagonal_;
@@ -307,7 +321,7 @@ void HullVerifier::check_faces() {
     check_labels(geometry_, scene_, resolution_, faults_);
   }
   if (hull_.dimension >= 2) {
-    measures = measure(geometry_, outlines, options_.progress);
+    measures = measure(geometry_, outlines, part(claimed_share, measured_share));
     raise(result_.measures_error, measures->error());
   }
   if (hull_.dimension == 3) {
@@ -321,9 +335,8 @@ void HullVerifier::check_faces() {
       faults_.add("measures", "the faces enclose nothing");
     }
     const Coverage coverage(geometry_, outlines, scene_, promised_length());
-    raise(result_.patch_outside,
-          check_patches(geometry_, outlines, coverage, scene_, resolution_, options_, faults_));
-    options_.progress.update("verify", 0.8);
+    raise(result_.patch_outside, check_patches(geometry_, outlines, coverage, scene_, resolution_,
+                                               part(measured_share, patches_share), faults_));
     check_even_directions(coverage, measures);
   } else {
     check_points();
@@ -332,7 +345,7 @@ void HullVerifier::check_faces() {
 }
 
 void HullVerifier::check_support(const std::vector<SupportClaim>& claims) {
-  const SupportGaps gaps = support_gaps(claims, scene_, options_);
+  const SupportGaps gaps = support_gaps(claims, scene_, part(geometry_share, claimed_share));
   raise(result_.model_outside, relative(gaps.above));
   raise(result_.hull_outside, relative(gaps.below));
   result_.directions += int(claims.size());

@@ -10,7 +10,7 @@
 namespace taut::tool {
 namespace {
 
-/// What ends sooner than this shows no bar, and a bar is redrawn no more often.
+/// What ends sooner than this shows no bar, and a bar of the same step is redrawn no more often.
 constexpr std::chrono::milliseconds pause(100);
 /// Plain lines come no closer than this many percent.
 constexpr int plain_stride = 10;
@@ -45,7 +45,7 @@ void ProgressBar::update(std::string_view step, double share) {
     text = one_line(step) + " " + number(long(percent)) + " %\n";
   } else {
     const Clock::time_point now = Clock::now();
-    if (now < next_) return;
+    if (now < next_ && !(new_step && shown_)) return;
     next_ = now + pause;
     shown_ = true;
     text = bar(one_line(step), percent);

@@ -26,13 +26,42 @@ constexpr long share_of_nodes = 8;
 /// beacons.
 constexpr double first_beacons[] = {-0.9, -0.3, 0.3, 0.9};
 
+/// Rounds in which half of what is left of a map's share is done: how many there will be is not
+/// known, and most maps are decided in twice to thrice as many.
+constexpr double half_rounds = 5;
+/// Share of what comes before the first of them.
+constexpr double pieces_share = 0.05;
+
+/// The share that is done of a map's rounds, in each of which all cells that wait are looked at.
+class RoundShare {
+ public:
+  /// A round begins, in which so many pieces of the model are looked at.
+  void begin(double pieces) {
+    if (pieces_ > 0) ++rounds_;
+    pieces_ = pieces;
+    done_ = 0;
+  }
+  void add(double pieces) { done_ += pieces; }
+  /// With so many pieces more than those added.
+  double now(double more) const {
+    const double rounds = rounds_ + (pieces_ > 0 ? std::min((done_ + more) / pieces_, 1.0) : 0);
+    return 1 - std::exp2(-rounds / half_rounds);
+  }
+
+ private:
+  double rounds_ = 0;
+  double pieces_ = 0;  // of the round at hand
+  double done_ = 0;
+};
+
 /// Decides cells level by level, so that what costs too much to be decided takes nothing from the
 /// rest.
 class MapMaker {
  public:
   MapMaker(const ContactGeometry& geometry, const DirectionMapOptions& options)
-      : pieces_(geometry, options.resolution),
-        options_(options),
+      : options_(options),
+        pieces_(geometry, options.resolution,
+                [this](double share) { report(pieces_share * share); }),
         deciders_([this] { return std::make_unique<CellDecider>(pieces_, options_); }) {}
 
   DirectionMap run() {
@@ -122,14 +151,11 @@ class MapMaker {
 
   void decide_waiting() {
     while (!waiting_.empty()) {
+      if (left_in_round_ == 0) begin_round();
       std::vector<OpenCell> batch = next_batch();
+      left_in_round_ -= batch.size();
       std::vector<LookedAtCell> looked_at(batch.size());
-      if (!is_spent()) {
-        parallel_for(batch.size(), 1, options_.threads, [&](std::size_t begin, std::size_t end) {
-          const auto decider = deciders_.lease();
-          for (std::size_t k = begin; k < end; ++k) looked_at[k] = (*decider).decide(batch[k]);
-        });
-      }
+      if (!is_spent()) look_at(batch, looked_at);
       for (std::size_t k = 0; k < batch.size(); ++k) {
         if (is_spent()) {
           add(std::move(batch[k].cell));  // undecided, as there is no time for it
@@ -137,13 +163,43 @@ class MapMaker {
           take(std::move(looked_at[k]));
         }
       }
-      if (options_.report) options_.report(std::min(decided_, 1.0));
     }
   }
 
-  /// What is looked at beyond a limit is forgotten, so that it does not matter how many these are.
+  void begin_round() {
+    left_in_round_ = waiting_.size();
+    double pieces = 0;
+    for (const OpenCell& open : waiting_) pieces += work_of(open);
+    share_.begin(pieces);
+  }
+
+  /// What it takes to look at a cell, about.
+  static double work_of(const OpenCell& open) { return 1 + double(open.pieces->size()); }
+
+  void look_at(const std::vector<OpenCell>& batch, std::vector<LookedAtCell>& looked_at) {
+    double work = 0;
+    for (const OpenCell& open : batch) work += work_of(open);
+    parallel_for(
+        batch.size(), 1, options_.threads,
+        [&](std::size_t begin, std::size_t end) {
+          const auto decider = deciders_.lease();
+          for (std::size_t k = begin; k < end; ++k) looked_at[k] = (*decider).decide(batch[k]);
+        },
+        [&](std::size_t done) {
+          const double now = share_.now(work * double(done) / double(batch.size()));
+          report(pieces_share + (1 - pieces_share) * now);
+        });
+    share_.add(work);
+  }
+
+  void report(double share) const {
+    if (options_.report) options_.report(share);
+  }
+
+  /// Of the round at hand. What is looked at beyond a limit is forgotten, so that it does not
+  /// matter how many these are.
   std::vector<OpenCell> next_batch() {
-    const auto count = std::min(waiting_.size(), options_.threads == 1 ? 1 : batch_limit);
+    const auto count = std::min(left_in_round_, options_.threads == 1 ? 1 : batch_limit);
     const auto end = waiting_.begin() + std::ptrdiff_t(count);
     std::vector<OpenCell> batch(std::make_move_iterator(waiting_.begin()),
                                 std::make_move_iterator(end));
@@ -169,7 +225,6 @@ class MapMaker {
 
   void add(MapCell&& cell) {
     ++map_.statistics.of_kind[std::size_t(cell.kind)];
-    decided_ += std::ldexp(1.0 / 6, -2 * cell.level);
     map_.cells.push_back(std::move(cell));
   }
 
@@ -226,13 +281,14 @@ class MapMaker {
     }
   }
 
-  const MapPieces pieces_;
   DirectionMapOptions options_;
+  const MapPieces pieces_;
   Pool<CellDecider> deciders_;
   DirectionMap map_;
   std::map<int, Node> nodes_;  // by cell
   std::deque<OpenCell> waiting_;
-  double decided_ = 0;  // share of the cube; cells that are split once more count again
+  std::size_t left_in_round_ = 0;  // of those that wait
+  RoundShare share_;
 };
 
 }  // namespace

@@ -65,8 +65,8 @@ struct DirectionMapOptions {
   long candidate_limit = 1'000'000'000;  ///< see level_limit
   int threads = 0;                       ///< 0: as many as the machine has
   Stop stop;                             ///< makes it throw Cancelled
-  /// Called now and then with the share of the sphere of directions that is decided, which never
-  /// falls; by the thread that calls the operation.
+  /// Called now and then with the share that is done, which never falls; by the thread that calls
+  /// the operation.
   std::function<void(double share)> report = {};
 };
 

@@ -34,7 +34,8 @@ std::vector<dvec4> inward_net(NetShape shape, const std::vector<dvec4>& points, 
 
 }  // namespace
 
-MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
+MapPieces::MapPieces(const ContactGeometry& geometry, double resolution,
+                     const std::function<void(double)>& report)
     : geometry_(geometry), resolution_(resolution), joins_(geometry) {
   const Scene& scene = geometry.scene();
   const Model& model = scene.model();
@@ -71,7 +72,7 @@ MapPieces::MapPieces(const ContactGeometry& geometry, double resolution)
     }
   }
   find_beside();
-  find_beyond();
+  find_beyond(report);
   find_surfaces();
   Likenesses found = find_translates(*this, cover_share * resolution);
   for (std::size_t k = 0; k < elements_.size(); ++k) {
@@ -212,9 +213,11 @@ void MapPieces::find_beside() {
   }
 }
 
-void MapPieces::find_beyond() {
+void MapPieces::find_beyond(const std::function<void(double)>& report) {
+  std::size_t done = 0;
   for (MapElement& element : elements_) {
     geometry_.check_stop();
+    if (report) report(double(done++) / double(elements_.size()));
     const Contact& c = element.contact;
     for (const Side side : all_sides) {
       if (c.kind != SourceKind::face) break;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -65,8 +66,10 @@ struct MapElement {
 /// must outlive it.
 class MapPieces {
  public:
-  /// `resolution`: what is nearer may be taken for one, in the scene's frame.
-  MapPieces(const ContactGeometry& geometry, double resolution);
+  /// `resolution`: what is nearer may be taken for one, in the scene's frame. `report` is told the
+  /// share that is done.
+  MapPieces(const ContactGeometry& geometry, double resolution,
+            const std::function<void(double share)>& report = {});
 
   const ContactGeometry& geometry() const { return geometry_; }
   const std::vector<MapElement>& elements() const { return elements_; }
@@ -112,7 +115,7 @@ class MapPieces {
   void add_edge(const Contact& c);
   void add_vertex(const Contact& c);
   void find_beside();
-  void find_beyond();
+  void find_beyond(const std::function<void(double)>& report);
   void find_surfaces();
   std::vector<dvec4> placed_patch(const Contact& c, NetShape& shape) const;
   void cover_straight(double resolution);

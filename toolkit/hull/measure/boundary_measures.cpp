@@ -30,6 +30,16 @@ constexpr double farthest_led = 0.1;
 /// Nodes of the rules that do for patches that are small beside their radii of curvature.
 constexpr int few_nodes = 6;
 
+/// What it takes to measure a boundary: its rulings and regions, a few integrals each.
+double work_of_measures(const HullBoundary& boundary) {
+  double work = 0;
+  for (const SeparatingArc& arc : boundary.arcs) {
+    for (const ArcPiece& piece : arc.pieces) work += double(piece.rulings.size());
+  }
+  for (const HullFace& face : boundary.faces) work += double(face.regions.size());
+  return work;
+}
+
 /// The integrals over a whole boundary, in the scene's frame.
 class Summation {
  public:
@@ -41,20 +51,19 @@ class Summation {
         creases_(geometry, boundary, origin_),
         regions_(geometry, boundary),
         in_scroll_(pieces_of_scrolls(boundary)) {
-    const auto steps = double(boundary.arcs.size() + regions_.all().size());
+    WorkProgress share(progress, "measure", work_of_measures(boundary));
     for (std::size_t a = 0; a < boundary.arcs.size(); ++a) {
-      progress.update("measure", double(a) / steps);
       for (std::size_t p = 0; p < boundary.arcs[a].pieces.size(); ++p) {
         const long double before = sums_.value[ruled];
         const double depth = place_depth(boundary, boundary.arcs[a].pieces[p].tolerant);
         if (in_scroll_[a][p]) add_piece(a, p, depth);
         layer_ += depth * std::abs(double(sums_.value[ruled] - before));
+        share.add(double(boundary.arcs[a].pieces[p].rulings.size()));
       }
       add_creases(boundary.arcs[a], in_scroll_[a], sums_);
     }
-    std::size_t done = boundary.arcs.size();
     for (const GreenRegion& region : regions_.all()) {
-      progress.update("measure", double(done++) / steps);
+      share.add(1);
       for (const std::vector<TrimStretch>& loop : region.region->loops) {
         for (const TrimStretch& stretch : loop) {
           if (stretch.arc < 0) add_border(region, stretch);

@@ -35,6 +35,11 @@ constexpr double line_share = 1e-3;
 /// Rulings next to an end of an arc that may be of others.
 constexpr std::size_t most_jumps = 8;
 
+/// Shares of the step at which the graph is there, its arcs are cut and their rulings found.
+constexpr double graph_share = 0.2;
+constexpr double cut_share = 0.6;
+constexpr double found_share = 0.7;
+
 class ArcFinder {
  public:
   ArcFinder(const RulingSearch& search, const Progress& progress)
@@ -42,8 +47,15 @@ class ArcFinder {
 
   KnownArcs run() {
     known_.graph = map_graph(search_.map(), search_.query());
+    tell(graph_share);
     pass_narrow_facets();
-    cut_arcs(known_.graph, [&](const MapCrossing& c) { return is_in_crossing(ruling_at(c)); });
+    double crossings = 0;
+    for (const MapGraph::Arc& arc : known_.graph.arcs) crossings += double(arc.crossings.size());
+    double seen = 0;
+    cut_arcs(known_.graph, [&](const MapCrossing& c) {
+      tell(glm::mix(graph_share, cut_share, seen++ / crossings));
+      return is_in_crossing(ruling_at(c));
+    });
     find_rulings();
     while (drop_shallow_arcs() || contract_short_arcs()) find_rulings();
     join_crossings(search_, known_);
@@ -52,6 +64,12 @@ class ArcFinder {
   }
 
  private:
+  /// Of the step's share; what has to be done again is not told again.
+  void tell(double share) {
+    done_ = std::max(done_, share);
+    progress_.update("trace", done_);
+  }
+
   /// A facet that two arcs leave, or several in pairs between the same two contacts, has a side
   /// that is curved at least: else cells are so small that the contacts along the arcs, or between
   /// two of them that are as near to each other, are in one plane there.
@@ -101,8 +119,7 @@ class ArcFinder {
     known_.rulings.clear();
     const auto count = double(known_.graph.arcs.size());
     for (const MapGraph::Arc& arc : known_.graph.arcs) {
-      done_ = std::max(done_, double(known_.rulings.size()) / count);
-      progress_.update("trace", done_);
+      tell(glm::mix(cut_share, found_share, double(known_.rulings.size()) / count));
       std::vector<Ruling>& own = known_.rulings.emplace_back();
       std::vector<bool> told;  // of each
       for (const MapCrossing& crossing : arc.crossings) {
@@ -196,7 +213,9 @@ class ArcFinder {
   /// False if there are none.
   bool drop_shallow_arcs() {
     std::set<int> shallow;
-    for (int k = 0; k < int(known_.graph.arcs.size()); ++k) {
+    const int count = int(known_.graph.arcs.size());
+    for (int k = 0; k < count; ++k) {
+      tell(glm::mix(found_share, 1.0, double(k) / count));
       const MapGraph::Arc& arc = known_.graph.arcs[std::size_t(k)];
       if (arc.is_closed()) continue;
       const bool ends_freely = std::any_of(arc.node.begin(), arc.node.end(), [&](int node) {

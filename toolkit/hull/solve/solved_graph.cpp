@@ -40,8 +40,9 @@ constexpr double corner_share = 0.5;
 constexpr int divisions_limit = 1000;
 constexpr int divisions_limit_each = 4;
 
-/// Share of the step that it takes to find the arcs that are known, about.
+/// Shares of the step at which the arcs that are known are found, and the facets, about.
 constexpr double known_share = 0.5;
+constexpr double facets_share = 0.6;
 
 /// Places between two on an edge at which it is seen whether it touches a plane.
 constexpr int places_along = 4;
@@ -125,7 +126,12 @@ class GraphSolver {
   /// A node of the map is a facet, or a free end; or two arcs that go on into each other.
   void find_facets() {
     std::vector<std::optional<FacetNode>> facets;
-    for (const MapGraph::Node& node : known_.graph.nodes) facets.push_back(facet_of(node));
+    const Progress part = progress_.part(known_share, facets_share);
+    WorkProgress share(part, "trace", double(known_.graph.nodes.size()));
+    for (const MapGraph::Node& node : known_.graph.nodes) {
+      facets.push_back(facet_of(node));
+      share.add(1);
+    }
     for (std::size_t k = 0; k < facets.size(); ++k) {
       const std::size_t count = known_.graph.nodes[k].ends.size();
       if (facets[k] || count == 1) continue;
@@ -452,7 +458,7 @@ class GraphSolver {
 
   void solve(std::size_t k) {
     const double solved = double(k) / double(known_.graph.arcs.size());
-    progress_.update("trace", known_share + (1 - known_share) * solved);
+    progress_.update("trace", glm::mix(facets_share, 1.0, solved));
     const MapGraph::Arc& told = known_.graph.arcs[k];
     std::vector<Ruling> known = known_.rulings[k];
     if (known.empty()) return graph_.arcs.push_back({});  // it is part of another one

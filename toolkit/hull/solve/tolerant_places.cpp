@@ -178,6 +178,19 @@ class TolerantPlaces {
   bool is_rounded_;
 };
 
+/// What it takes to look at a region: as much as at so many rulings, about.
+constexpr double region_work = 4;
+
+/// What it takes to look at all rulings and regions.
+double work_of_places(const HullBoundary& boundary) {
+  double work = 0;
+  for (const SeparatingArc& arc : boundary.arcs) {
+    for (const ArcPiece& piece : arc.pieces) work += double(piece.rulings.size());
+  }
+  for (const HullFace& face : boundary.faces) work += region_work * double(face.regions.size());
+  return work;
+}
+
 }  // namespace
 
 bool is_rounded(const Scene& scene, double resolution) {
@@ -192,24 +205,24 @@ bool is_rounded(const Scene& scene, double resolution) {
 
 void find_tolerant_places(const ContactSystem& system, SupportQuery& query, HullBoundary& boundary,
                           double resolution, const Progress& progress) {
-  const auto all = double(boundary.arcs.size() + boundary.faces.size());
-  std::size_t done = 0;
-  const auto report = [&] { progress.update("stitch", double(done++) / all); };
+  WorkProgress share(progress, "stitch", work_of_places(boundary));
   const DepthBounds bounds(system.geometry().tie(), resolution);
   TolerantPlaces found(system, query, bounds);
   RegionDepths regions(system, query, bounds);
   for (SeparatingArc& arc : boundary.arcs) {
-    report();
-    for (ArcPiece& piece : arc.pieces) piece.tolerant = found.of(piece);
+    for (ArcPiece& piece : arc.pieces) {
+      piece.tolerant = found.of(piece);
+      share.add(double(piece.rulings.size()));
+    }
   }
   bound_joints(boundary, system.geometry().tie());
   for (HullFace& face : boundary.faces) {
-    report();
     if (face.kind == FaceKind::facet && !face.contacts.empty()) {
       face.tolerant = std::max(face.tolerant, found.of(face));
     }
     for (const PatchRegion& region : face.regions) {
       face.tolerant = std::max(face.tolerant, regions.of(boundary, region));
+      share.add(region_work);
     }
     if (face.kind != FaceKind::scroll) continue;
     const std::vector<ArcPiece>& pieces = boundary.arcs[std::size_t(face.scroll.arc)].pieces;
