@@ -64,8 +64,7 @@ class PatchCheck {
 
  private:
   void add_samples();
-  void add_grid(int source, int patch, const dvec2& lower, const dvec2& upper);
-  void add_random(int source, int patch, const dvec2& lower, const dvec2& upper);
+  void add_box(int source, int patch, const dvec2& lower, const dvec2& upper);
   bool is_whole(int source, const RegionOutline& outline) const;
   void add_beside(const RegionOutline& outline);
   void add(int source, int patch, const dvec2& uv);
@@ -123,15 +122,12 @@ std::string PatchCheck::name(const Sample& sample) const {
          std::to_string(uv.y) + ")";
 }
 
-void PatchCheck::add_grid(int source, int patch, const dvec2& lower, const dvec2& upper) {
+void PatchCheck::add_box(int source, int patch, const dvec2& lower, const dvec2& upper) {
   for (int i = 0; i < grid; ++i) {
     for (int k = 0; k < grid; ++k) {
       add(source, patch, lower + (upper - lower) * dvec2((i + 0.5) / grid, (k + 0.5) / grid));
     }
   }
-}
-
-void PatchCheck::add_random(int source, int patch, const dvec2& lower, const dvec2& upper) {
   std::uniform_real_distribution<double> uniform;
   for (int i = 0; i < random_places; ++i) {
     const double u = uniform(random_);
@@ -173,10 +169,7 @@ void PatchCheck::add_samples() {
     const std::vector<HullDocument::Patch>& patches = hull.sources[to_size(s)].patches;
     for (int i = 0; i < int(patches.size()); ++i) {
       const std::vector<Interval>& domain = patches[to_size(i)].domain;
-      const dvec2 lower(domain[0].lower, domain[1].lower);
-      const dvec2 upper(domain[0].upper, domain[1].upper);
-      add_grid(s, i, lower, upper);
-      add_random(s, i, lower, upper);
+      add_box(s, i, {domain[0].lower, domain[1].lower}, {domain[0].upper, domain[1].upper});
     }
   }
   for (const RegionOutline& region : outlines_.regions()) {
@@ -186,9 +179,8 @@ void PatchCheck::add_samples() {
       faults_.add("regions", "faces[" + std::to_string(region.face) +
                                  "]: a region lies to the right of its outline");
     }
-    // The places of a whole patch's grid are there.
-    if (!is_whole(source, region)) add_grid(source, patch, region.lower(), region.upper());
-    add_random(source, patch, region.lower(), region.upper());
+    // The places of a whole patch are there.
+    if (!is_whole(source, region)) add_box(source, patch, region.lower(), region.upper());
     add_beside(region);
   }
 }

@@ -22,6 +22,10 @@ using Face = HullDocument::Face;
 constexpr IntegralAccuracy along_accuracy = {1e-12, 1e-13, 60};
 constexpr IntegralAccuracy across_accuracy = {1e-12, 1e-14, 15};
 
+/// Shares of the step at which borders and the best fit are measured.
+constexpr double borders_share = 0.5;
+constexpr double best_share = 0.75;
+
 /// Points of a curve that its interpolating polynomials go through, and those of a worse one that
 /// tells the error.
 constexpr std::size_t window(Fit fit) { return fit == Fit::best ? 6 : 4; }
@@ -210,13 +214,14 @@ Terms MeasureSums::of_borders(const VerifyOptions& options) const {
 
 DocumentMeasures MeasureSums::run(const Terms& borders, const Progress& progress) {
   sums_ = borders;
-  for (const RegionOutline& region : outlines_.regions()) {
-    progress.check();
-    add_fitted(region);
-  }
   const std::vector<Face>& faces = geometry_.hull().faces;
+  WorkProgress told(progress, "verify", double(outlines_.regions().size() + faces.size()));
+  for (const RegionOutline& region : outlines_.regions()) {
+    add_fitted(region);
+    told.add(1);
+  }
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    progress.check();
+    told.add(1);
     if (faces[f].kind == FaceKind::scroll) add_scroll(faces[f], outlines_.intervals()[f]);
     if (faces[f].kind == FaceKind::facet) add_facet(faces[f]);
   }
@@ -519,11 +524,13 @@ std::optional<MeasureSums::EdgePart> MeasureSums::edge_between(const HullDocumen
 DocumentMeasures measure(const DocumentGeometry& geometry, const DocumentOutlines& outlines,
                          const VerifyOptions& options) {
   MeasureSums sums(geometry, outlines, Fit::best);
-  const Terms borders = sums.of_borders(options);
-  DocumentMeasures best = sums.run(borders, options.progress);
+  VerifyOptions first = options;
+  first.progress = options.progress.part(0, borders_share);
+  const Terms borders = sums.of_borders(first);
+  DocumentMeasures best = sums.run(borders, options.progress.part(borders_share, best_share));
   if (!sums.interpolated()) return best;
-  const DocumentMeasures worse =
-      MeasureSums(geometry, outlines, Fit::worse).run(borders, options.progress);
+  const DocumentMeasures worse = MeasureSums(geometry, outlines, Fit::worse)
+                                     .run(borders, options.progress.part(best_share, 1));
   // Where the curve is not as smooth as the polynomials suppose, both err by as much.
   constexpr double safety = 2;
   best.volume_error += safety * std::abs(worse.volume / best.volume - 1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "taut/containment/closed_surface.h"
@@ -15,6 +16,9 @@ namespace {
 constexpr double wanted_points = 50'000;
 constexpr int least_grid = 3;
 constexpr int most_grid = 65;
+
+/// Points of a hull that are asked before the share that is done is told.
+constexpr std::size_t points_at_once = 2048;
 
 /// Points of a hull, and how far inside of it each may be.
 struct HullPoints {
@@ -35,12 +39,18 @@ void check_hull_points(const HullPoints& hull_points, const Scene& scene, double
   options.progress = progress;
   const HullContainment hull(scene, options);
   found.hull_points = long(hull_points.points.size());
-  const std::vector<SignedDistance> distances = hull.distances(hull_points.points);
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    // Outside by no less than what one direction tells; but inside only by what all of them do, of
-    // which the best one found tells nothing.
-    found.hull_outside = std::max(found.hull_outside, distances[i].value);
-    found.hull_inside = std::max(found.hull_inside, -distances[i].upper - hull_points.bounds[i]);
+  const std::span<const dvec3> points(hull_points.points);
+  for (std::size_t begin = 0; begin < points.size(); begin += points_at_once) {
+    progress.update("points", double(begin) / double(points.size()));
+    const std::vector<SignedDistance> distances =
+        hull.distances(points.subspan(begin, std::min(points_at_once, points.size() - begin)));
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      // Outside by no less than what one direction tells; but inside only by what all of them do,
+      // of which the best one found tells nothing.
+      found.hull_outside = std::max(found.hull_outside, distances[i].value);
+      found.hull_inside =
+          std::max(found.hull_inside, -distances[i].upper - hull_points.bounds[begin + i]);
+    }
   }
 }
 
