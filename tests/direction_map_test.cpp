@@ -810,7 +810,7 @@ TEST(DirectionMap, FansOfSliversAreOneCap) {
 
 /// Of a cap with a notch, below which it would be the highest, both sides of the notch are; behind
 /// it they hang together.
-TEST(DirectionMap, NotchesPartWhatMeetsBehindThem) {
+void expect_notches_part(int turns) {
   constexpr double half = 0.2;
   taut_test::Random random(4);
   for (const int sectors : {2, 3, 4, 5, 6}) {
@@ -825,7 +825,7 @@ TEST(DirectionMap, NotchesPartWhatMeetsBehindThem) {
           {dvec2(0.0), rim(k), rim(k + 1), 1.5 * rim(k + 0.5)},
           [](const dvec2& x, const dvec2& y) { return -(x.x - 0.2) * (y.x - 0.2) - x.y * y.y; }));
     }
-    for (int turn = 0; turn < 8; ++turn) {
+    for (int turn = 0; turn < turns; ++turn) {
       const dmat3 own = turn == 0 ? dmat3(1.0) : random_rotation(random);
       const Scene scene = make_scene(mapped(shape, own));
       const DirectionMap map = map_at(scene, 1e-5);
@@ -836,6 +836,9 @@ TEST(DirectionMap, NotchesPartWhatMeetsBehindThem) {
     }
   }
 }
+
+TEST(DirectionMap, NotchesPartWhatMeetsBehindThem) { expect_notches_part(2); }
+TEST(DirectionMap, TurnedNotchesPartWhatMeetsBehindThem) { expect_notches_part(8); }
 
 /// In directions of a cell the support function is attained, within the resolution, where the cell
 /// says that something may touch.
@@ -1104,9 +1107,9 @@ Shape sliver(int degree_v, double width, taut_test::Random& random) {
 
 /// Of vertices and edges nearer to each other than the resolution one stands for the others, also
 /// where what is between rises from it.
-TEST(DirectionMap, SliversHoldWhatSupports) {
+void expect_slivers_hold(int count) {
   taut_test::Random random(28);
-  for (int k = 0; k < 24; ++k) {
+  for (int k = 0; k < count; ++k) {
     SCOPED_TRACE(k);
     const double rho = std::pow(10.0, uniform(random, -4, -2.5));
     const double width = rho * std::pow(10.0, uniform(random, -0.7, 0.3));
@@ -1124,6 +1127,9 @@ TEST(DirectionMap, SliversHoldWhatSupports) {
     }
   }
 }
+
+TEST(DirectionMap, SliversHoldWhatSupports) { expect_slivers_hold(3); }
+TEST(DirectionMap, ManySliversHoldWhatSupports) { expect_slivers_hold(24); }
 
 TEST(DirectionMap, HoldsWhatSupports) {
   expect_holds(teapot());

@@ -1,7 +1,9 @@
 #include "contained_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -18,17 +20,26 @@ constexpr int least_grid = 3;
 constexpr int most_grid = 65;
 
 /// Points of a hull that are asked before the share that is done is told.
-constexpr std::size_t points_at_once = 2048;
+constexpr std::size_t points_at_once = 4096;
 
-/// Points of a hull, and how far inside of it each may be.
+/// Points of a hull, each once, and how far inside of it each may be.
 struct HullPoints {
   std::vector<dvec3> points;
   std::vector<double> bounds;
 
+  /// What is there already keeps the smaller bound.
   void add(const dvec3& p, double bound) {
+    const auto [at, is_new] = index_.try_emplace({p.x, p.y, p.z}, points.size());
+    if (!is_new) {
+      bounds[at->second] = std::min(bounds[at->second], bound);
+      return;
+    }
     points.push_back(p);
     bounds.push_back(bound);
   }
+
+ private:
+  std::map<std::array<double, 3>, std::size_t> index_;
 };
 
 void check_hull_points(const HullPoints& hull_points, const Scene& scene, double accuracy,
