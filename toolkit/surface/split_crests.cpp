@@ -87,6 +87,7 @@ class RowSplitter {
   /// False if there is none.
   bool split_at_junctions() {
     find_grids();
+    if (!can_cut_any()) return false;
     find_joins();
     return cut_along(find_junctions());
   }
@@ -94,6 +95,10 @@ class RowSplitter {
  private:
   void find_grids();
   void find_joins();
+  bool can_cut_any() const {
+    return std::any_of(grids_.begin(), grids_.end(),
+                       [](const FaceGrid& g) { return g.can_be_cut; });
+  }
   std::vector<Cut> find_crests(double grid) const;
   std::vector<Cut> find_junctions() const;
   bool ends_on(int side, const BezierCurve& host) const;
@@ -138,11 +143,12 @@ void RowSplitter::find_grids() {
 
 std::vector<Cut> RowSplitter::find_crests(double grid) const {
   std::vector<Cut> result;
+  if (!can_cut_any()) return result;
   const std::vector<dvec3> points = corner_points(patches_);
   for (int p = 0; p < to_int(patches_.size()); ++p) {
     report_connect(progress_, to_size(p), patches_.size());
     const Patch& patch = patches_[to_size(p)];
-    if (patch.may_be_ruled()) continue;
+    if (!grid_of(p).can_be_cut || patch.may_be_ruled()) continue;
     for (const Direction direction : {Direction::u, Direction::v}) {
       const int row = grid_of(p).row_of(p, direction);
       // Where numbers are rounded, each patch of a row has its own crest for the row's.
