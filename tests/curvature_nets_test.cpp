@@ -207,6 +207,34 @@ TEST(CurvatureNets, TellNothingOfTips) {
   EXPECT_FALSE(form.surely_negative() || form.surely_positive() || form.surely_saddle());
 }
 
+/// The less a patch is curved the more of its second derivatives is rounding of its control points,
+/// however small both are.
+TEST(CurvatureNets, SignsOutdoRoundingOfControlPoints) {
+  Random random(9);
+  int told = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const dmat3 turned = random_rotation(random);
+    const dvec3 at = log_uniform(random, 1e-3, 10) * random_direction(random);
+    const double bend = log_uniform(random, 1e-18, 1e-13);
+    BezierPatch patch{2, 2, {}};
+    for (int i = 0; i <= 2; ++i) {
+      for (int j = 0; j <= 2; ++j) {
+        const dvec3 x(i, j, -bend * (i * i + j * j));
+        patch.points.push_back(homogeneous(at + turned * x));
+      }
+    }
+    const int sign = CurvatureNets(patch, no_poles).definite_sign();
+    if (sign == 0) continue;
+    ++told;
+    for (int i = 0; i < 20; ++i) {
+      const Form form = form_at(patch, uniform(random, 0, 1), uniform(random, 0, 1));
+      EXPECT_GT(form.determinant(), 0) << k << " " << bend;
+      EXPECT_EQ(form.uu > 0, sign > 0) << k << " " << bend;
+    }
+  }
+  EXPECT_GE(told, 50);
+}
+
 TEST(CurvatureNets, TellNothingOfFlatPatches) {
   Random random(7);
   const BezierPatch plane = make_model(disc(1, 0)).parts()[0].patches()[0].bezier;

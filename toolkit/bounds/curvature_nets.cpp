@@ -52,18 +52,17 @@ bool divide(ScaledNet<Entry>& net, Side side, int power, double zero) {
   return true;
 }
 
+/// Of a derivative of a Bernstein sum, over the differences of its control points.
+double derivative_factor(int degree, int order) {
+  return order == 2 ? degree * (degree - 1) : order == 1 ? degree : 1;
+}
+
 /// Xab of a homogeneous patch, with derivatives `du` times along u and `dv` along v.
 ScaledNet<dvec4> derivative(const BezierPatch& patch, const std::vector<dvec4>& x, int du, int dv) {
-  const int p = patch.degree_u;
-  const int q = patch.degree_v;
-  const NetShape shape{p - du, q - dv};
+  const NetShape shape{patch.degree_u - du, patch.degree_v - dv};
   if (shape.p < 0 || shape.q < 0) return ScaledNet<dvec4>({0, 0});
-  const double factor = (du == 2   ? p * (p - 1)
-                         : du == 1 ? p
-                                   : 1) *
-                        double(dv == 2   ? q * (q - 1)
-                               : dv == 1 ? q
-                                         : 1);
+  const double factor =
+      derivative_factor(patch.degree_u, du) * derivative_factor(patch.degree_v, dv);
   const auto at = [&](int i, int j) { return x[patch.index(i, j)]; };
   const auto difference = [&](int i, int j) {
     if (du == 2) return at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j);
@@ -92,13 +91,37 @@ ScaledNet<dvec3> second_derivative(const BezierPatch& patch, const std::vector<d
   return result;
 }
 
+/// What rounding does to entries of second_derivative(), however small these are beside the control
+/// points x = p - w c: these are off by some units of their sizes and, where weights differ, of w
+/// c, a second difference by four times that and the rounding of four more sums. Where weights
+/// differ it is their combinations with weights and points that cancel.
+double second_rounding(const BezierPatch& patch, const std::vector<dvec4>& x, const dvec3& center,
+                       int du, int dv) {
+  double size = 0, heaviest = 0;
+  for (const dvec4& p : x) {
+    size = std::max(size, glm::length(dvec3(p)));
+    heaviest = std::max(heaviest, p.w);
+  }
+  const double factor =
+      derivative_factor(patch.degree_u, du) * derivative_factor(patch.degree_v, dv);
+  constexpr double of_differences = 4 * (4 + 4);
+  if (is_polynomial(patch.points)) {
+    return of_differences * rounding_unit * factor * size / heaviest;
+  }
+  const double moved = size + heaviest * glm::length(center);
+  // Two products of up to four times the sizes, each a mean of so many terms.
+  const double roundings = 2 * of_differences + 8 * (2 * patch.degree_u + 2 * patch.degree_v + 8);
+  return roundings * rounding_unit * factor * heaviest * moved;
+}
+
 }  // namespace
 
 CurvatureNets::CurvatureNets(const BezierPatch& patch, const std::array<bool, 4>& poles) {
   Box box;
   for (const dvec4& p : patch.points) box.include(euclidean(p));
   std::vector<dvec4> x = patch.points;
-  for (dvec4& p : x) p -= dvec4(p.w * box.center(), 0.0);
+  const dvec3 center = box.center();
+  for (dvec4& p : x) p -= dvec4(p.w * center, 0.0);
   const NormalNet net = normal_net(patch);
   const auto normals = scaled<dvec3>(
       net.shape, [&](int i, int j) { return net.vectors[std::size_t(i * (net.shape.q + 1) + j)]; });
@@ -127,10 +150,11 @@ CurvatureNets::CurvatureNets(const BezierPatch& patch, const std::array<bool, 4>
     const double roundings = 8.0 * (product.shape.p + product.shape.q + 8);
     const double growth = std::pow(product.shape.p + 1.0, product.shape.p - quotient.shape.p) *
                           std::pow(product.shape.q + 1.0, product.shape.q - quotient.shape.q);
-    return Net<double>{
-        quotient.shape, unscaled(quotient),
-        (net.rounding_bound + roundings * rounding_unit * normal_size) * second_size * growth,
-        normal_size * second_size * growth};
+    const double of_products =
+        (net.rounding_bound + roundings * rounding_unit * normal_size) * second_size;
+    const double of_second = normal_size * second_rounding(patch, x, center, du, dv);
+    return Net<double>{quotient.shape, unscaled(quotient), (of_products + of_second) * growth,
+                       normal_size * second_size * growth};
   };
   uu_ = form(2, 0);
   uv_ = form(1, 1);
