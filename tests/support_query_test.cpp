@@ -94,6 +94,40 @@ TEST(SupportQuery, LeavesOutInsidesOfBentLines) {
   EXPECT_LE(rest.cells(), all.cells());
 }
 
+/// What is lower than a value that is given is not told apart; lines that are left out do not count
+/// for more than they miss.
+TEST(SupportQuery, HighestAboveAValue) {
+  const double off = 1e-6;
+  for (const Shape& shape : {teapot(), mapped(solid_cylinder(1, 2), skew_rotation())}) {
+    const Scene scene = make_scene(shape);
+    SupportQuery query(scene), rest(scene);
+    rest.leave_out_lines(off);
+    for (const dvec3& n : directions(7, 100)) {
+      const Support truth = query(n);
+      for (const double beside : {-1.0, -1e-3, -1e-9, 0.0, 1e-9, 1e-3}) {
+        const double least = truth.h + beside;
+        const double highest = std::max(least, truth.h);
+        EXPECT_NEAR(query.highest_above(least, n, truth.contact), highest, support_slack);
+        EXPECT_NEAR(query.highest_above(least, n, {}), highest, support_slack);
+        EXPECT_GE(rest.highest_above(least, n, {}), highest - support_slack);
+        EXPECT_LE(rest.highest_above(least, n, {}), std::max(least, truth.h_bound + off));
+      }
+    }
+  }
+}
+
+/// Along the circle on which a torus lies.
+TEST(SupportQuery, LessIsToldAboveAValue) {
+  const Scene scene = make_scene(mapped(torus(2, 0.5), skew_rotation()));
+  const dvec3 n = skew_rotation() * dvec3(0, 0, 1);
+  SupportQuery query(scene);
+  const Support truth = query(n);
+  const long whole = query.cells();
+  const double least = truth.h + 1e-9;
+  EXPECT_EQ(query.highest_above(least, n, truth.contact), least);
+  EXPECT_LT(query.cells() - whole, whole);
+}
+
 TEST(SupportQuery, Torus) {
   const Scene scene = make_scene(torus(2, 0.5));
   const auto truth = closed_form(scene, [](const rvec3& n) {

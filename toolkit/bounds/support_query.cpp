@@ -49,6 +49,7 @@ class SupportQuery::Search {
         directions_(scene.instances.size()) {}
 
   Support run(const dvec3& n, const Contact& hint);
+  double run_above(double least, const dvec3& n, const Contact& hint);
   void leave_out(const Contact& patch);
   void leave_out_lines(double off) { off_lines_ = off; }
   void check_stop() const { stop_.check(); }
@@ -165,6 +166,8 @@ class SupportQuery::Search {
   void split(const Net& net, const SceneElement& e, NetCell cell, bool along_u);
   void polish(const Contact& contact);
   void polish_from(const Contact& hint);
+  void start(const dvec3& n, const Contact& hint);
+  void search();
   void finish();
 
   const SceneContent& scene_;
@@ -525,7 +528,7 @@ void SupportQuery::Search::finish() {
   if (const auto end = end_of_ruling(scene_, best_, n_, best_h_)) best_ = *end;
 }
 
-Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
+void SupportQuery::Search::start(const dvec3& n, const Contact& hint) {
   n_ = n;
   abs_n_ = glm::abs(n);
   ++queries;
@@ -543,7 +546,9 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
     const int index = scene_.element(first);
     if (index < 0 || !is_left_out(first.instance, index)) polish_from(first);
   }
+}
 
+void SupportQuery::Search::search() {
   stack_.push({infinity, Kind::instance_node, -1, 0});
   for (int count = 0; !stack_.empty() && count < cell_limit; ++count) {
     if (count % stop_interval == 0) stop_.check();
@@ -564,12 +569,28 @@ Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
         open_node(entry);
     }
   }
+}
+
+Support SupportQuery::Search::run(const dvec3& n, const Contact& hint) {
+  start(n, hint);
+  search();
   // The limit may have left entries open.
   const double proven = std::max(best_h_ + support_slack, stack_.highest());
   assert(best_.instance >= 0);  // the direction is finite
   if (!converged_ || !curved_) finish();
   return {best_h_, std::max(proven, best_h_) + rounding_ + proof_rounding_ + low_, low_, best_,
           scene_.frame_point(best_)};
+}
+
+/// The search starts as if a point so high were known; only if lines were left out that may be
+/// higher, it must be known what they are next to.
+double SupportQuery::Search::run_above(double least, const dvec3& n, const Contact& hint) {
+  start(n, hint);
+  best_h_ = std::max(best_h_, least);
+  search();
+  if (best_h_ <= least) return low_ > 0 ? std::max(least, run(n, hint).highest()) : least;
+  if (!converged_ || !curved_) finish();
+  return best_h_ + low_;
 }
 
 void SupportQuery::Search::leave_out(const Contact& patch) {
@@ -586,6 +607,10 @@ SupportQuery::SupportQuery(SupportQuery&&) noexcept = default;
 
 Support SupportQuery::operator()(const dvec3& n, const Contact& hint) {
   return search_->run(n, hint);
+}
+
+double SupportQuery::highest_above(double least, const dvec3& n, const Contact& hint) {
+  return search_->run_above(least, n, hint);
 }
 
 void SupportQuery::leave_out(const std::vector<Contact>& patches) {

@@ -56,6 +56,11 @@ class SupportQuery {
   /// @pre |n| = 1 within rounding @throws Cancelled
   Support operator()(const dvec3& n, const Contact& hint = {});
 
+  /// The larger of `least` and what Support::highest() is in direction n. What is lower is not told
+  /// apart, which takes less the farther `least` is above the support's slack.
+  /// @pre |n| = 1 within rounding @throws Cancelled
+  double highest_above(double least, const dvec3& n, const Contact& hint = {});
+
   /// Patches that do not count, with their borders, from now on: the answers are those of the rest.
   void leave_out(const std::vector<Contact>& patches);
 

@@ -101,7 +101,8 @@ double RegionDepths::deepest_in(const RegionOutline& outline, const PatchRegion&
   const auto look = [&](const dvec2& uv) {
     const bool is_inside =
         std::min({uv.x, uv.y, 1 - uv.x, 1 - uv.y}) > 0 && depth_in(outline, uv) >= beside * 0.5;
-    const double found = is_inside ? own_depth(region, uv) : 0;
+    if (!is_inside) return;
+    const double found = own_depth(region, uv, std::max(deepest, bounds_.tie()));
     if (found > deepest) at = uv;
     deepest = std::max(deepest, found);
   };
@@ -185,12 +186,15 @@ dvec3 RegionDepths::point(const PatchRegion& region, const dvec2& uv) const {
   return geometry_.point(contact(region, uv));
 }
 
-/// Of the patch by its own normal.
-double RegionDepths::own_depth(const PatchRegion& region, const dvec2& uv) {
+/// Of the patch by its own normal, if it is deeper than that.
+double RegionDepths::own_depth(const PatchRegion& region, const dvec2& uv, double least) {
   const Contact c = contact(region, uv);
   const ContactJet j = geometry_.jet(c);
   const dvec3 n = double(region.sign) * unit(glm::cross(j.dx[0], j.dx[1]));
-  return n == dvec3(0.0) ? 0 : query_(n, c).highest() - glm::dot(j.x, n);
+  if (n == dvec3(0.0)) return 0;
+  const double h = glm::dot(j.x, n);
+  const double highest = query_.highest_above(h + least, n, c);
+  return highest > h + least ? highest - h : 0;
 }
 
 }  // namespace taut

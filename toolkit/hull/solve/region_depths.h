@@ -24,7 +24,7 @@ class RegionDepths {
   double deepest_bend(const RegionOutline& outline, const PatchRegion& region) const;
   double bend_length(const PatchRegion& region, const dvec2& from, const dvec2& to) const;
   double upward_curvature(const PatchRegion& region, const dvec2& uv) const;
-  double own_depth(const PatchRegion& region, const dvec2& uv);
+  double own_depth(const PatchRegion& region, const dvec2& uv, double least);
   dvec3 point(const PatchRegion& region, const dvec2& uv) const;
 
   const ContactSystem& system_;

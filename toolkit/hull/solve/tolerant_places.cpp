@@ -37,7 +37,7 @@ class TolerantPlaces {
     double deepest = piece.tolerant;
     bool touches = true;
     for (const Ruling& r : piece.rulings) {
-      deepest = std::max(deepest, depth(r));
+      deepest = std::max(deepest, depth(r, deepest));
       for (std::size_t i = 0; i < 2; ++i) {
         deepest = std::max(deepest, off(r.contact[i], r.point[i]));
         touches = touches && !rises(r.contact[i], r.n);
@@ -52,7 +52,7 @@ class TolerantPlaces {
     const bool is_exact = !is_rounded_ && piece.tolerant == 0 && deepest <= geometry_.tie();
     for (std::size_t k = 1; k < piece.rulings.size(); ++k) {
       const RulingsBetween between(system_, piece.rulings[k - 1], piece.rulings[k]);
-      if (between.empty() || (is_exact && depth_at(between, 0.5) <= geometry_.tie())) continue;
+      if (between.empty() || (is_exact && depth_at(between, 0.5, 0) <= geometry_.tie())) continue;
       deepest = std::max(deepest, deepest_of(between));
     }
     return std::max(bounds_.elsewhere(deepest, touches), std::min(passed, bounds_.resolution()));
@@ -74,7 +74,7 @@ class TolerantPlaces {
     for (std::size_t k = 0; k < facet.sides.size(); ++k) {
       const EdgeStretch& side = facet.sides[k];
       if (side.piece < 0) continue;
-      const auto depth_at = [&](double share) {
+      const auto depth_at = [&](double share, double) {
         return depth_of(geometry_.point(side.at(glm::mix(side.from, side.to, share))));
       };
       of_sides = std::max(of_sides, deepest_along(depth_at));
@@ -88,23 +88,27 @@ class TolerantPlaces {
  private:
   /// Of exact rulings; where none is found, of the one that is interpolated, the resolution at
   /// least: what there is may be deeper beside it.
-  double depth_at(const RulingsBetween& between, double share) {
+  double depth_at(const RulingsBetween& between, double share, double least) {
     const double s = between.at_share(share);
-    if (const std::optional<MovingRuling> exact = between(s)) return depth(exact->at.ruling());
+    if (const std::optional<MovingRuling> exact = between(s)) {
+      return depth(exact->at.ruling(), least);
+    }
     return std::max(bounds_.resolution() / DepthBounds::near_places,
-                    depth(between.interpolated(s).at.ruling()));
+                    depth(between.interpolated(s).at.ruling(), least));
   }
   double deepest_of(const RulingsBetween& between) {
-    return deepest_along([&](double share) { return depth_at(between, share); });
+    return deepest_along(
+        [&](double share, double least) { return depth_at(between, share, least); });
   }
 
-  /// Between 0 and 1; about the deepest place it is looked closer.
+  /// Between 0 and 1; about the deepest place it is looked closer. Less deep than the second
+  /// argument of `depth_at` need not be told.
   template <class DepthAt>
   double deepest_along(const DepthAt& depth_at) const {
     double deepest = 0, at = 0.5, step = 1.0 / places;
     const auto look = [&](double share) {
       if (!(0 < share && share < 1)) return;
-      const double found = depth_at(share);
+      const double found = depth_at(share, deepest);
       if (found > deepest) at = share;
       deepest = std::max(deepest, found);
     };
@@ -134,7 +138,7 @@ class TolerantPlaces {
         e.parameter[i] = {1, 0};
         return e;
       };
-      if (system_.solve(s, stays)) deepest = std::max(deepest, depth(s.ruling()));
+      if (system_.solve(s, stays)) deepest = std::max(deepest, depth(s.ruling(), deepest));
     }
     return deepest;
   }
@@ -166,9 +170,12 @@ class TolerantPlaces {
     return glm::distance(geometry_.point(c), x);
   }
 
-  double depth(const Ruling& r) {
-    const double h = query_(r.n, r.contact[0]).highest();
-    return h - std::min(glm::dot(r.point[0], r.n), glm::dot(r.point[1], r.n));
+  /// Of the lower contact, if that is deeper than `least` and the tie; else no more than these.
+  double depth(const Ruling& r, double least) {
+    const double lower = std::min(glm::dot(r.point[0], r.n), glm::dot(r.point[1], r.n));
+    const double told = std::max(least, geometry_.tie());
+    const double h = query_.highest_above(lower + told, r.n, r.contact[0]);
+    return h > lower + told ? h - lower : 0;
   }
 
   const ContactSystem& system_;
