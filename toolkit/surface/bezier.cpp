@@ -53,6 +53,24 @@ void bernstein(int p, double t, int order, Basis& basis) {
   }
 }
 
+/// Indices of polynomials of which the value or a derivative up to the order is not zero: all, or
+/// at an end of [0, 1] the few next to it.
+struct IndexRange {
+  int first, last;
+};
+IndexRange nonzero(const Basis& basis, int p, int order) {
+  const auto is_zero = [&](int i) {
+    for (int k = 0; k <= order; ++k) {
+      if (basis.value[k][i] != 0) return false;
+    }
+    return true;
+  };
+  IndexRange range{0, p};
+  while (range.first < range.last && is_zero(range.first)) ++range.first;
+  while (range.first < range.last && is_zero(range.last)) --range.last;
+  return range;
+}
+
 template <int Order>
 using Derivatives = std::array<std::array<dvec4, Order + 1>, Order + 1>;
 
@@ -65,11 +83,13 @@ Derivatives<Order> homogeneous_derivatives(const BezierPatch& patch, double u, d
   Basis bu, bv;
   bernstein(p, u, Order, bu);
   bernstein(q, v, Order, bv);
+  const IndexRange in_u = nonzero(bu, p, Order);
+  const IndexRange in_v = nonzero(bv, q, Order);
   Derivatives<Order> d{};
-  const dvec4* row = patch.points.data();
-  for (int i = 0; i <= p; ++i, row += q + 1) {
+  for (int i = in_u.first; i <= in_u.last; ++i) {
+    const dvec4* row = patch.points.data() + i * (q + 1);
     std::array<dvec4, Order + 1> along_v{};
-    for (int j = 0; j <= q; ++j) {
+    for (int j = in_v.first; j <= in_v.last; ++j) {
       for (int l = 0; l <= Order; ++l) along_v[l] += bv.value[l][j] * row[j];
     }
     for (int k = 0; k <= Order; ++k) {
@@ -173,7 +193,7 @@ class NormalNoise {
   explicit NormalNoise(const BezierPatch& patch) {
     double size = 0;
     for (const dvec4& p : patch.points) {
-      size = std::max({size, std::abs(p.x / p.w), std::abs(p.y / p.w), std::abs(p.z / p.w)});
+      size = std::max(size, std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) / p.w);
     }
     u_ = roundings * rounding_unit * patch.degree_u * size;
     v_ = roundings * rounding_unit * patch.degree_v * size;
