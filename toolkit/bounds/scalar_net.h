@@ -205,6 +205,8 @@ template <class Visit>
 auto with_scalar_net(NetShape shape, Visit visit) {
   if (shape.p == 3 && shape.q == 3) return visit(ScalarNet<3, 3>(shape));
   if (shape.p == 2 && shape.q == 2) return visit(ScalarNet<2, 2>(shape));
+  // Quads of the triangles of Loop's surfaces.
+  if (shape.p == 4 && shape.q == 4) return visit(ScalarNet<4, 4>(shape));
   // Patches next to the creases of cages.
   if (shape.p == 3 && shape.q == 6) return visit(ScalarNet<3, 6>(shape));
   if (shape.p == 6 && shape.q == 3) return visit(ScalarNet<6, 3>(shape));

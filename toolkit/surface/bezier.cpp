@@ -19,7 +19,10 @@ struct Basis {
 /// The recurrence B_i^r = (1-t) B_i^{r-1} + t B_{i-1}^{r-1} is free of cancellation on [0, 1]; the
 /// k-th derivatives come from the k-fold differences of the basis of degree p - k, which the
 /// recurrence passes through on its way.
-void bernstein(int p, double t, int order, Basis& basis) {
+/// The degree is known when compiling (P >= 0) or not (-1).
+template <int P = -1>
+void bernstein(int degree, double t, int order, Basis& basis) {
+  const int p = P >= 0 ? P : degree;
   if (p == 3) {
     auto& b = basis.value;
     cubic_bernstein(t, b);
@@ -32,12 +35,12 @@ void bernstein(int p, double t, int order, Basis& basis) {
   const double s = 1 - t;
   double b[max_degree + 1];
   b[0] = 1;
-  const auto store = [&](int degree) {
-    const int k = p - degree;
+  const auto store = [&](int passed) {
+    const int k = p - passed;
     if (k > order) return;
     double* d = basis.value[k];
-    std::copy(b, b + degree + 1, d);
-    for (int r = degree; r < p; ++r) {
+    std::copy(b, b + passed + 1, d);
+    for (int r = passed; r < p; ++r) {
       d[r + 1] = (r + 1) * d[r];
       for (int i = r; i > 0; --i) d[i] = (r + 1) * (d[i - 1] - d[i]);
       d[0] = -(r + 1) * d[0];
@@ -81,8 +84,8 @@ Derivatives<Order> homogeneous_derivatives(const BezierPatch& patch, double u, d
   const int p = P >= 0 ? P : patch.degree_u;
   const int q = Q >= 0 ? Q : patch.degree_v;
   Basis bu, bv;
-  bernstein(p, u, Order, bu);
-  bernstein(q, v, Order, bv);
+  bernstein<P>(p, u, Order, bu);
+  bernstein<Q>(q, v, Order, bv);
   const IndexRange in_u = nonzero(bu, p, Order);
   const IndexRange in_v = nonzero(bv, q, Order);
   Derivatives<Order> d{};
@@ -97,6 +100,15 @@ Derivatives<Order> homogeneous_derivatives(const BezierPatch& patch, double u, d
     }
   }
   return d;
+}
+
+/// Those of common degrees are compiled for them.
+template <int Order>
+Derivatives<Order> with_known_degrees(const BezierPatch& patch, double u, double v) {
+  const auto is = [&](int p, int q) { return patch.degree_u == p && patch.degree_v == q; };
+  if (is(3, 3)) return homogeneous_derivatives<Order, 3, 3>(patch, u, v);
+  if (is(4, 4)) return homogeneous_derivatives<Order, 4, 4>(patch, u, v);
+  return homogeneous_derivatives<Order>(patch, u, v);
 }
 
 template <int Order>
@@ -125,9 +137,7 @@ EuclideanDerivatives<Order> quotient(const Derivatives<Order>& d) {
 
 template <int Order>
 EuclideanDerivatives<Order> euclidean_derivatives(const BezierPatch& patch, double u, double v) {
-  const Derivatives<Order> d = patch.degree_u == 3 && patch.degree_v == 3
-                                   ? homogeneous_derivatives<Order, 3, 3>(patch, u, v)
-                                   : homogeneous_derivatives<Order>(patch, u, v);
+  const Derivatives<Order> d = with_known_degrees<Order>(patch, u, v);
   if (!is_polynomial(patch.points)) return quotient<Order>(d);
   EuclideanDerivatives<Order> S;
   const double w = patch.points.front().w;
