@@ -11,6 +11,7 @@
 #include "taut/hull/measure/crease_origins.h"
 #include "taut/hull/measure/facet_integrals.h"
 #include "taut/hull/measure/flat_measures.h"
+#include "taut/hull/measure/gauss_nodes.h"
 #include "taut/hull/measure/green_regions.h"
 #include "taut/hull/measure/interior_point.h"
 #include "taut/hull/measure/measure_bounds.h"
@@ -27,8 +28,8 @@ constexpr double quadrature_way = 1e-6;
 /// way: by more they are those of other contacts.
 constexpr double farthest_led = 0.1;
 
-/// Nodes of the rules that do for patches that are small beside their radii of curvature.
-constexpr int few_nodes = 6;
+/// Lines along which, in the patch's parameter, some are enough.
+constexpr double short_line = 0.25;
 
 /// What it takes to measure a boundary: its rulings and regions, a few integrals each.
 double work_of_measures(const HullBoundary& boundary) {
@@ -115,9 +116,9 @@ class Summation {
 
   void add_scroll(const MovingRuling& m, Quantities& sum) const;
   void add_to_line(const GreenRegion& region, const dvec2& p, double at, Quantities& sample) const;
-  bool is_plain(const GreenRegion& region, const TrimStretch& stretch) const;
+  int enough_nodes(const GreenRegion& region, const TrimStretch& stretch) const;
   void add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate, double weight,
-                Quantities& sum, bool plain = false);
+                Quantities& sum, int nodes);
 
   const ContactGeometry& geometry_;
   ContactSystem system_;
@@ -137,37 +138,36 @@ void Summation::add_to_line(const GreenRegion& region, const dvec2& p, double at
   add_patch(geometry_.jet(c), origin_, region.region->sign, sample);
 }
 
-/// Whether few nodes are accurate on the line to the stretch's middle. On the stretch's other
-/// lines few nodes will then be accurate too, or halve the lines.
-bool Summation::is_plain(const GreenRegion& region, const TrimStretch& stretch) const {
+/// Of the first rule that is accurate on the line to the stretch's middle. On the stretch's other
+/// lines it will then be accurate too, or halve the lines.
+int Summation::enough_nodes(const GreenRegion& region, const TrimStretch& stretch) const {
   const dvec2 p = on_side(stretch.side, 0.5 * (stretch.from + stretch.to));
   int samples = 0;
   const auto f = [&](double at, double, Quantities& sample) {
     ++samples;
     add_to_line(region, p, at, sample);
   };
-  Sums line;
-  integrate<few_nodes>(f, tolerances, region.base, p[region.inner], line);
-  return samples == few_nodes;
+  for (const int nodes : {few_nodes, some_nodes}) {
+    samples = 0;
+    Sums line;
+    with_nodes(nodes,
+               [&](auto n) { integrate<n>(f, tolerances, region.base, p[region.inner], line); });
+    if (samples == nodes) return nodes;
+  }
+  return many_nodes;
 }
 
 /// Green's theorem: the integral of f over a region is that of G(u, v) dv around it, G the integral
 /// of f from the base to u along u, or that of -G du, G the same along v.
 void Summation::add_line(const GreenRegion& region, const dvec2& p, const dvec2& rate,
-                         double weight, Quantities& sum, bool plain) {
+                         double weight, Quantities& sum, int nodes) {
   const int inner = region.inner;
   const double end = p[inner];
   const double across = inner == 0 ? rate.y : -rate.x;
   if (end == region.base || across == 0) return;
   Sums line;
   const auto f = [&](double at, double, Quantities& sample) { add_to_line(region, p, at, sample); };
-  if (plain) {
-    integrate<few_nodes>(f, tolerances, region.base, end, line);
-  } else if (std::abs(end - region.base) < 0.25) {
-    integrate<8>(f, tolerances, region.base, end, line);
-  } else {
-    integrate<16>(f, tolerances, region.base, end, line);
-  }
+  with_nodes(nodes, [&](auto n) { integrate<n>(f, tolerances, region.base, end, line); });
   for (std::size_t k = 0; k < quantities; ++k) {
     sum[k] += across * double(line.value[k]);
     sums_.error[k] += std::abs(weight * across) * line.error[k];
@@ -211,8 +211,11 @@ void Summation::add_ruling(const Stretch& at, const MovingRuling& m, double weig
   for (const ArcTrace& trace : *at.traces) {
     const auto i = std::size_t(trace.contact);
     const Contact& c = m.at.contact[i];
-    add_line(regions_.all()[std::size_t(trace.region)], {c.u, c.v}, trace.direction * m.dp[i],
-             weight, sample);
+    const GreenRegion& region = regions_.all()[std::size_t(trace.region)];
+    const dvec2 uv(c.u, c.v);
+    const int nodes =
+        std::abs(uv[region.inner] - region.base) < short_line ? some_nodes : many_nodes;
+    add_line(region, uv, trace.direction * m.dp[i], weight, sample, nodes);
   }
 }
 
@@ -355,10 +358,10 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
   if (!of_line && !edge && !join) return;
   const double sense = stretch.to < stretch.from ? -1 : 1;
   if (of_line && !edge && !join && on_side(stretch.side, 0)[region.inner] == region.base) return;
-  const bool plain = of_line && is_plain(region, stretch);
+  const int nodes = of_line ? enough_nodes(region, stretch) : many_nodes;
   const auto f = [&](double t, double weight, Quantities& sample) {
     const dvec2 p = on_side(stretch.side, t);
-    if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample, plain);
+    if (of_line) add_line(region, p, of_v ? dvec2(0, 1) : dvec2(1, 0), weight, sample, nodes);
     if (!edge && !join) return;
     const ContactJet j = geometry_.jet(region.contact(p.x, p.y));
     const dvec3 N = double(region.region->sign) * glm::cross(j.dx[0], j.dx[1]);
@@ -367,11 +370,8 @@ void Summation::add_border(const GreenRegion& region, const TrimStretch& stretch
     // The integral runs from `from` to `to`, so backwards dt is negative.
     sample[curvature] -= region.region->sign * sense * half;
   };
-  if (plain && !edge) {
-    integrate<few_nodes>(f, tolerances, stretch.from, stretch.to, sums_);
-  } else {
-    integrate<16>(f, tolerances, stretch.from, stretch.to, sums_);
-  }
+  with_nodes(edge ? many_nodes : nodes,
+             [&](auto n) { integrate<n>(f, tolerances, stretch.from, stretch.to, sums_); });
 }
 
 using Vector = glm::vec<3, long double>;

@@ -70,6 +70,15 @@ struct Integrals {
   }
 };
 
+/// By products.
+constexpr double whole_power(double x, int exponent) {
+  double result = 1;
+  for (; exponent > 0; exponent /= 2, x *= x) {
+    if (exponent % 2 == 1) result *= x;
+  }
+  return result;
+}
+
 /// Halvings beyond 2^-5 of the whole: of integrals that are not nested, so many that singularities
 /// narrower than the thinnest of models are resolved. Where they are nested, cost would grow with
 /// the square.
@@ -103,7 +112,7 @@ void integrate_part(const Function& f, const Tolerance& tolerance, double a, dou
     const double high = std::max(std::abs(coefficient[3]), std::abs(coefficient[2]));
     const double low = std::max(std::abs(coefficient[1]), std::abs(coefficient[0]));
     const double ratio = high < low ? std::sqrt(high / low) : 1;
-    error[c] = std::abs(b - a) * 2 * high * std::pow(ratio, n + 1);
+    error[c] = std::abs(b - a) * 2 * high * whole_power(ratio, n + 1);
   }
   const std::array<double, count> allowed = tolerance(magnitude);
   double excess = 0;
