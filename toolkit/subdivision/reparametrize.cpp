@@ -5,6 +5,7 @@
 
 #include "taut/core/integers.h"
 #include "taut/subdivision/triangle_points.h"
+#include "taut/surface/bernstein.h"
 
 namespace taut {
 namespace {
@@ -18,14 +19,30 @@ double binomial(int n, int k) {
 /// Bernstein coefficients of a polynomial in one variable.
 using Coefficients = std::vector<double>;
 
+/// What the product of two coefficients of degrees m and n, the second one's index running first,
+/// counts with.
+std::vector<double> product_factors(int m, int n) {
+  const std::vector<double> first = binomials(m);
+  const std::vector<double> second = binomials(n);
+  const std::vector<double> whole = binomials(m + n);
+  std::vector<double> factors;
+  factors.reserve(first.size() * second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      factors.push_back(first[i] * second[j] / whole[i + j]);
+    }
+  }
+  return factors;
+}
+
 Coefficients product(const Coefficients& a, const Coefficients& b) {
   const int m = static_cast<int>(a.size()) - 1;
   const int n = static_cast<int>(b.size()) - 1;
+  const std::vector<double> factors = product_factors(m, n);
   Coefficients c(to_size(m + n + 1));
   for (int i = 0; i <= m; ++i) {
     for (int j = 0; j <= n; ++j) {
-      c[to_size(i + j)] +=
-          binomial(m, i) * binomial(n, j) / binomial(m + n, i + j) * a[to_size(i)] * b[to_size(j)];
+      c[to_size(i + j)] += factors[to_size(i * (n + 1) + j)] * a[to_size(i)] * b[to_size(j)];
     }
   }
   return c;
@@ -44,13 +61,14 @@ Net product(const Net& a, const Net& b) {
   Net r;
   r.degree = a.degree + b.degree;
   r.c.assign(to_size((r.degree + 1) * (r.degree + 1)), 0.0);
+  const std::vector<double> factors = product_factors(a.degree, b.degree);
+  const auto factor = [&](int i, int k) { return factors[to_size(i * (b.degree + 1) + k)]; };
   for (int i = 0; i <= a.degree; ++i) {
     for (int k = 0; k <= b.degree; ++k) {
-      const double u = binomial(a.degree, i) * binomial(b.degree, k) / binomial(r.degree, i + k);
+      const double u = factor(i, k);
       for (int j = 0; j <= a.degree; ++j) {
         for (int l = 0; l <= b.degree; ++l) {
-          const double v =
-              binomial(a.degree, j) * binomial(b.degree, l) / binomial(r.degree, j + l);
+          const double v = factor(j, l);
           r.at(i + k, j + l) += u * v * a.at(i, j) * b.at(k, l);
         }
       }
